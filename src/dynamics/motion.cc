@@ -1,0 +1,162 @@
+// Motion of kinematic bodies: keyframes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "dynamics/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace tw {
+namespace {
+
+// Minimum-jerk timing s(u) and its slope, u in [0, 1].
+double smooth_share(double u) { return u * u * u * (10 + u * (6 * u - 15)); }
+double smooth_slope(double u) { return 30 * u * u * (1 - u) * (1 - u); }
+constexpr double smooth_peak_slope = 1.875;  // s'(1/2)
+
+// Straight line and constant axis from one keyframe to the next.
+struct Segment {
+  double start = 0, end = 0;
+  Vec3 p0, p1;
+  Quat q0;
+  Vec3 turn;  // rotation vector that takes q0 to the next orientation, world axes
+
+  double length() const { return end - start; }
+};
+
+class Keyframes : public Motion {
+ public:
+  Keyframes(std::vector<Segment> segments, Pose first, Pose last, bool smooth)
+      : segments_(std::move(segments)),
+        first_(std::move(first)),
+        last_(std::move(last)),
+        smooth_(smooth) {}
+
+  Pose pose(double time) const override {
+    const Segment* s = segment_at(time);
+    if (!s) return before(time) ? first_ : last_;
+    const double share = share_at(*s, time);
+    return {s->p0 + share * (s->p1 - s->p0), rotation_by(share * s->turn) * s->q0};
+  }
+
+  void velocity(double time, Vec3& v, Vec3& w) const override {
+    const Segment* s = segment_at(time);
+    const double rate = s ? slope_at(*s, time) / s->length() : 0;
+    v = s ? Vec3(rate * (s->p1 - s->p0)) : Vec3::Zero();
+    w = s ? Vec3(rate * s->turn) : Vec3::Zero();
+  }
+
+  double speed_bound(double from, double to) const override {
+    return bound(from, to, [](const Segment& s) { return (s.p1 - s.p0).norm(); });
+  }
+  double angular_speed_bound(double from, double to) const override {
+    return bound(from, to, [](const Segment& s) { return s.turn.norm(); });
+  }
+
+  Aabb path_bounds(double from, double to) const override {
+    // every coordinate is monotone within a segment
+    Aabb box;
+    box.add(pose(from).p);
+    box.add(pose(to).p);
+    for (const Segment& s : segments_)
+      if (s.end > from && s.start < to) {
+        if (s.start > from) box.add(s.p0);
+        if (s.end < to) box.add(s.p1);
+      }
+    return box;
+  }
+
+ private:
+  bool before(double time) const { return segments_.empty() || time < segments_.front().start; }
+
+  // The segment with start <= time < end; null where the body rests.
+  const Segment* segment_at(double time) const {
+    const auto next =
+        std::upper_bound(segments_.begin(), segments_.end(), time,
+                         [](double t, const Segment& s) { return t < s.end; });
+    return next != segments_.end() && time >= next->start ? &*next : nullptr;
+  }
+  double share_at(const Segment& s, double time) const {
+    const double u = (time - s.start) / s.length();
+    return smooth_ ? smooth_share(u) : u;
+  }
+  double slope_at(const Segment& s, double time) const {
+    return smooth_ ? smooth_slope((time - s.start) / s.length()) : 1;
+  }
+  template <class Length>
+  double bound(double from, double to, Length length) const {
+    double most = 0;
+    for (const Segment& s : segments_)
+      if (s.end >= from && s.start <= to) most = std::max(most, length(s) / s.length());
+    return most * (smooth_ ? smooth_peak_slope : 1) * (1 + 1e-12);
+  }
+
+  std::vector<Segment> segments_;
+  Pose first_, last_;
+  bool smooth_;
+};
+
+class FixedMotion : public Motion {
+ public:
+  explicit FixedMotion(Pose pose) : pose_(std::move(pose)) {}
+  Pose pose(double) const override { return pose_; }
+  void velocity(double, Vec3& v, Vec3& w) const override {
+    v.setZero();
+    w.setZero();
+  }
+  double speed_bound(double, double) const override { return 0; }
+  double angular_speed_bound(double, double) const override { return 0; }
+  Aabb path_bounds(double, double) const override { return {pose_.p, pose_.p}; }
+
+ private:
+  Pose pose_;
+};
+
+// The rotation vector of the shorter way from q0 to q1, world axes.
+Vec3 turn_between(const Quat& q0, const Quat& q1) {
+  Quat d = q1 * q0.conjugate();
+  if (d.w() < 0) d.coeffs() = -d.coeffs();
+  const double s = d.vec().norm();
+  if (s == 0) return Vec3::Zero();
+  return (2 * std::atan2(s, d.w()) / s) * d.vec();
+}
+
+Quat unit_orientation(const Quat& q, const std::string& where) {
+  TW_REQUIRE(is_finite(q) && q.squaredNorm() > 0,
+             "orientation of " + where + " is zero or not finite; expected a quaternion #(w x y z)");
+  return q.normalized();
+}
+
+}  // namespace
+
+MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
+  TW_REQUIRE(!keyframes.empty(), "keyframes: the list is empty; expected at least one keyframe");
+
+  // poses with every orientation filled in
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const Keyframe& k = keyframes[i];
+    const std::string where = "keyframe " + std::to_string(i);
+    TW_REQUIRE(std::isfinite(k.time), "time of " + where + " is " + show(k.time) +
+                                          "; expected a finite number of seconds");
+    TW_REQUIRE(i == 0 || k.time > keyframes[i - 1].time,
+               "time of " + where + " is " + show(k.time) + "; expected a time after that of the "
+               "keyframe before it (" + show(keyframes[i == 0 ? 0 : i - 1].time) + ")");
+    TW_REQUIRE(is_finite(k.position), "position of " + where + " is not finite");
+    Quat q = Quat::Identity();
+    if (i > 0) q = poses.back().q;
+    if (k.orientation) q = unit_orientation(*k.orientation, where);
+    poses.push_back({k.position, q});
+  }
+
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i)
+    segments.push_back({keyframes[i].time, keyframes[i + 1].time, poses[i].p, poses[i + 1].p,
+                        poses[i].q, turn_between(poses[i].q, poses[i + 1].q)});
+  return std::make_shared<Keyframes>(std::move(segments), poses.front(), poses.back(), smooth);
+}
+
+MotionPtr make_fixed_motion(const Pose& pose) { return std::make_shared<FixedMotion>(pose); }
+
+}  // namespace tw

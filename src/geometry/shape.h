@@ -1,0 +1,97 @@
+// Shapes: immutable unions of placed convex parts.
+//
+// Every shape is a list of convex parts in the body's frame.  A part is a *core* with a radius: a
+// sphere is a point with a radius, a box or hull is a polyhedron with radius 0; a half-space is a
+// part of its own.  Later shapes (capsule: a segment with a radius; cylinder, cone, ellipsoid:
+// support mappings) become further kinds here and one row each in the table of pairs in
+// collision/separation.cc.
+//
+// Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
+// flat, and say which value.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "math/aabb.h"
+#include "math/vec.h"
+
+namespace tw {
+
+class Polyhedron;
+class Shape;
+using ShapePtr = std::shared_ptr<const Shape>;
+
+enum class PartKind { sphere, polyhedron, half_space };
+
+// One convex part, placed in the frame of the shape.
+struct ConvexPart {
+  PartKind kind = PartKind::sphere;
+  Frame placement;                           // part frame in the shape's frame
+  double radius = 0;                         // sphere: its radius; otherwise 0
+  std::shared_ptr<const Polyhedron> core;    // polyhedron only, in the part's frame
+  Vec3 normal = Vec3::UnitZ();               // half-space: outward unit normal, shape's frame
+  double offset = 0;                         // half-space: solid where normal.x <= offset
+  // A ball around the part, shape's frame; infinite radius for a half-space.
+  Vec3 bound_center = Vec3::Zero();
+  double bound_radius = 0;
+  bool is_box = false;                       // a box keeps its half edges for drawing
+  Vec3 half_edges = Vec3::Zero();
+};
+
+// Volume integrals at density 1.  Frames: the shape's own; inertia about the centroid.
+struct MassProperties {
+  double volume = 0;
+  Vec3 centroid = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+};
+
+class Shape {
+ public:
+  const std::vector<ConvexPart>& parts() const { return parts_; }
+  // False for a half-space (and unions that hold one).
+  bool bounded() const { return bounded_; }
+  // Exact, the parts of a union added up (an overlap counts twice).  Bounded shapes only.
+  const MassProperties& mass_properties() const { return mass_; }
+  // Least width of the bounding box, m: the `size` of contact parameters.  Infinite if unbounded.
+  double least_width() const { return least_width_; }
+  // The smallest ball around the frame's origin that holds the shape (bound by the parts'
+  // farthest points, exact for spheres and polyhedra), m.
+  double radius_about_origin() const { return radius_about_origin_; }
+  // The shape's bounds when its frame is placed at `frame`, m.  Exact for spheres, boxes and hulls.
+  Aabb bounds(const Frame& frame) const;
+  // One word for messages: "sphere", "box", "hull", "half-space", "union".
+  const std::string& kind_name() const { return kind_name_; }
+  // True for a single sphere centred anywhere.
+  bool is_sphere() const { return parts_.size() == 1 && parts_[0].kind == PartKind::sphere; }
+  bool is_half_space() const {
+    return parts_.size() == 1 && parts_[0].kind == PartKind::half_space;
+  }
+
+ private:
+  friend ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
+                               const MassProperties& mass);
+  std::vector<ConvexPart> parts_;
+  MassProperties mass_;
+  bool bounded_ = true;
+  double least_width_ = 0;
+  double radius_about_origin_ = 0;
+  std::string kind_name_;
+};
+
+ShapePtr make_sphere(double radius);
+// Full edges, centred at the origin.
+ShapePtr make_box(const Vec3& edges);
+// The convex hull of the points (Qhull).  The frame is the points' own: the centroid need not be
+// at the origin.
+ShapePtr make_hull(const std::vector<Vec3>& points);
+// Solid where normal.x <= offset; the normal is normalised.
+ShapePtr make_half_space(const Vec3& normal, double offset);
+ShapePtr make_union(const std::vector<ShapePtr>& shapes);
+// The shape moved by `pose` within the body's frame.
+ShapePtr place_shape(const ShapePtr& shape, const Pose& pose);
+
+}  // namespace tw

@@ -1,0 +1,103 @@
+// Evaluating and bounding arcs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/arc.h"
+
+#include <algorithm>
+
+namespace tw {
+
+const FreeRotation& rotation_of(const Body& body, const StateData& arc) {
+  if (!arc.rotation_ready) {
+    arc.rotation = FreeRotation(body.moments, arc.q, arc.L);
+    arc.rotation_ready = true;
+  }
+  return arc.rotation;
+}
+
+ArcPoint evaluate(const Body& body, const StateData& arc, double time) {
+  ArcPoint point;
+  if (!body.dynamic()) {
+    const Pose pose = body.motion->pose(time);
+    point.x = pose.p;
+    point.q = pose.q;
+    body.motion->velocity(time, point.v, point.w);
+    return point;
+  }
+  const double s = time - arc.arc_time;
+  point.x = arc.x + s * (arc.v + (0.5 * s) * arc.acceleration);
+  point.v = arc.v + s * arc.acceleration;
+  rotation_of(body, arc).evaluate(s, point.q, point.w);
+  return point;
+}
+
+Frame frame_at(const Body& body, const StateData& arc, double time) {
+  if (!body.dynamic()) return Frame(body.motion->pose(time));
+  const Quat q = rotation_of(body, arc).attitude(time - arc.arc_time);
+  return {q.toRotationMatrix(), center_at(body, arc, time)};
+}
+
+Vec3 center_at(const Body& body, const StateData& arc, double time) {
+  if (!body.dynamic()) return body.motion->pose(time).p;
+  const double s = time - arc.arc_time;
+  return arc.x + s * (arc.v + (0.5 * s) * arc.acceleration);
+}
+
+double angular_speed_bound(const Body& body, const StateData& arc, double from, double to) {
+  if (!body.dynamic()) return body.motion->angular_speed_bound(from, to);
+  return rotation_of(body, arc).max_angular_speed();
+}
+
+Aabb swept_bounds(const Body& body, const StateData& arc, double from, double to) {
+  // the path of the centre: ends, and where a coordinate turns
+  Aabb path;
+  if (body.dynamic()) {
+    path.add(center_at(body, arc, from));
+    path.add(center_at(body, arc, to));
+    for (int i = 0; i < 3; ++i) {
+      const double a = arc.acceleration[i];
+      if (a == 0) continue;
+      const double apex = arc.arc_time - arc.v[i] / a;
+      if (apex > from && apex < to) path.add(center_at(body, arc, apex));
+    }
+  } else {
+    path = body.motion->path_bounds(from, to);
+  }
+
+  // the shape about it: exact where it does not turn, else the ball
+  if (body.sphere_radius < 0 && angular_speed_bound(body, arc, from, to) == 0) {
+    Frame still = frame_at(body, arc, from);
+    still.p.setZero();
+    const Aabb shape = body.shape_P->bounds(still);
+    path.lo += shape.lo;
+    path.hi += shape.hi;
+    return path;
+  }
+  path.grow(body.radius);
+  return path;
+}
+
+BodyState body_state(const Body& body, const ArcPoint& point) {
+  BodyState state;
+  state.orientation = point.q * body.X_PB.q;
+  state.position = point.x + point.q * body.X_PB.p;
+  state.velocity = point.v;
+  state.angular_velocity = point.w;
+  return state;
+}
+
+Mat3 inverse_inertia_world(const Body& body, const Quat& q) {
+  const Mat3 R = q.toRotationMatrix();
+  return R * body.moments.cwiseInverse().asDiagonal() * R.transpose();
+}
+
+Vec3 angular_momentum(const Body& body, const Quat& q, const Vec3& w) {
+  const Vec3 w_P = q.conjugate() * w;
+  return q * Vec3(body.moments.cwiseProduct(w_P));
+}
+
+double kinetic_energy(const Body& body, const ArcPoint& point) {
+  const Vec3 w_P = point.q.conjugate() * point.w;
+  return 0.5 * (body.mass * point.v.squaredNorm() + w_P.dot(body.moments.cwiseProduct(w_P)));
+}
+
+}  // namespace tw

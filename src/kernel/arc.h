@@ -1,0 +1,44 @@
+// Evaluating and bounding arcs: what moves between discontinuities.
+//
+// Dynamic bodies fly freely: x(t) = x0 + v0 s + a s^2/2 with s = t - arc_time, and torque-free
+// rotation in closed form.  Fixed and kinematic bodies follow their motion.  Everything here is a
+// function of the arc's start and the time alone.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "kernel/body.h"
+#include "kernel/state.h"
+#include "math/aabb.h"
+
+namespace tw {
+
+// The principal frame's motion at one instant, world frame.
+struct ArcPoint {
+  Vec3 x = Vec3::Zero();
+  Quat q = Quat::Identity();
+  Vec3 v = Vec3::Zero();
+  Vec3 w = Vec3::Zero();
+};
+
+ArcPoint evaluate(const Body& body, const StateData& arc, double time);
+// The pose alone: cheaper.
+Frame frame_at(const Body& body, const StateData& arc, double time);
+Vec3 center_at(const Body& body, const StateData& arc, double time);
+
+// The torque-free rotation of the arc (dynamic bodies).
+const FreeRotation& rotation_of(const Body& body, const StateData& arc);
+// A bound on the angular speed over the whole arc (dynamic) or over [from, to] (kinematic), rad/s.
+double angular_speed_bound(const Body& body, const StateData& arc, double from, double to);
+
+// A box around everything the body sweeps over [from, to]; bounded shapes only.
+Aabb swept_bounds(const Body& body, const StateData& arc, double from, double to);
+
+// What users see: the body frame's pose.
+BodyState body_state(const Body& body, const ArcPoint& point);
+// World inverse inertia R I^-1 R^T.
+Mat3 inverse_inertia_world(const Body& body, const Quat& q);
+Vec3 angular_momentum(const Body& body, const Quat& q, const Vec3& w);
+double kinetic_energy(const Body& body, const ArcPoint& point);
+
+}  // namespace tw

@@ -1,0 +1,106 @@
+// Interfaces that the kernel hands out: callbacks (may change states), observers (only look) and
+// frame sinks.  script/ and record/ implement them; the kernel knows no Guile and no OpenGL.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "base/error.h"
+#include "kernel/key.h"
+#include "kernel/slots.h"
+#include "math/vec.h"
+
+namespace tw {
+
+using BodyId = std::uint32_t;
+
+// What a body does at one instant.  Position and orientation are the *body frame's*, velocity the
+// centre of mass's; all in the world frame, SI.
+struct BodyState {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+};
+
+// A committed or just computed collision, as callbacks and observers see it.
+struct Collision {
+  Key key;
+  BodyId body1 = 0, body2 = 0;  // body1 < body2
+  double time = 0;
+  Vec3 point = Vec3::Zero();    // world, m: of the largest impulse
+  Vec3 normal = Vec3::UnitZ();  // unit, world, from body1 to body2
+  double speed = 0;             // approach speed there before the impulse, m/s, positive
+  double impulse = 0;           // sum of the normal impulses, N s
+};
+
+// What a callback is handed for each target: reads at the event's time, writes into the state that
+// follows.  Lives only during the call.
+class StateView {
+ public:
+  virtual ~StateView() = default;
+  virtual BodyId body() const = 0;
+  virtual const BodyState& state() const = 0;
+  virtual double kinetic_energy() const = 0;
+  virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
+  virtual const SlotsPtr& slots() const = 0;
+
+  // Errors: UserError where the body cannot do it (velocity of a fixed body), or a value is not
+  // finite.
+  virtual void set_velocity(const Vec3& v) = 0;
+  virtual void set_angular_velocity(const Vec3& w) = 0;
+  virtual void set_applied_force(const Vec3& force) = 0;
+  virtual void set_slots(SlotsPtr slots) = 0;
+  // Edits only (World::edit), never in callbacks.
+  virtual void set_pose(const Vec3& position, const Quat& orientation) = 0;
+  // Uniform in [0, 1), from the generator that lives in the state.
+  virtual double draw_random() = 0;
+};
+
+// Thrown by a callback or observer to stop the run at once (Ctrl-C): not an error of the scene,
+// nothing is recorded, and the event is processed again when the run goes on.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+// A user's callback.  May run again after a rollback.  Any other exception than Interrupted
+// becomes a speculative error: raised when GVT passes it, gone if it is rolled back.
+class Callback {
+ public:
+  virtual ~Callback() = default;
+  // Returns the next time for callbacks without a period (nullopt: never again); ignored otherwise.
+  virtual std::optional<double> run(double event_time, std::span<StateView* const> targets) = 0;
+};
+
+class CollisionCallback {
+ public:
+  virtual ~CollisionCallback() = default;
+  // After the impulse.  `a` and `b` in the order in which the callback's sides were given.
+  // `reversed`: a is collision.body2.
+  virtual void run(const Collision& collision, bool reversed, StateView& a, StateView& b) = 0;
+};
+
+using CollisionObserver = std::function<void(const Collision&)>;
+
+// One moving body in a frame.
+struct BodyPose {
+  BodyId body = 0;
+  BodyState state;
+};
+
+// Receives committed frames, in order, each once.  Frame k is at k/fps.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+  // The poses of all moving (dynamic and kinematic) bodies, by body id; valid during the call.
+  virtual void frame(long index, double frame_time, std::span<const BodyPose> poses) = 0;
+};
+
+}  // namespace tw

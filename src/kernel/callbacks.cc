@@ -1,0 +1,202 @@
+// Callbacks: when they run, what they see, and what remains of them in the graph.
+//
+// Every target gets a state of the callback's key, all in one ring, also those that were only read:
+// a *record* that carries the old arc along where the motion did not change.  So a callback runs
+// again exactly when one of its targets is rolled back below it.  Ticks are start + k period (one
+// product, one sum); without a period the next time lives in the record.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/kernel.h"
+
+namespace tw {
+
+// The first tick whose key is not below `key`.
+Key Kernel::first_tick(const CallbackRecord& callback, const Key& key) const {
+  const std::uint64_t number = static_cast<std::uint64_t>(&callback - callbacks.data());
+  const auto tick = [&](double k) {
+    return Key{callback.def.start + k * *callback.def.period, 0, KeyKind::callback, number};
+  };
+  double k = std::max(0.0, std::floor((key.time - callback.def.start) / *callback.def.period) - 1);
+  while (tick(k) < key) ++k;
+  return tick(k);
+}
+
+void Kernel::schedule_callback(std::uint32_t number) {
+  CallbackRecord& callback = callbacks[number];
+  if (callback.next.time == never || callback.parked) {
+    queue.withdraw(callback.event);
+    return;
+  }
+  queue.schedule(callback.event,
+                 make_event(callback.next, EventKind::callback, number, callback.head_start));
+}
+
+// A target lost its states from `key` on: back to the first call that is not done any more.
+void Kernel::rewind_callback(std::uint32_t number, const Key& key) {
+  CallbackRecord& callback = callbacks[number];
+  callback.parked = false;
+  if (!(callback.next < key)) {
+    if (callback.def.period) {
+      callback.next = first_tick(callback, key);
+    } else {
+      // the last record that is left says when
+      double next = callback.committed_next;
+      for (const State* s = graph.tail(callback.def.targets.front()); s; s = s->prev)
+        if (s->key.kind == KeyKind::callback && s->key.id == number) {
+          next = s->next_callback;
+          break;
+        }
+      callback.next = {next, 0, KeyKind::callback, number};
+    }
+  }
+  // a call that stands is not made twice
+  const State* tail = graph.last_at_or_before(callback.def.targets.front(), callback.next);
+  if (tail && tail->key == callback.next && callback.def.period)
+    callback.next = first_tick(callback, {callback.next.time, 0, KeyKind::callback, number + 1ull});
+  schedule_callback(number);
+}
+
+void Kernel::process_callback(std::uint32_t number) {
+  CallbackRecord& callback = callbacks[number];
+  const Key key = callback.next;
+
+  // only after the targets' claims have reached its time; a stopped target parks it
+  for (const BodyId id : callback.def.targets)
+    if (graph.tail(id)->error && graph.tail(id)->key < key) {
+      callback.parked = true;
+      schedule_callback(number);
+      return;
+    }
+  for (const BodyId id : callback.def.targets) {
+    Body& body = *bodies[id];
+    while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error)
+      claim_window(body);
+  }
+  if (!(callback.next == key)) return;
+
+  // drafts that carry the old arcs, and views of them
+  std::vector<Draft> drafts;
+  for (const BodyId id : callback.def.targets) drafts.push_back(draft_for(*bodies[id], key, false));
+  std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
+  for (Draft& draft : drafts) {
+    draft.enters = true;
+    before.push_back({draft.data.slots, draft.data.random});
+  }
+  std::vector<DraftView> views;
+  views.reserve(drafts.size());
+  for (Draft& draft : drafts) views.emplace_back(draft, key, false, options.gravity);
+  std::vector<StateView*> pointers;
+  for (DraftView& view : views) pointers.push_back(&view);
+
+  // the call; its error stops the targets, speculatively
+  double next = never;
+  ++counters.callbacks_run;
+  try {
+    const auto answer = callback.def.callback->run(key.time, pointers);
+    if (!callback.def.period && answer) next = *answer;
+    if (!callback.def.period && answer && !(next > key.time))
+      throw UserError("callback " + callback.def.name + " at " + show(key.time) +
+                          " s returned the next time " + show(next) + "; expected a later time or #f",
+                      callback.def.place);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (...) {
+    for (Draft& draft : drafts) draft.data.error = std::current_exception();
+  }
+
+  bool any_changed = false;
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    StateData& data = drafts[i].data;
+    any_changed = any_changed || data.arc_key == key || data.slots != before[i].first ||
+                  data.random != before[i].second;
+    data.next_callback = next;
+  }
+  for (Draft& draft : drafts) draft.data.changed = any_changed;
+
+  // the next call, then the states (a rollback through them rewinds it again)
+  callback.next = callback.def.period
+                      ? first_tick(callback, {key.time, 0, KeyKind::callback, number + 1ull})
+                      : Key{next, 0, KeyKind::callback, number};
+  schedule_callback(number);
+  enter_discontinuity(key, drafts);
+}
+
+// ---- what a callback sees ----
+
+void DraftView::require_dynamic(const char* what) const {
+  TW_REQUIRE(draft_.body->dynamic(), std::string(what) + " of " + draft_.body->info.name +
+                                         " cannot be changed; expected a dynamic body (this one is " +
+                                         (draft_.body->fixed() ? "fixed)" : "kinematic)"));
+}
+
+double DraftView::kinetic_energy() const {
+  return tw::kinetic_energy(*draft_.body, draft_.point);
+}
+
+// The first change of the motion starts a new arc here.
+void DraftView::start_arc() {
+  StateData& d = draft_.data;
+  if (d.arc_key == key_) return;
+  d.arc_key = key_;
+  d.arc_time = key_.time;
+  d.x = draft_.point.x;
+  d.q = draft_.point.q;
+  d.v = draft_.point.v;
+  d.rotation_ready = false;
+}
+
+void DraftView::set_velocity(const Vec3& v) {
+  require_dynamic("velocity");
+  TW_REQUIRE(is_finite(v), "velocity of " + draft_.body->info.name + " is not finite");
+  start_arc();
+  draft_.data.v = draft_.point.v = state_.velocity = v;
+}
+
+void DraftView::set_angular_velocity(const Vec3& w) {
+  require_dynamic("angular-velocity");
+  TW_REQUIRE(is_finite(w), "angular-velocity of " + draft_.body->info.name + " is not finite");
+  start_arc();
+  draft_.point.w = state_.angular_velocity = w;
+  draft_.data.L = angular_momentum(*draft_.body, draft_.data.q, w);
+}
+
+void DraftView::set_applied_force(const Vec3& force) {
+  require_dynamic("applied-force");
+  TW_REQUIRE(is_finite(force), "applied-force of " + draft_.body->info.name + " is not finite");
+  if (force == draft_.data.force) return;
+  start_arc();
+  draft_.data.force = force;
+  draft_.data.acceleration = gravity_ + force / draft_.body->mass;
+}
+
+void DraftView::set_slots(SlotsPtr slots) { draft_.data.slots = std::move(slots); }
+
+void DraftView::set_pose(const Vec3& position, const Quat& orientation) {
+  TW_ASSERT(may_place_, "set_pose is for edits");
+  require_dynamic("position");
+  TW_REQUIRE(is_finite(position), "position of " + draft_.body->info.name + " is not finite");
+  TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,
+             "orientation of " + draft_.body->info.name + " is zero or not finite");
+  start_arc();
+  const Quat q = orientation.normalized();
+  const Vec3 w = draft_.point.w;
+  draft_.data.q = draft_.point.q = q * draft_.body->X_BP.q;
+  draft_.data.x = draft_.point.x = position + q * draft_.body->X_BP.p;
+  draft_.data.L = angular_momentum(*draft_.body, draft_.data.q, w);
+  state_ = body_state(*draft_.body, draft_.point);
+}
+
+double DraftView::draw_random() {
+  TW_REQUIRE(draft_.enters || draft_.data.slots || draft_.body->dynamic(),
+             "random-real! of " + draft_.body->info.name +
+                 ": a fixed body without slots keeps no state; expected one with #:slots");
+  Random random(draft_.data.random);
+  const double x = random.real();
+  draft_.data.random += 0x9e3779b97f4a7c15ull;
+  return x;
+}
+
+}  // namespace tw

@@ -1,0 +1,364 @@
+// Collision checks: the first impact of a pair, on the arcs that stand.
+//
+// A pair is followed piece by piece (a piece: both arcs stand).  On each piece the impact is a
+// function of the two arcs' starts alone, as if they were never cut:
+//   exact     spheres that fall alike, sphere and fixed plane: a quadratic (collision/impact-time.h)
+//   on grid   otherwise: once at the common start, then at multiples of h = 2^-20 s.  A conservative
+//             certificate skips grid points at which the pair is surely apart.  The impact lies
+//             before the first grid point with penetration; Brent's method finds it on the signed
+//             distance, cold.
+// An impact found with key K is valid only if K is below the piece's end.  So it does not matter
+// when, in which order or how often a pair is checked.
+//
+// Equality: at the common start, overlapping and approaching is an impact now, overlapping and
+// separating is none.  A contact shorter than h that no grid point sees does not exist.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "collision/impact-time.h"
+#include "kernel/kernel.h"
+#include "math/root.h"
+
+namespace tw {
+namespace {
+
+// Depth that does not count as penetration, share of the smaller size: above the rounding of a
+// distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
+constexpr double depth_slack = 1e-12;
+
+// An approach slower than this share of the speeds involved is rounding left by an impact before.
+constexpr double speed_noise = 1e-13;
+
+double grid_floor(double t) { return std::floor(t / check_grid) * check_grid; }
+double grid_ceil(double t) { return std::ceil(t / check_grid) * check_grid; }
+double grid_after(double t) { return (std::floor(t / check_grid) + 1) * check_grid; }
+
+const State* next_arc(const State* state) {
+  for (state = state->next; state && !state->starts_arc();) state = state->next;
+  return state;
+}
+
+Key key_or_last(const State* state) { return state ? state->key : last_key; }
+
+// A bound on how fast any point of the body moves, m/s.
+double point_speed(const Body& body, const ArcPoint& p) {
+  const double turn = p.w.norm();
+  return p.v.norm() + (turn > 0 ? turn * body.radius : 0);
+}
+
+}  // namespace
+
+// ---- records ----
+
+std::uint32_t Kernel::find_pair(const Body& a, const Body& b) const {
+  const Body& shorter = a.pairs.size() <= b.pairs.size() ? a : b;
+  const BodyId x = std::min(a.id(), b.id()), y = std::max(a.id(), b.id());
+  for (const std::uint32_t index : shorter.pairs)
+    if (pairs[index].a == x && pairs[index].b == y) return index;
+  return no_pair;
+}
+
+std::uint32_t Kernel::make_pair(Body& a, Body& b, const Key& from) {
+  std::uint32_t index;
+  if (unused_pairs.empty()) {
+    index = static_cast<std::uint32_t>(pairs.size());
+    pairs.emplace_back();
+  } else {
+    index = unused_pairs.back();
+    unused_pairs.pop_back();
+  }
+  Body& first = a.id() < b.id() ? a : b;
+  Body& second = a.id() < b.id() ? b : a;
+  Pair& pair = pairs[index];
+  pair = Pair();
+  pair.live = true;
+  pair.a = first.id();
+  pair.b = second.id();
+  pair.from = from;
+  pair.place_a = static_cast<std::uint32_t>(first.pairs.size());
+  pair.place_b = static_cast<std::uint32_t>(second.pairs.size());
+  first.pairs.push_back(index);
+  second.pairs.push_back(index);
+  ++counters.pairs_made;
+  ++counters.live_pairs;
+  return index;
+}
+
+void Kernel::drop_pair(std::uint32_t index) {
+  Pair& pair = pairs[index];
+  queue.withdraw(pair.event);
+  const auto take_out = [&](Body& body, std::uint32_t place) {
+    const std::uint32_t moved = body.pairs.back();
+    body.pairs[place] = moved;
+    body.pairs.pop_back();
+    if (moved == index) return;
+    (pairs[moved].a == body.id() ? pairs[moved].place_a : pairs[moved].place_b) = place;
+  };
+  take_out(*bodies[pair.a], pair.place_a);
+  take_out(*bodies[pair.b], pair.place_b);
+  pair.live = false;
+  pair.caches.clear();
+  unused_pairs.push_back(index);
+  --counters.live_pairs;
+}
+
+void Kernel::schedule_pair(std::uint32_t index, double when) {
+  Pair& pair = pairs[index];
+  const Key key{when, 0, KeyKind::step, pair_id(pair.a, pair.b)};
+  queue.schedule(pair.event, make_event(key, EventKind::pair, index, pair.head_start));
+}
+
+void Kernel::set_pending(std::uint32_t index, const Key& key) {
+  Pair& pair = pairs[index];
+  pair.pending = true;
+  pair.impact = key;
+  queue.schedule(pair.event, make_event(key, EventKind::pair, index, pair.head_start));
+}
+
+// After a rollback of one of its bodies to `key`: what was known from there on is forgotten.
+void Kernel::reset_pair(std::uint32_t index, const Key& key) {
+  Pair& pair = pairs[index];
+  if (pair.pending && pair.impact < key) return;
+  if (pair.pending || key < pair.from || pair.parked) {
+    pair.from = pair.pending ? key : std::min(pair.from, key);
+    pair.started = false;
+  }
+  pair.pending = false;
+  pair.parked = false;
+  const double when = pair.started ? std::min(key.time, pair.next_check) : pair.from.time;
+  schedule_pair(index, std::max(pair.from.time, when));
+}
+
+// ---- pieces ----
+
+Piece Kernel::piece_at(const Pair& pair) const {
+  Piece piece;
+  piece.a = graph.last_at_or_before(pair.a, pair.from);
+  piece.b = graph.last_at_or_before(pair.b, pair.from);
+  if (!piece.a) piece.a = graph.head(pair.a);
+  if (!piece.b) piece.b = graph.head(pair.b);
+  piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
+  piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
+  return piece;
+}
+
+Key Kernel::impact_key(const Pair& pair, const Piece& piece, double impact_time) const {
+  // the last states at or before the impact, records and slot changes included
+  std::uint32_t microstep = 0;
+  for (const State* state : {piece.a, piece.b}) {
+    if (!bodies[state->process]->dynamic()) continue;
+    if (state->arc_key.time == impact_time) microstep = std::max(microstep, state->arc_key.microstep);
+    for (const State* s = state; s && s->key < piece.end && s->key.time <= impact_time; s = s->next)
+      if (s->key.time == impact_time && s->key.kind == KeyKind::edit)
+        microstep = std::max(microstep, s->key.microstep);
+  }
+  return {impact_time, microstep + 1, KeyKind::impact, pair_id(pair.a, pair.b)};
+}
+
+bool Kernel::approaching_at(const Piece& piece, double when) const {
+  const Body& a = *bodies[piece.a->process];
+  const Body& b = *bodies[piece.b->process];
+  const ArcPoint pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
+  const Separation s = separation_at(piece, when);
+  const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
+  return (ub - ua).dot(s.normal) < -speed_noise * (point_speed(a, pa) + point_speed(b, pb));
+}
+
+Separation Kernel::separation_at(const Piece& piece, double when) const {
+  const Body& a = *bodies[piece.a->process];
+  const Body& b = *bodies[piece.b->process];
+  return separation(*a.shape_P, frame_at(a, *piece.a, when), *b.shape_P,
+                    frame_at(b, *piece.b, when));
+}
+
+// ---- exact pairs ----
+
+bool Kernel::predicted_exactly(const Piece& piece, const Body& a, const Body& b) const {
+  if (a.sphere_radius >= 0 && b.sphere_radius >= 0) {
+    if (a.info.kind == BodyKind::kinematic || b.info.kind == BodyKind::kinematic) return false;
+    return piece.a->acceleration == piece.b->acceleration;
+  }
+  return (a.sphere_radius >= 0 && b.is_fixed_plane) || (b.sphere_radius >= 0 && a.is_fixed_plane);
+}
+
+// Time of the first impact on the piece's arcs as if uncut; `never` if there is none.
+double Kernel::exact_impact(const Piece& piece, const Body& a, const Body& b) const {
+  const double start = piece.start_time();
+  const auto speed_at = [&](const Body& body, const State& arc) -> Vec3 {
+    if (!body.dynamic()) return Vec3::Zero();
+    return arc.v + (start - arc.arc_time) * arc.acceleration;
+  };
+  const Vec3 va = speed_at(a, *piece.a), vb = speed_at(b, *piece.b);
+  const Vec3 xa = center_at(a, *piece.a, start), xb = center_at(b, *piece.b, start);
+
+  double after;
+  if (a.sphere_radius >= 0 && b.sphere_radius >= 0) {
+    const Vec3 r = xb - xa, u = vb - va;
+    // what an impact left behind is no approach
+    const double noise = speed_noise * (va.norm() + vb.norm());
+    if (r.dot(u) > -noise * r.norm()) return never;
+    after = sphere_sphere_impact(r, u, a.sphere_radius + b.sphere_radius);
+  } else {
+    const Body& plane = a.is_fixed_plane ? a : b;
+    const Body& ball = a.is_fixed_plane ? b : a;
+    const Vec3& n = plane.plane_normal;
+    const Vec3& x = a.is_fixed_plane ? xb : xa;
+    const Vec3& v = a.is_fixed_plane ? vb : va;
+    const double pull = n.dot((a.is_fixed_plane ? *piece.b : *piece.a).acceleration);
+    double speed = n.dot(v);
+    if (std::abs(speed) <= speed_noise * v.norm()) speed = 0;
+    after = sphere_plane_impact(n.dot(x) - plane.plane_offset - ball.sphere_radius, speed, pull);
+  }
+  return start + after;
+}
+
+// Follows the pieces from `from` as long as they are exact.
+std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, const Key& from,
+                                              bool& all_exact) const {
+  Pair probe;
+  probe.a = std::min(a.id(), b.id());
+  probe.b = std::max(a.id(), b.id());
+  probe.from = from;
+  for (;;) {
+    const Piece piece = piece_at(probe);
+    all_exact = !piece.a->error && !piece.b->error &&
+                predicted_exactly(piece, *bodies[probe.a], *bodies[probe.b]);
+    if (!all_exact) return std::nullopt;
+    const double impact_time = exact_impact(piece, *bodies[probe.a], *bodies[probe.b]);
+    if (impact_time < never) {
+      const Key key = impact_key(probe, piece, impact_time);
+      if (key < piece.end) return key;
+    }
+    if (piece.end == last_key) return std::nullopt;
+    probe.from = piece.end;
+  }
+}
+
+bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
+  Pair& pair = pairs[index];
+  ++counters.predictions;
+  const double impact_time = exact_impact(piece, *bodies[pair.a], *bodies[pair.b]);
+  if (impact_time < never) {
+    const Key key = impact_key(pair, piece, impact_time);
+    if (key < piece.end) {
+      set_pending(index, key);
+      return true;
+    }
+  }
+  if (piece.end == last_key) {
+    // nothing will happen on these arcs: the next claim asks again
+    drop_pair(index);
+    return true;
+  }
+  pair.from = piece.end;
+  pair.started = false;
+  return false;
+}
+
+// ---- pairs on the grid ----
+
+// Overlapping and approaching at the common start is an impact now.  True if one was found.
+bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
+  const double start = piece.start_time();
+  ++counters.checks;
+  const double clear = certificate(pair, piece, start);
+  pair.next_check = std::max(grid_floor(clear), grid_after(start));
+  if (clear > start) return false;
+  const Separation s = separation_at(piece, start);
+  if (s.distance > 0 || !approaching_at(piece, start)) return false;
+  pair.impact = impact_key(pair, piece, start);
+  return true;
+}
+
+// Looks at one grid point; true if there is an impact at or before it (then pair.impact).
+bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
+  const Body& a = *bodies[pair.a];
+  const Body& b = *bodies[pair.b];
+  const double slack = depth_slack * std::min(a.least_width, b.least_width);
+  ++counters.checks;
+  const double clear = certificate(pair, piece, when);
+  pair.next_check = std::max(grid_floor(clear), when + check_grid);
+  if (clear > when) return false;
+
+  // certainly at touch, perhaps overlapping: the cold distance decides
+  const double right = separation_at(piece, when).distance;
+  if (right >= -slack) return false;
+
+  // the crossing, of 0 or, where the left end touches already, of the slack
+  const double start = std::max(piece.start_time(), when - check_grid);
+  const double left = separation_at(piece, start).distance;
+  double impact_time = when;
+  if (left > -slack) {
+    const double level = left > 0 ? 0 : slack;
+    const auto f = [&](double t) { return separation_at(piece, t).distance + level; };
+    impact_time = find_root(f, start, when, left + level, right + level).left;
+  }
+  if (!approaching_at(piece, impact_time)) return false;
+  counters.max_penetration = std::max(counters.max_penetration, -separation_at(piece, impact_time).distance);
+  pair.impact = impact_key(pair, piece, impact_time);
+  return true;
+}
+
+// Follows a piece on the grid; true when the pair waits for an event, false: on to the next piece.
+bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double until) {
+  Pair& pair = pairs[index];
+  if (!pair.started || pair.checked_start != piece.start) {
+    pair.started = true;
+    pair.checked_start = piece.start;
+    if (pair.from <= piece.start) {
+      if (check_common_start(pair, piece) && pair.impact < piece.end) {
+        set_pending(index, pair.impact);
+        return true;
+      }
+    } else {
+      pair.next_check = grid_ceil(pair.from.time);
+      if (pair.next_check <= piece.start_time()) pair.next_check = grid_after(piece.start_time());
+    }
+  }
+
+  // grid points up to the first at or after the piece's end
+  const double last = grid_ceil(piece.end.time);
+  while (pair.next_check <= last) {
+    const double when = pair.next_check;
+    if (when > until && piece.end.time > until) {
+      schedule_pair(index, std::min(when, piece.end.time));
+      return true;
+    }
+    if (check_grid_point(pair, piece, when) && pair.impact < piece.end) {
+      set_pending(index, pair.impact);
+      return true;
+    }
+    if (when < piece.end.time) pair.from = {when, 0, KeyKind::birth, 0};
+  }
+  if (piece.end == last_key) {
+    // apart for ever: wait until the arcs change or the boxes part
+    pair.from = last_key;
+    queue.withdraw(pair.event);
+    return true;
+  }
+  pair.from = piece.end;
+  pair.started = false;
+  return false;
+}
+
+// Moves the safe time up as far as the event's time, over as many pieces as it takes.
+void Kernel::pursue(std::uint32_t index) {
+  const double now = pairs[index].event == EventQueue::none
+                         ? pairs[index].from.time
+                         : queue.event(pairs[index].event).key.time;
+  for (;;) {
+    Pair& pair = pairs[index];
+    const Piece piece = piece_at(pair);
+    if (piece.a->error || piece.b->error) {
+      pair.parked = true;
+      queue.withdraw(pair.event);
+      return;
+    }
+    const bool exact = predicted_exactly(piece, *bodies[pair.a], *bodies[pair.b]);
+    if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, now)) return;
+  }
+}
+
+}  // namespace tw

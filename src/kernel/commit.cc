@@ -1,0 +1,197 @@
+// GVT and commit: what lies before GVT is final.
+//
+// GVT is the least of every pair's safe time, every other pending event's time and every moving
+// process's claimed time.  At commit states enter the hash, collisions reach observers and frames
+// their sinks, all in time order and once; then states nobody can ask for are freed.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "base/hash.h"
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+double thread_cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
+                         const StateData& data) {
+  const BodyState s = body_state(body, point);
+  Hasher h;
+  h.add(std::uint64_t{body.id()});
+  h.add(key.time);
+  h.add(std::uint64_t{key.microstep});
+  h.add(static_cast<std::uint64_t>(key.kind));
+  h.add(key.id);
+  for (int i = 0; i < 3; ++i) h.add(s.position[i]);
+  for (int i = 0; i < 4; ++i) h.add(s.orientation.coeffs()[i]);
+  for (int i = 0; i < 3; ++i) h.add(s.velocity[i]);
+  for (int i = 0; i < 3; ++i) h.add(s.angular_velocity[i]);
+  if (data.slots) h.add(data.slots->hash());
+  return h.value();
+}
+
+double Kernel::compute_gvt() const {
+  double least = never;
+  for (const auto& body : bodies)
+    if (!body->fixed() && !graph.tail(body->id())->error) least = std::min(least, body->claim.time);
+  for (const Pair& pair : pairs)
+    if (pair.live && !pair.parked) least = std::min(least, pair.safe_time());
+  for (const CallbackRecord& callback : callbacks)
+    if (!callback.parked) least = std::min(least, callback.next.time);
+  return least;
+}
+
+// Moves GVT up and commits what it passes, but nothing later than the run's end.
+void Kernel::update_gvt() {
+  ++counters.gvt_computations;
+  events_since_gvt_ = 0;
+  const double least = compute_gvt();
+  TW_ASSERT(least >= gvt, "GVT would fall from " + show(gvt) + " to " + show(least));
+  const bool inclusive = least > until_;
+  const double limit = std::min(least, until_);
+  if (limit == never) return;  // nothing moves and nothing is asked for
+  if (limit > gvt || inclusive) commit(limit, inclusive);
+}
+
+// Everything before `limit` (at it, too, if inclusive) is final.
+void Kernel::commit(double limit, bool inclusive) {
+  raise_error_before(limit, inclusive);
+  commit_states(limit, inclusive);
+  gvt = limit;
+  delivered_to_ = limit;
+  delivered_inclusive_ = inclusive;
+  deliver();
+  free_states(limit);
+  time = limit;
+  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+}
+
+// A stopped process whose error GVT passes: commit up to it, then raise.
+void Kernel::raise_error_before(double& limit, bool& inclusive) {
+  const State* first = nullptr;
+  for (const auto& body : bodies) {
+    const State* tail = graph.tail(body->id());
+    if (!tail->error) continue;
+    if (tail->key.time < limit || (inclusive && tail->key.time == limit))
+      if (!first || tail->key < first->key) first = tail;
+  }
+  if (!first) return;
+  error_ = first->error;
+  limit = first->key.time;
+  inclusive = false;
+}
+
+void Kernel::commit_states(double limit, bool inclusive) {
+  const auto passed = [&](const State* s) {
+    return s->key.time < limit || (inclusive && s->key.time == limit);
+  };
+  std::vector<std::pair<Key, std::shared_ptr<const Collision>>> collisions;
+  for (const auto& body : bodies) {
+    // back from the tail to the last committed one, then forward
+    State* state = graph.tail(body->id());
+    while (state->prev && !state->prev->committed) state = state->prev;
+    if (state->committed) continue;
+    for (; state && passed(state) && !state->error; state = state->next) {
+      state->committed = true;
+      counters.kinematic_work += state->kinematic_work;
+      // each ring is counted by its member with the least id
+      bool first = true;
+      for (const State* r = state->ring; r != state; r = r->ring)
+        first = first && state->process < r->process;
+      if (first && state->key.kind == KeyKind::impact) ++counters.collisions;
+      if (first && state->key.kind == KeyKind::callback && state->changed)
+        ++counters.callback_changes;
+      if (state->key.kind == KeyKind::callback)
+        callbacks[state->key.id].committed_next = state->next_callback;
+      if (state->collision) collisions.push_back({state->key, state->collision});
+      if (options.hash && state->changed) {
+        const ArcPoint point = evaluate(*body, *state, state->key.time);
+        hash_sum_ += state_hash(*body, state->key, point, *state);
+        ++hash_count_;
+      }
+    }
+  }
+  if (collision_observers.empty()) return;
+  std::sort(collisions.begin(), collisions.end(),
+            [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (auto& [key, collision] : collisions) undelivered_.push_back(std::move(collision));
+}
+
+// Collisions and frames in time order; a collision at a frame's time comes first.  What an observer's
+// error keeps from being delivered is delivered by the next commit.
+void Kernel::deliver() {
+  const double cpu = thread_cpu_seconds();
+  struct AddTime {
+    Kernel& kernel;
+    double start;
+    ~AddTime() { kernel.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
+  } add_time{*this, cpu};
+
+  for (;;) {
+    SinkRecord* sink = nullptr;
+    for (SinkRecord& s : sinks)
+      if (!sink || s.next_time() < sink->next_time()) sink = &s;
+    const bool frame_due = sink && (sink->next_time() < delivered_to_ ||
+                                    (delivered_inclusive_ && sink->next_time() == delivered_to_));
+    if (!undelivered_.empty() &&
+        (!frame_due || undelivered_.front()->time <= sink->next_time())) {
+      const std::shared_ptr<const Collision> collision = undelivered_.front();
+      undelivered_.pop_front();
+      for (const CollisionObserver& observer : collision_observers) observer(*collision);
+      continue;
+    }
+    if (!frame_due) return;
+    deliver_frame(*sink);
+  }
+}
+
+void Kernel::deliver_frame(SinkRecord& record) {
+  const double frame_time = record.next_time();
+  const long index = record.next_frame++;
+  std::vector<BodyPose> poses;
+  for (const auto& body : bodies) {
+    if (body->fixed()) continue;
+    const State* state = graph.last_at_or_before_time(body->id(), frame_time);
+    if (!state) continue;
+    poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
+  }
+  const std::shared_ptr<FrameSink> sink = record.sink;
+  sink->frame(index, frame_time, poses);
+}
+
+// Keeps the last state at or before the limit, and what frames that are still due will read.
+void Kernel::free_states(double limit) {
+  for (const SinkRecord& sink : sinks) limit = std::min(limit, sink.next_time());
+  for (const auto& body : bodies) {
+    if (!graph.head(body->id())->next) continue;
+    State* keep = graph.last_at_or_before_time(body->id(), limit);
+    // ties: an edit at the limit may follow the first of several states there
+    while (keep && !keep->committed) keep = keep->prev;
+    if (keep) graph.free_before(keep, release());
+  }
+}
+
+std::string Kernel::history_hash() const {
+  std::uint64_t sum = hash_sum_;
+  for (const auto& body : bodies) {
+    const State* state = state_at(body->id(), time);
+    const Key end{time, 0, KeyKind::step, body->id()};
+    sum += state_hash(*body, end, evaluate(*body, *state, time), *state);
+  }
+  std::string bytes;
+  for (const std::uint64_t word : {sum, hash_count_})
+    for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
+  return sha256_hex(bytes);
+}
+
+}  // namespace tw

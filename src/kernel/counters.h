@@ -1,0 +1,36 @@
+// What the kernel counts while it runs (statistics.cc makes the table).
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+namespace tw {
+
+struct Counters {
+  // events, as processed
+  std::uint64_t events = 0, claims = 0, checks = 0, certificates = 0, predictions = 0;
+  std::uint64_t candidates = 0, pairs_made = 0, live_pairs = 0, gvt_computations = 0;
+  double pair_sum = 0;             // live pairs, summed over processed events: for the average
+
+  // rollback
+  std::uint64_t rollbacks = 0, states_removed = 0, processes_rolled_back = 0;
+  std::uint64_t deepest_cascade = 0;  // most processes in one rollback
+  double deepest_rollback = 0;        // s, from the cause to the latest state removed
+  double rollback_length = 0;         // s, summed over bodies
+
+  // arcs
+  std::uint64_t integrations = 0;
+  double integration_length = 0;      // s, of arcs that have ended
+
+  // committed
+  std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
+  double kinematic_work = 0;          // J, by kinematic bodies on dynamic ones
+  double max_penetration = 0;         // m, deepest overlap seen at an impact
+
+  // time of this thread, s
+  double cpu_seconds = 0, output_cpu_seconds = 0;
+  double energy_start = 0;
+  bool energy_known = false;
+};
+
+}  // namespace tw

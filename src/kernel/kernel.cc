@@ -1,0 +1,153 @@
+// The main loop: least key first, GVT every so often, until everything up to the end is committed.
+//
+// Policy `timewarp`.  The adversary scheduler gives events or bodies a random head start: they are
+// taken out of order, which makes rollbacks common; the committed history must not change.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/kernel.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+namespace tw {
+namespace {
+
+double thread_cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Marks the kernel as running, and adds up its CPU time, delivery to sinks excluded.
+class RunGuard {
+ public:
+  explicit RunGuard(Kernel& kernel)
+      : kernel_(kernel), cpu_(thread_cpu_seconds()), output_(kernel.counters.output_cpu_seconds) {
+    kernel_.running = true;
+  }
+  ~RunGuard() {
+    kernel_.running = false;
+    const double output = kernel_.counters.output_cpu_seconds - output_;
+    kernel_.counters.cpu_seconds += thread_cpu_seconds() - cpu_ - output;
+  }
+  RunGuard(const RunGuard&) = delete;
+  RunGuard& operator=(const RunGuard&) = delete;
+
+ private:
+  Kernel& kernel_;
+  double cpu_, output_;
+};
+
+}  // namespace
+
+Kernel::Kernel() = default;
+
+Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject,
+                         double head_start) {
+  double priority = key.time - head_start;
+  if (options.adversary && options.adversary->every_event)
+    priority -= options.adversary->head_start * adversary_.real();
+  return {priority, key, kind, subject};
+}
+
+void Kernel::process_top() {
+  const Event event = queue.top();
+  switch (event.kind) {
+    case EventKind::advance: claim_window(*bodies[event.subject]); break;
+    case EventKind::callback: process_callback(event.subject); break;
+    case EventKind::pair:
+      if (pairs[event.subject].pending)
+        process_impact(event.subject);
+      else
+        pursue(event.subject);
+      break;
+  }
+  ++counters.events;
+  counters.pair_sum += static_cast<double>(counters.live_pairs);
+  ++events_since_gvt_;
+  if (options.check) validate_all();
+}
+
+// GVT by scan costs bodies + pairs; often enough to keep queues short, rarely enough to be cheap.
+bool Kernel::gvt_is_due() const {
+  if (options.gvt_interval > 0) return events_since_gvt_ >= options.gvt_interval;
+  const std::size_t scanned = bodies.size() + counters.live_pairs + callbacks.size();
+  return events_since_gvt_ >= static_cast<long>(std::max<std::size_t>(64, scanned / 4));
+}
+
+// Everything up to the end is final when nothing that could still change it is left.
+bool Kernel::finished() {
+  if (queue.empty() || queue.top().priority > until_) {
+    if (compute_gvt() > until_) return true;
+  }
+  return queue.empty();
+}
+
+RunStatus Kernel::advance(double until, double slice) {
+  TW_REQUIRE(std::isfinite(until),
+             "time to run to is " + show(until) + "; expected a finite number of seconds");
+  TW_REQUIRE(!running, "a run was started inside a callback or observer; expected to be between runs");
+  if (until < time) return RunStatus::finished;
+  const RunGuard guard(*this);
+  until_ = until;
+  begin_run();
+
+  const double slice_end = slice < never ? wall_seconds() + slice : never;
+  long events = 0;
+  while (!finished()) {
+    process_top();
+    if (gvt_is_due()) update_gvt();
+    if (slice < never && (++events & 63) == 0 && wall_seconds() > slice_end)
+      return RunStatus::slice_over;
+  }
+  update_gvt();
+  time = until;
+  return RunStatus::finished;
+}
+
+bool Kernel::step(double until) {
+  TW_REQUIRE(!running, "a step was made inside a callback or observer; expected to be between runs");
+  const RunGuard guard(*this);
+  until_ = until;
+  begin_run();
+  if (finished()) return false;
+  process_top();
+  update_gvt();
+  return true;
+}
+
+const State* Kernel::state_at(BodyId id, double when) const {
+  const State* state = graph.last_at_or_before_time(id, when);
+  // between runs nothing but committed states count
+  while (state && state->error && state->prev) state = state->prev;
+  return state ? state : graph.head(id);
+}
+
+ArcPoint Kernel::point_at(BodyId id, double when) const {
+  return evaluate(*bodies[id], *state_at(id, when), when);
+}
+
+double Kernel::total_energy(double when) const {
+  double energy = 0;
+  for (const auto& body : bodies) {
+    if (!body->dynamic()) continue;
+    const ArcPoint p = point_at(body->id(), when);
+    energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
+  }
+  return energy;
+}
+
+Vec3 Kernel::total_momentum(double when) const {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& body : bodies)
+    if (body->dynamic()) sum += body->mass * point_at(body->id(), when).v;
+  return sum;
+}
+
+}  // namespace tw

@@ -1,0 +1,273 @@
+// The kernel: bodies, the state graph, events and the main loop; what World is the face of.
+//
+// One event at a time is taken from the queue and processed:
+//   advance    claims the next window of a body: extends its swept box, finds new active pairs
+//   pair       moves the safe time of an active pair up, finds its impact, or carries it out
+//   callback   calls a user's procedure with views of its targets
+// Redraws and observers need no events: they are served at commit (commit.cc).
+//
+// The subject is spread over files by what it does: claim.cc, check.cc, impact.cc, callbacks.cc,
+// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop).
+//
+// Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT is
+// touched; a committed state is never removed.  Under --check also every validator of validate.cc.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/random.h"
+#include "collision/spatial-hash.h"
+#include "kernel/arc.h"
+#include "kernel/body.h"
+#include "kernel/counters.h"
+#include "kernel/event-queue.h"
+#include "kernel/pair.h"
+#include "kernel/state-graph.h"
+#include "kernel/world.h"
+
+namespace tw {
+
+// Checks of pairs that are not predicted exactly happen at multiples of this, s (2^-20).
+inline constexpr double check_grid = 0x1p-20;
+
+inline constexpr std::uint32_t no_pair = 0xffffffffu;
+
+struct CallbackRecord {
+  CallbackDef def;
+  Key next;                         // of the next call; time `never`: none
+  double committed_next = never;    // without a period: next time after the last committed call
+  EventQueue::Handle event = EventQueue::none;
+  double head_start = 0;
+  bool parked = false;              // a target has stopped
+};
+
+struct SinkRecord {
+  std::shared_ptr<FrameSink> sink;
+  double fps = 30;
+  long next_frame = 0;
+
+  double next_time() const { return static_cast<double>(next_frame) / fps; }
+};
+
+// A new state of one receiver of a discontinuity, before it enters the graph.
+struct Draft {
+  const Body* body = nullptr;
+  bool enters = true;               // false: a fixed body that keeps no states
+  StateData data;
+  ArcPoint point;                   // at the discontinuity's time
+};
+
+class Kernel {
+ public:
+  Kernel();
+
+  // ---- setup.cc ----
+  BodyId add_body(const BodyDef& def);
+  void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
+  std::uint64_t add_callback(const CallbackDef& def);
+  void add_collision_callback(const CollisionCallbackDef& def);
+  void add_collision_observer(CollisionObserver observer);
+  void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
+  void remove_frame_sink(const FrameSink* sink);
+  void set_gravity(const Vec3& gravity);
+  const ContactParameters& contact_parameters(BodyId a, BodyId b) const;
+  void edit(BodyId id, const std::function<void(StateView&)>& change);
+  void require_between_runs(const char* what) const;
+  void require_before_first_run(const char* what) const;
+
+  // ---- kernel.cc ----
+  RunStatus advance(double until, double slice);
+  bool step(double until);
+
+  // ---- reading ----
+  ArcPoint point_at(BodyId id, double when) const;
+  const State* state_at(BodyId id, double when) const;
+  double total_energy(double when) const;
+  Vec3 total_momentum(double when) const;
+  std::string history_hash() const;
+  StatisticsTable statistics() const;
+  std::vector<QueuedState> state_queue(BodyId id) const;
+
+  // ---- validate.cc: empty, or the first invariant that does not hold ----
+  std::string validate_state_graph() const;
+  std::string validate_event_queue() const;
+  std::string validate_pairs() const;
+  std::string validate_claims() const;
+  void validate_all() const;         // aborts with the message
+  // A checksum of every queue (states, order): for undo tests.
+  std::uint64_t graph_checksum() const;
+
+  // ---- data ----
+  WorldOptions options;
+  std::vector<std::unique_ptr<Body>> bodies;
+  std::unordered_map<std::string, BodyId> names;
+  StateGraph graph;
+  EventQueue queue;
+  SpatialHash grid;
+  std::vector<BodyId> unbounded;     // bodies without a box: every claim tests them
+  std::vector<Pair> pairs;
+  std::vector<std::uint32_t> unused_pairs;
+  std::vector<CallbackRecord> callbacks;
+  std::vector<CollisionCallbackDef> collision_callbacks;
+  std::vector<CollisionObserver> collision_observers;
+  std::vector<SinkRecord> sinks;
+  ContactTable contacts;
+  Counters counters;
+  double time = 0;                   // last committed time users see
+  double gvt = 0;
+  bool begun = false;                // the first run has begun
+  bool running = false;
+
+ private:
+  friend class KernelTest;           // tests/rollback: looks and pokes inside
+
+  // ---- setup.cc ----
+  void begin_run();
+  void require_no_overlap(const Body& a, const Body& b) const;
+  void check_overlaps(Body& body);
+  Key edit_key(BodyId id);
+  void resolve_shape(Body& body, const BodyDef& def);
+  void make_birth(Body& body, const BodyDef& def);
+  void validate_body_def(const BodyDef& def, const std::string& name) const;
+  void restart_future();             // forget everything after `time`
+  void retry_errors();
+  void update_cell();
+
+  // ---- kernel.cc ----
+  void process_top();
+  Event make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start);
+  bool gvt_is_due() const;
+  bool finished();
+
+  // ---- claim.cc ----
+  void schedule_advance(Body& body);
+  void claim_window(Body& body);
+  double window_end(const Body& body) const;
+  Aabb claimed_box(const Body& body, double end) const;
+  void find_partners(Body& body, const Key& claimed_before);
+  void meet(Body& body, Body& other, const Key& claimed_before);
+  void drop_parted_pairs(Body& body);
+  bool boxes_overlap(const Body& a, const Body& b) const;
+  bool may_collide(const Body& a, const Body& b) const;
+  bool ready(const Body& body, const Key& key) const;
+  void make_ready(Body& body, const Key& key);
+
+  // ---- check.cc ----
+  std::uint32_t find_pair(const Body& a, const Body& b) const;
+  std::uint32_t make_pair(Body& a, Body& b, const Key& from);
+  void drop_pair(std::uint32_t index);
+  Piece piece_at(const Pair& pair) const;
+  bool predicted_exactly(const Piece& piece, const Body& a, const Body& b) const;
+  double exact_impact(const Piece& piece, const Body& a, const Body& b) const;
+  Key impact_key(const Pair& pair, const Piece& piece, double impact_time) const;
+  std::optional<Key> first_exact_impact(const Body& a, const Body& b, const Key& from,
+                                        bool& all_exact) const;
+  void pursue(std::uint32_t index);
+  bool pursue_exact(std::uint32_t index, const Piece& piece);
+  bool pursue_on_grid(std::uint32_t index, const Piece& piece, double until);
+  bool check_common_start(Pair& pair, const Piece& piece);
+  bool check_grid_point(Pair& pair, const Piece& piece, double when);
+  void set_pending(std::uint32_t index, const Key& key);
+  void schedule_pair(std::uint32_t index, double when);
+  void reset_pair(std::uint32_t index, const Key& key);
+  Separation separation_at(const Piece& piece, double when) const;
+  bool approaching_at(const Piece& piece, double when) const;
+
+  // ---- certificate.cc ----
+  // Until when the pair is surely apart on the piece's arcs; -infinity: perhaps not at `when`.
+  double certificate(Pair& pair, const Piece& piece, double when);
+
+  // ---- impact.cc ----
+  void process_impact(std::uint32_t index);
+  void compute_impact(const Key& key, Draft& a, Draft& b, std::shared_ptr<Collision>& collision);
+  void run_collision_callbacks(const Collision& collision, Draft& a, Draft& b);
+  bool wants_collision(const Body& a, const Body& b) const;
+
+  // ---- callbacks.cc ----
+  void schedule_callback(std::uint32_t number);
+  void process_callback(std::uint32_t number);
+  void rewind_callback(std::uint32_t number, const Key& key);
+  Key first_tick(const CallbackRecord& callback, const Key& key) const;
+
+  // ---- rollback.cc ----
+  Draft draft_for(const Body& body, const Key& key, bool new_arc) const;
+  void enter_discontinuity(const Key& key, std::vector<Draft>& drafts);
+  void treat(const std::vector<Touched>& touched);
+  void append_drafts(const Key& key, std::vector<Draft>& drafts);
+  void check_finite(Draft& draft) const;
+  void note_removed(State& state);
+  StateGraph::Farewell removal();
+  StateGraph::Farewell release();
+  void undo_and_check(const Key& key, std::uint64_t checksum_before);
+
+  // ---- commit.cc ----
+  double compute_gvt() const;
+  void update_gvt();
+  void commit(double limit, bool inclusive);
+  void commit_states(double limit, bool inclusive);
+  void deliver();
+  void deliver_frame(SinkRecord& sink);
+  void free_states(double limit);
+  void raise_error_before(double& limit, bool& inclusive);
+
+  double cell_ = 1;                  // typical spacing, m
+  bool contacts_may_disable_ = false;  // somebody called disable-collisions!
+  long events_since_gvt_ = 0;
+  double until_ = 0;                 // end of the present run
+  std::vector<BodyId> newborn_;
+  std::deque<std::shared_ptr<const Collision>> undelivered_;  // committed, in time order
+  double delivered_to_ = 0;          // frames at or before it may be delivered
+  bool delivered_inclusive_ = false;
+  std::exception_ptr error_;         // final: to be raised
+  std::uint64_t hash_sum_ = 0, hash_count_ = 0;
+  std::uint64_t edits_ = 0;
+  unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
+  Random adversary_{0};
+  mutable std::unordered_map<std::uint64_t, ContactParameters> contact_cache_;
+  mutable unsigned contact_cache_version_ = 0;
+  std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after
+  std::vector<ContactPoint> contact_points_;
+};
+
+// Hash of a state at one instant, as it enters the history's hash.
+std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
+                         const StateData& data);
+
+// What a callback or edit sees: reads the draft's point, writes the draft.
+class DraftView : public StateView {
+ public:
+  DraftView(Draft& draft, const Key& key, bool may_place, const Vec3& gravity)
+      : draft_(draft), key_(key), may_place_(may_place), gravity_(gravity),
+        state_(body_state(*draft.body, draft.point)) {}
+
+  BodyId body() const override { return draft_.body->id(); }
+  const BodyState& state() const override { return state_; }
+  double kinetic_energy() const override;
+  const Vec3& applied_force() const override { return draft_.data.force; }
+  const SlotsPtr& slots() const override { return draft_.data.slots; }
+  void set_velocity(const Vec3& v) override;
+  void set_angular_velocity(const Vec3& w) override;
+  void set_applied_force(const Vec3& force) override;
+  void set_slots(SlotsPtr slots) override;
+  void set_pose(const Vec3& position, const Quat& orientation) override;
+  double draw_random() override;
+
+ private:
+  void require_dynamic(const char* what) const;
+  void start_arc();
+
+  Draft& draft_;
+  Key key_;
+  bool may_place_;
+  Vec3 gravity_;
+  BodyState state_;
+};
+
+}  // namespace tw

@@ -1,0 +1,66 @@
+// Keys of discontinuities: what "earlier" and "later" mean in the whole kernel.
+//
+// A key is (time, microstep, kind, id), compared lexicographically, built from static ids only:
+// never from creation order, slots in memory or addresses.  So the order of discontinuities, and
+// with it the committed history, is a function of the scene alone.
+//
+// Source: the committed history is *by definition* the one found by always processing the least
+// key (doc/architecture.md).
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace tw {
+
+// In order of processing at one time and microstep.
+enum class KeyKind : std::uint8_t {
+  birth,
+  step,
+  callback,
+  group_check,
+  fission,
+  witness,
+  impact,
+  edit
+};
+
+const char* kind_name(KeyKind kind);
+
+struct Key {
+  double time = 0;
+  // 0 for birth, step and callback; else 1 + the larger of those of the arcs that start exactly
+  // at `time`, else 1.
+  std::uint32_t microstep = 0;
+  KeyKind kind = KeyKind::birth;
+  std::uint64_t id = 0;
+
+  friend bool operator==(const Key&, const Key&) = default;
+  friend bool operator<(const Key& a, const Key& b) {
+    if (a.time != b.time) return a.time < b.time;
+    if (a.microstep != b.microstep) return a.microstep < b.microstep;
+    if (a.kind != b.kind) return a.kind < b.kind;
+    return a.id < b.id;
+  }
+  friend bool operator>(const Key& a, const Key& b) { return b < a; }
+  friend bool operator<=(const Key& a, const Key& b) { return !(b < a); }
+  friend bool operator>=(const Key& a, const Key& b) { return !(a < b); }
+};
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+// After every key.
+inline constexpr Key last_key{never, 0xffffffffu, KeyKind::edit, ~0ull};
+
+// The id of a pair: smaller body id above, larger below.
+inline std::uint64_t pair_id(std::uint32_t a, std::uint32_t b) {
+  return a < b ? (std::uint64_t{a} << 32 | b) : (std::uint64_t{b} << 32 | a);
+}
+
+// "impact 3-17 at 1.25 s, microstep 1": for messages.
+std::string show(const Key& key);
+
+}  // namespace tw

@@ -1,0 +1,169 @@
+// Entering a discontinuity: rollback of its receivers, their new states, and what follows for claims
+// and events.
+//
+// First all queues, then all claims, then all events: queues are wholly changed before any pair is
+// looked at again.  Treated are the receivers (even where they lost nothing) and every process that
+// lost a state, each from the least key it lost (doc/architecture.md, "Rollback").
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/kernel.h"
+
+namespace tw {
+
+// The state of `body` just below `key`, evaluated at its time: with a new arc or carrying the old.
+Draft Kernel::draft_for(const Body& body, const Key& key, bool new_arc) const {
+  const State* state = graph.last_before(body.id(), key);
+  TW_ASSERT(state, "no state of " + body.info.name + " before " + show(key));
+  Draft draft;
+  draft.body = &body;
+  draft.point = evaluate(body, *state, key.time);
+  draft.data = *state;
+  draft.data.changed = true;
+  draft.data.next_callback = never;
+  draft.data.collision.reset();
+  draft.data.kinematic_work = 0;
+  draft.data.error = nullptr;
+  draft.enters = body.dynamic() || draft.data.slots;
+  if (new_arc) {
+    draft.data.arc_key = key;
+    draft.data.arc_time = key.time;
+    draft.data.x = draft.point.x;
+    draft.data.q = draft.point.q;
+    draft.data.v = draft.point.v;
+    draft.data.rotation_ready = false;
+  }
+  return draft;
+}
+
+// A motion that is not finite becomes a speculative error of its body.
+void Kernel::check_finite(Draft& draft) const {
+  const StateData& d = draft.data;
+  if (!draft.body->dynamic() || d.error) return;
+  if (is_finite(d.x) && is_finite(d.q) && is_finite(d.v) && is_finite(d.L)) return;
+  draft.data.error = std::make_exception_ptr(
+      UserError("the motion of " + draft.body->info.name + " is no longer finite at " +
+                    show(draft.data.arc_time) + " s; expected finite positions and velocities",
+                draft.body->info.place));
+}
+
+void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
+  std::vector<State*> ring;
+  for (Draft& draft : drafts) {
+    check_finite(draft);
+    if (draft.data.error) {
+      // the process stops here: its arcs end
+      draft.enters = true;
+      draft.data.arc_key = key;
+    }
+    if (!draft.enters) continue;
+    State* state = graph.append(draft.body->id(), key);
+    static_cast<StateData&>(*state) = draft.data;
+    ring.push_back(state);
+    if (state->starts_arc() && draft.body->dynamic()) ++counters.integrations;
+  }
+  graph.link_ring(ring);
+}
+
+void Kernel::enter_discontinuity(const Key& key, std::vector<Draft>& drafts) {
+  TW_ASSERT(key.time >= gvt, show(key) + " lies before GVT " + show(gvt));
+  const std::uint64_t checksum = options.undo_redo ? graph_checksum() : 0;
+
+  // queues: room for the new states, then the states
+  std::vector<Touched> touched;
+  std::size_t removed = 0;
+  for (const Draft& draft : drafts)
+    if (draft.enters) removed += graph.rollback(draft.body->id(), key, touched, removal());
+  if (removed > 0) {
+    ++counters.rollbacks;
+    counters.states_removed += removed;
+    counters.processes_rolled_back += touched.size();
+    counters.deepest_cascade = std::max<std::uint64_t>(counters.deepest_cascade, touched.size());
+  }
+  append_drafts(key, drafts);
+
+  // receivers are treated from `key` where their arc changed, others from the least key lost
+  for (const Draft& draft : drafts) {
+    const bool arc_changed = draft.enters && draft.data.arc_key == key;
+    const auto known = std::find_if(touched.begin(), touched.end(), [&](const Touched& t) {
+      return t.process == draft.body->id();
+    });
+    if (known != touched.end())
+      known->least_removed = std::min(known->least_removed, key);
+    else if (arc_changed)
+      touched.push_back({draft.body->id(), key});
+  }
+  treat(touched);
+  if (options.undo_redo && removed == 0) undo_and_check(key, checksum);
+}
+
+void Kernel::treat(const std::vector<Touched>& touched) {
+  // claims
+  for (const Touched& t : touched) {
+    Body& body = *bodies[t.process];
+    if (body.fixed()) continue;
+    body.claim = std::min(body.claim, t.least_removed);
+    schedule_advance(body);
+  }
+  // events: pairs and callbacks
+  for (const Touched& t : touched) {
+    Body& body = *bodies[t.process];
+    for (const std::uint32_t index : body.pairs) reset_pair(index, t.least_removed);
+    for (const std::uint32_t number : body.callbacks) rewind_callback(number, t.least_removed);
+  }
+}
+
+StateGraph::Farewell Kernel::removal() {
+  return [this](State& state) { note_removed(state); };
+}
+
+// A discarded arc counts up to its claimed time.
+void Kernel::note_removed(State& state) {
+  const Body& body = *bodies[state.process];
+  if (!body.dynamic() || !state.starts_arc()) return;
+  const double end = std::min(body.claim.time, state.next ? state.next->key.time : never);
+  const double length = std::max(0.0, end - state.key.time);
+  counters.integration_length += length;
+  counters.rollback_length += length;
+  counters.deepest_rollback = std::max(counters.deepest_rollback, length);
+}
+
+// A state that GVT has passed: its arc was used up to the next one.
+StateGraph::Farewell Kernel::release() {
+  return [this](State& state) {
+    if (!bodies[state.process]->dynamic() || !state.starts_arc()) return;
+    const State* next = state.next;
+    while (next && !next->starts_arc()) next = next->next;
+    if (next) counters.integration_length += next->key.time - state.key.time;
+  };
+}
+
+// Test mode: takes the discontinuity just entered back, compares every queue with what it was, and
+// lets it be found again; the second time its states must be what they were the first.
+void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
+  Hasher name;
+  name.add(key.time);
+  name.add(std::uint64_t{key.microstep});
+  name.add(static_cast<std::uint64_t>(key.kind));
+  name.add(key.id);
+  const std::uint64_t now = graph_checksum();
+  if (const auto known = undone_.find(name.value()); known != undone_.end()) {
+    TW_ASSERT(known->second == now, "redoing " + show(key) + " gave other states");
+    undone_.erase(known);
+    return;
+  }
+
+  std::vector<Touched> touched;
+  for (const auto& body : bodies)
+    if (graph.tail(body->id())->key == key) {
+      graph.rollback(body->id(), key, touched, removal());
+      break;
+    }
+  TW_ASSERT(graph_checksum() == checksum_before, "undoing " + show(key) + " left a trace");
+  undone_[name.value()] = now;
+  treat(touched);
+}
+
+}  // namespace tw

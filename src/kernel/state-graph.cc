@@ -1,0 +1,160 @@
+// The state graph.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/state-graph.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace tw {
+
+std::uint32_t StateGraph::add_process() {
+  queues_.push_back({});
+  return static_cast<std::uint32_t>(queues_.size() - 1);
+}
+
+State* StateGraph::allocate() {
+  State* state = nullptr;
+  if (unused_.empty()) {
+    state = &pool_.emplace_back();
+  } else {
+    state = unused_.back();
+    unused_.pop_back();
+  }
+  peak_ = std::max(peak_, ++live_);
+  return state;
+}
+
+void StateGraph::release(State* state) {
+  *state = State();
+  state->ring = state;
+  unused_.push_back(state);
+  --live_;
+}
+
+State* StateGraph::append(std::uint32_t process, const Key& key) {
+  Queue& queue = queues_[process];
+  TW_ASSERT(!queue.tail || queue.tail->key < key,
+            "keys in the queue of body " + std::to_string(process) + " must increase: " +
+                show(key) + " after " + show(queue.tail->key));
+  State* state = allocate();
+  state->key = key;
+  state->process = process;
+  state->ring = state;
+  state->prev = queue.tail;
+  (queue.tail ? queue.tail->next : queue.head) = state;
+  queue.tail = state;
+  return state;
+}
+
+void StateGraph::link_ring(std::span<State* const> states) {
+  for (std::size_t i = 0; i < states.size(); ++i) states[i]->ring = states[(i + 1) % states.size()];
+}
+
+State* StateGraph::last_at_or_before(std::uint32_t process, const Key& key) const {
+  State* state = queues_[process].tail;
+  while (state && state->key > key) state = state->prev;
+  return state;
+}
+
+State* StateGraph::last_before(std::uint32_t process, const Key& key) const {
+  State* state = queues_[process].tail;
+  while (state && state->key >= key) state = state->prev;
+  return state;
+}
+
+State* StateGraph::last_at_or_before_time(std::uint32_t process, double time) const {
+  State* state = queues_[process].tail;
+  while (state && state->key.time > time) state = state->prev;
+  return state;
+}
+
+void StateGraph::unlink_ring(State* state) {
+  State* before = state;
+  while (before->ring != state) before = before->ring;
+  before->ring = state->ring;
+  state->ring = state;
+}
+
+std::size_t StateGraph::rollback(std::uint32_t process, const Key& key,
+                                 std::vector<Touched>& touched, const Farewell& farewell) {
+  struct Work {
+    std::uint32_t process;
+    Key key;
+  };
+  std::vector<Work> work{{process, key}};
+  std::size_t removed = 0;
+
+  while (!work.empty()) {
+    const Work item = work.back();
+    work.pop_back();
+    Queue& queue = queues_[item.process];
+    Key least = last_key;
+
+    // newest first
+    while (queue.tail && queue.tail->key >= item.key) {
+      State* state = queue.tail;
+      TW_ASSERT(!state->committed, "rollback of body " + std::to_string(item.process) + " to " +
+                                       show(item.key) + " reached the committed " +
+                                       show(state->key));
+      for (State* other = state->ring; other != state; other = other->ring)
+        work.push_back({other->process, other->key});
+      least = state->key;
+      unlink_ring(state);
+      queue.tail = state->prev;
+      (queue.tail ? queue.tail->next : queue.head) = nullptr;
+      farewell(*state);
+      release(state);
+      ++removed;
+    }
+
+    if (least == last_key) continue;
+    const auto known = std::find_if(touched.begin(), touched.end(), [&](const Touched& t) {
+      return t.process == item.process;
+    });
+    if (known == touched.end())
+      touched.push_back({item.process, least});
+    else
+      known->least_removed = std::min(known->least_removed, least);
+  }
+  return removed;
+}
+
+void StateGraph::free_before(State* keep, const Farewell& farewell) {
+  Queue& queue = queues_[keep->process];
+  while (queue.head != keep) {
+    State* state = queue.head;
+    unlink_ring(state);
+    queue.head = state->next;
+    queue.head->prev = nullptr;
+    farewell(*state);
+    release(state);
+  }
+}
+
+std::string StateGraph::validate() const {
+  std::size_t found = 0;
+  for (std::uint32_t p = 0; p < queues_.size(); ++p) {
+    const State* before = nullptr;
+    for (const State* s = queues_[p].head; s; before = s, s = s->next, ++found) {
+      const std::string where = "body " + std::to_string(p) + ", " + show(s->key);
+      if (s->process != p) return "state in a foreign queue: " + where;
+      if (s->prev != before) return "broken link: " + where;
+      if (before && !(before->key < s->key)) return "keys do not increase: " + where;
+      if (before && s->committed && !before->committed) return "commit out of order: " + where;
+      std::size_t length = 0;
+      const State* r = s;
+      do {
+        if (r->key != s->key) return "ring of two keys: " + where;
+        if (++length > queues_.size()) return "ring does not close: " + where;
+        if (r != s && r->process == s->process) return "ring meets a queue twice: " + where;
+        r = r->ring;
+      } while (r != s);
+    }
+    if (queues_[p].tail != before) return "wrong tail: body " + std::to_string(p);
+  }
+  if (found != live_) return "states outside of all queues";
+  return "";
+}
+
+}  // namespace tw

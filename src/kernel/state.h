@@ -1,0 +1,69 @@
+// A state: what a process is at a discontinuity, and the arc that starts there.
+//
+// The arc is a function of the state alone.  A *record* (a callback that changed no motion) does not
+// start an arc of its own: it carries its predecessor's along, origin and all, so that reading a
+// body never moves a bit of its motion.
+//
+// Frames: x centre of mass, q_WP attitude of the principal frame, v velocity, L angular momentum;
+// all in the world frame, at arc_time.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <memory>
+
+#include "integrate/free-rotation.h"
+#include "kernel/callback.h"
+#include "kernel/key.h"
+#include "kernel/slots.h"
+#include "math/vec.h"
+
+namespace tw {
+
+// A run of impacts in quick succession (kernel.md, "Soft impacts"): rolls back with its state.
+struct ImpactRun {
+  std::uint32_t count = 0;
+  double last_time = -never;
+};
+
+// All of a state but its place in the graph.
+struct StateData {
+  // the arc
+  Key arc_key;                  // key of the discontinuity that started the arc
+  double arc_time = 0;          // origin of the arc, s
+  Vec3 x = Vec3::Zero();        // at arc_time, and so on
+  Quat q = Quat::Identity();
+  Vec3 v = Vec3::Zero();
+  Vec3 L = Vec3::Zero();
+  Vec3 force = Vec3::Zero();         // applied, constant along the arc
+  Vec3 acceleration = Vec3::Zero();  // gravity + force/mass
+  mutable FreeRotation rotation;     // made from q and L when first needed
+  mutable bool rotation_ready = false;
+
+  // what is copied from state to state
+  std::uint64_t random = 0;
+  ImpactRun impacts;
+  SlotsPtr slots;
+
+  // what this discontinuity was
+  bool changed = true;               // false: a record that changed nothing
+  double next_callback = never;      // callbacks without a period: their next time
+  std::shared_ptr<const Collision> collision;  // on the ring's first state
+  double kinematic_work = 0;         // J, done by kinematic bodies in this impact (first state)
+  std::exception_ptr error;          // speculative: raised when GVT passes it; stops the process
+};
+
+struct State : StateData {
+  Key key;                      // of the discontinuity that made this state
+  std::uint32_t process = 0;    // the body that owns the queue
+  State* prev = nullptr;
+  State* next = nullptr;
+  State* ring = this;           // circular list of the states of one discontinuity
+  bool committed = false;
+
+  bool starts_arc() const { return arc_key == key; }
+};
+
+}  // namespace tw

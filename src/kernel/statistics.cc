@@ -1,0 +1,101 @@
+// The table of statistics: names and definitions are fixed (doc/statistics.md).
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "collision/separation.h"
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+std::int64_t whole(std::uint64_t n) { return static_cast<std::int64_t>(n); }
+
+double ratio(double a, double b) { return b > 0 ? a / b : 0; }
+
+std::int64_t peak_resident_bytes() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+}  // namespace
+
+StatisticsTable Kernel::statistics() const {
+  std::int64_t moving = 0;
+  for (const auto& body : bodies) moving += !body->fixed();
+
+  // arcs that still stand count up to the present
+  double length = counters.integration_length;
+  std::uint64_t kinematic_arcs = 0;
+  for (const auto& body : bodies) {
+    if (body->info.kind == BodyKind::kinematic) {
+      length += time;
+      ++kinematic_arcs;
+    }
+    if (!body->dynamic()) continue;
+    for (const State* s = graph.head(body->id()); s; s = s->next) {
+      if (!s->starts_arc() || s->key.time > time) continue;
+      const State* next = s->next;
+      while (next && !next->starts_arc()) next = next->next;
+      length += std::min(time, next ? next->key.time : time) - s->key.time;
+    }
+  }
+
+  const double bodies_moving = static_cast<double>(std::max<std::int64_t>(1, moving));
+  const std::uint64_t integrations = counters.integrations + kinematic_arcs;
+  const std::uint64_t discontinuities = counters.collisions + counters.callback_changes;
+  const double fps = sinks.empty() ? 30 : sinks.front().fps;
+  const double frames = std::max(1.0, time * fps);
+
+  return {
+      {"duration", time},
+      {"frames", sinks.empty() ? std::int64_t{0} : std::int64_t{sinks.front().next_frame}},
+      {"bodies_moving", moving},
+      {"bodies_total", whole(bodies.size())},
+      {"discontinuities", whole(discontinuities)},
+      {"collisions", whole(counters.collisions)},
+      {"fusions", std::int64_t{0}},
+      {"fissions", std::int64_t{0}},
+      {"callback_changes", whole(counters.callback_changes)},
+      {"contact_changes", std::int64_t{0}},
+      {"avg_time_between_discontinuities", ratio(time, static_cast<double>(discontinuities))},
+      {"avg_integration_step", ratio(length, static_cast<double>(integrations))},
+      {"integrations", whole(integrations)},
+      {"integration_per_moving_body", length / bodies_moving},
+      {"rollback_per_moving_body", counters.rollback_length / bodies_moving},
+      {"rollbacks", whole(counters.rollbacks)},
+      {"states_rolled_back", whole(counters.states_removed)},
+      {"deepest_rollback", counters.deepest_rollback},
+      {"largest_cascade", whole(counters.deepest_cascade)},
+      {"cpu_seconds", counters.cpu_seconds},
+      {"cpu_seconds_per_frame", counters.cpu_seconds / frames},
+      {"events", whole(counters.events)},
+      {"claims", whole(counters.claims)},
+      {"candidates", whole(counters.candidates)},
+      {"predictions", whole(counters.predictions)},
+      {"checks", whole(counters.checks)},
+      {"certificates", whole(counters.certificates)},
+      {"active_pairs_avg", ratio(counters.pair_sum, static_cast<double>(counters.events))},
+      {"distance_queries", static_cast<std::int64_t>(distance_queries - queries_before_)},
+      {"callbacks_run", whole(counters.callbacks_run)},
+      {"groups", std::int64_t{0}},
+      {"largest_group_bodies", std::int64_t{0}},
+      {"largest_group_contacts", std::int64_t{0}},
+      {"implicit_steps", std::int64_t{0}},
+      {"factorizations", std::int64_t{0}},
+      {"gvt_computations", whole(counters.gvt_computations)},
+      {"peak_states", whole(graph.peak_state_count())},
+      {"peak_rss_bytes", peak_resident_bytes()},
+      {"max_penetration", counters.max_penetration},
+      {"kinematic_work", counters.kinematic_work},
+      {"energy_start", counters.energy_known ? counters.energy_start : total_energy(time)},
+      {"energy_end", total_energy(time)},
+      {"policy", std::string("timewarp")},
+      {"accuracy", options.accuracy},
+      {"seed", static_cast<std::int64_t>(options.seed)},
+  };
+}
+
+}  // namespace tw

@@ -1,0 +1,118 @@
+// Validators: the kernel's invariants as functions, run after every event under --check.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+
+#include "base/hash.h"
+#include "kernel/kernel.h"
+
+namespace tw {
+
+std::string Kernel::validate_state_graph() const {
+  if (std::string broken = graph.validate(); !broken.empty()) return broken;
+  for (const auto& body : bodies) {
+    for (const State* s = graph.head(body->id()); s; s = s->next) {
+      // a rollback left nothing behind a stopped process
+      if (s->error && s->next) return "states after an error: " + body->info.name;
+      if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
+      if (s->key.time < gvt && !s->committed && !s->error)
+        return "state before GVT not committed: " + body->info.name + ", " + show(s->key);
+      if (s->committed && s->key.time > gvt) return "committed after GVT: " + show(s->key);
+    }
+  }
+  return "";
+}
+
+std::string Kernel::validate_event_queue() const {
+  if (!queue.validate()) return "heap order or handles of the event queue";
+  for (const EventQueue::Handle handle : queue.handles()) {
+    const Event& event = queue.event(handle);
+    switch (event.kind) {
+      case EventKind::advance:
+        if (bodies[event.subject]->advance != handle) return "advance event of nobody";
+        break;
+      case EventKind::callback:
+        if (callbacks[event.subject].event != handle) return "callback event of nobody";
+        break;
+      case EventKind::pair:
+        if (!pairs[event.subject].live || pairs[event.subject].event != handle)
+          return "check event of a dead pair";
+        break;
+    }
+  }
+  return "";
+}
+
+std::string Kernel::validate_pairs() const {
+  std::size_t live = 0;
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    const Pair& pair = pairs[i];
+    if (!pair.live) continue;
+    ++live;
+    const std::string where = bodies[pair.a]->info.name + " and " + bodies[pair.b]->info.name;
+    if (!(pair.a < pair.b)) return "ids out of order: " + where;
+    if (bodies[pair.a]->pairs[pair.place_a] != i || bodies[pair.b]->pairs[pair.place_b] != i)
+      return "pair not in its bodies' lists: " + where;
+    if (pair.safe_time() < gvt) return "safe time before GVT: " + where;
+    if (pair.pending) {
+      // an impact is valid only below the next keys of both processes
+      for (const BodyId id : {pair.a, pair.b}) {
+        const State* s = graph.last_before(id, pair.impact);
+        const State* next = s ? s->next : nullptr;
+        while (next && !next->starts_arc()) next = next->next;
+        if (next && next->key <= pair.impact) return "pending impact past an arc's end: " + where;
+      }
+      if (pair.event == EventQueue::none) return "pending impact without event: " + where;
+    }
+  }
+  if (live != counters.live_pairs) return "number of live pairs";
+  return "";
+}
+
+// Boxes hold the bodies from GVT to their claims (sampled), and nobody has states past a claim.
+std::string Kernel::validate_claims() const {
+  for (const auto& body : bodies) {
+    if (body->fixed() || !body->placed || body->unbounded) continue;
+    const State* tail = graph.tail(body->id());
+    if (tail->starts_arc() && tail->key.time > body->claim.time && body->dynamic())
+      return "state past the claim: " + body->info.name;
+    for (int i = 0; i <= 4; ++i) {
+      const double t = gvt + (body->claim.time - gvt) * (0.25 * i);
+      if (!std::isfinite(t) || t < gvt) continue;
+      const State* s = graph.last_at_or_before_time(body->id(), t);
+      if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
+      if (!grid.box(body->id()).contains(center_at(*body, *s, t)))
+        return "box does not hold " + body->info.name + " at " + show(t) + " s";
+    }
+  }
+  if (!grid.consistent()) return "spatial hash";
+  return "";
+}
+
+void Kernel::validate_all() const {
+  for (const auto& broken : {validate_state_graph(), validate_event_queue(), validate_pairs(),
+                             validate_claims()})
+    TW_ASSERT(broken.empty(), broken + " (GVT " + show(gvt) + " s)");
+}
+
+std::uint64_t Kernel::graph_checksum() const {
+  Hasher h;
+  for (const auto& body : bodies)
+    for (const State* s = graph.head(body->id()); s; s = s->next) {
+      h.add(state_hash(*body, s->key, {s->x, s->q, s->v, s->L}, *s));
+      h.add(s->arc_time);
+      h.add(s->random);
+      h.add(std::uint64_t{s->impacts.count});
+      h.add(s->impacts.last_time);
+      for (int i = 0; i < 3; ++i) h.add(s->force[i]);
+    }
+  return h.value();
+}
+
+std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
+  std::vector<QueuedState> result;
+  for (const State* s = graph.head(id); s; s = s->next)
+    result.push_back({s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
+  return result;
+}
+
+}  // namespace tw

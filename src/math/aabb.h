@@ -1,0 +1,43 @@
+// Axis-aligned boxes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+#include "math/vec.h"
+
+namespace tw {
+
+// A closed axis-aligned box; starts empty (lo > hi).
+struct Aabb {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  bool empty() const { return !(lo.x() <= hi.x()); }
+  void add(const Vec3& point) {
+    lo = lo.cwiseMin(point);
+    hi = hi.cwiseMax(point);
+  }
+  void add(const Aabb& box) {
+    lo = lo.cwiseMin(box.lo);
+    hi = hi.cwiseMax(box.hi);
+  }
+  void grow(double margin) {
+    lo.array() -= margin;
+    hi.array() += margin;
+  }
+  // True also when the boxes only touch.
+  bool overlaps(const Aabb& other) const {
+    return lo.x() <= other.hi.x() && other.lo.x() <= hi.x() &&
+           lo.y() <= other.hi.y() && other.lo.y() <= hi.y() &&
+           lo.z() <= other.hi.z() && other.lo.z() <= hi.z();
+  }
+  bool contains(const Vec3& point) const {
+    return lo.x() <= point.x() && point.x() <= hi.x() && lo.y() <= point.y() &&
+           point.y() <= hi.y() && lo.z() <= point.z() && point.z() <= hi.z();
+  }
+  Vec3 size() const { return hi - lo; }
+  Vec3 center() const { return 0.5 * (lo + hi); }
+};
+
+}  // namespace tw
