@@ -52,12 +52,14 @@ struct Side {
   }
 };
 
-// Least s > 0 with gap + speed s + pull s^2/2 = 0; gap > 0.
+// Least s > 0 with gap + speed s + pull s^2/2 = 0; gap > 0.  Each branch without cancellation: just
+// after an impact the gap is rounding and the speed is not.
 double first_zero(double gap, double speed, double pull) {
   const double disc = speed * speed - 2 * pull * gap;
   if (disc < 0) return never;
-  const double denominator = std::sqrt(disc) - speed;
-  return denominator > 0 ? 2 * gap / denominator : never;
+  const double root = std::sqrt(disc);
+  if (speed > 0) return pull < 0 ? (speed + root) / -pull : never;
+  return root - speed > 0 ? 2 * gap / (root - speed) : never;
 }
 
 // The plane: at height c along n, moving with u and alpha.

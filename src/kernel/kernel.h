@@ -103,6 +103,8 @@ class Kernel {
   void validate_all() const;         // aborts with the message
   // A checksum of every queue (states, order): for undo tests.
   std::uint64_t graph_checksum() const;
+  std::uint64_t ring_checksum(const Key& key) const;
+  std::uint64_t state_checksum(const State& state) const;
 
   // ---- data ----
   WorldOptions options;

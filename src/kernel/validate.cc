@@ -94,17 +94,30 @@ void Kernel::validate_all() const {
     TW_ASSERT(broken.empty(), broken + " (GVT " + show(gvt) + " s)");
 }
 
+// Every bit of a state that later motion depends on.
+std::uint64_t Kernel::state_checksum(const State& s) const {
+  Hasher h;
+  h.add(state_hash(*bodies[s.process], s.key, {s.x, s.q, s.v, s.L}, s));
+  h.add(s.arc_time);
+  h.add(s.random);
+  h.add(std::uint64_t{s.impacts.count});
+  h.add(s.impacts.last_time);
+  for (int i = 0; i < 3; ++i) h.add(s.force[i]);
+  return h.value();
+}
+
 std::uint64_t Kernel::graph_checksum() const {
   Hasher h;
   for (const auto& body : bodies)
-    for (const State* s = graph.head(body->id()); s; s = s->next) {
-      h.add(state_hash(*body, s->key, {s->x, s->q, s->v, s->L}, *s));
-      h.add(s->arc_time);
-      h.add(s->random);
-      h.add(std::uint64_t{s->impacts.count});
-      h.add(s->impacts.last_time);
-      for (int i = 0; i < 3; ++i) h.add(s->force[i]);
-    }
+    for (const State* s = graph.head(body->id()); s; s = s->next) h.add(state_checksum(*s));
+  return h.value();
+}
+
+// Of the latest states that one discontinuity made.
+std::uint64_t Kernel::ring_checksum(const Key& key) const {
+  Hasher h;
+  for (const auto& body : bodies)
+    if (const State* s = graph.tail(body->id()); s->key == key) h.add(state_checksum(*s));
   return h.value();
 }
 
