@@ -109,7 +109,7 @@ double FreeRotation::Orbit::mean_turn_rate(double quarter_period) const {
 
 FreeRotation::FreeRotation(const Vec3& moments, const Quat& q_WB, const Vec3& L_W)
     : base_(q_WB.normalized()) {
-  const double momentum = L_W.stableNorm();
+  const double momentum = scaled_norm(L_W);
   if (momentum == 0) return;
   if (same(moments.x(), moments.y()) && same(moments.y(), moments.z())) {
     set_uniform(L_W / moments.x());
@@ -134,7 +134,7 @@ FreeRotation::FreeRotation(const Vec3& moments, const Quat& q_WB, const Vec3& L_
 void FreeRotation::set_uniform(const Vec3& w_W) {
   kind_ = Kind::uniform;
   speeds_ = w_W;
-  max_angular_speed_ = w_W.stableNorm();
+  max_angular_speed_ = scaled_norm(w_W);
   half_turn_rate_ = 0.5 * max_angular_speed_;
   // the axis of rotation
   amplitudes_ = w_W / max_angular_speed_;

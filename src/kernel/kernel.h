@@ -26,6 +26,7 @@
 #include "collision/spatial-hash.h"
 #include "kernel/arc.h"
 #include "kernel/body.h"
+#include "kernel/checkpoint.h"
 #include "kernel/counters.h"
 #include "kernel/event-queue.h"
 #include "kernel/pair.h"
@@ -79,6 +80,8 @@ class Kernel {
   void set_gravity(const Vec3& gravity);
   const ContactParameters& contact_parameters(BodyId a, BodyId b) const;
   void edit(BodyId id, const std::function<void(StateView&)>& change);
+  std::shared_ptr<const Checkpoint> checkpoint() const;  // checkpoint.cc
+  void restore(const Checkpoint& checkpoint);
   void require_between_runs(const char* what) const;
   void require_before_first_run(const char* what) const;
 

@@ -53,12 +53,10 @@ void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
   std::vector<State*> ring;
   for (Draft& draft : drafts) {
     check_finite(draft);
-    if (draft.data.error) {
-      // the process stops here: its arcs end
-      draft.enters = true;
-      draft.data.arc_key = key;
-    }
+    // a fixed body without states does not stop: its partner in the impact does
     if (!draft.enters) continue;
+    // the process stops here: its arcs end
+    if (draft.data.error) draft.data.arc_key = key;
     State* state = graph.append(draft.body->id(), key);
     static_cast<StateData&>(*state) = draft.data;
     ring.push_back(state);
@@ -148,6 +146,10 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
   name.add(std::uint64_t{key.microstep});
   name.add(static_cast<std::uint64_t>(key.kind));
   name.add(key.id);
+  // redone is what follows the same states: another history may have an impact at the same time
+  for (const auto& body : bodies)
+    if (const State* s = graph.tail(body->id()); s->key == key && s->prev)
+      name.add(state_checksum(*s->prev));
   const std::uint64_t now = ring_checksum(key);
   if (const auto known = undone_.find(name.value()); known != undone_.end()) {
     TW_ASSERT(known->second == now, "redoing " + show(key) + " gave other states");

@@ -279,6 +279,7 @@ void Kernel::set_gravity(const Vec3& gravity) {
 
 // Everything after the present time is forgotten and will be found again.
 void Kernel::restart_future() {
+  undone_.clear();
   const Key present{time, 0xffffffffu, KeyKind::edit, ~0ull};
   std::vector<Touched> touched;
   for (const auto& body : bodies) graph.rollback(body->id(), present, touched, removal());

@@ -132,6 +132,17 @@ void StateGraph::free_before(State* keep, const Farewell& farewell) {
   }
 }
 
+void StateGraph::clear(std::uint32_t process) {
+  Queue& queue = queues_[process];
+  while (queue.head) {
+    State* state = queue.head;
+    unlink_ring(state);
+    queue.head = state->next;
+    release(state);
+  }
+  queue.tail = nullptr;
+}
+
 std::string StateGraph::validate() const {
   std::size_t found = 0;
   for (std::uint32_t p = 0; p < queues_.size(); ++p) {

@@ -57,6 +57,9 @@ class StateGraph {
   // state leaves its ring; rings of committed states need no partners.
   void free_before(State* keep, const Farewell& farewell);
 
+  // Removes every state of the queue, committed ones too: for restoring a checkpoint.
+  void clear(std::uint32_t process);
+
   std::size_t state_count() const { return live_; }
   std::size_t peak_state_count() const { return peak_; }
 

@@ -113,6 +113,9 @@ void World::edit(BodyId id, const std::function<void(StateView&)>& change) {
   kernel_->edit(id, change);
 }
 
+std::shared_ptr<const Checkpoint> World::checkpoint() const { return kernel_->checkpoint(); }
+void World::restore(const Checkpoint& checkpoint) { kernel_->restore(checkpoint); }
+
 std::vector<QueuedState> World::state_queue(BodyId id) const { return kernel_->state_queue(id); }
 double World::total_energy() const { return kernel_->total_energy(kernel_->time); }
 Vec3 World::total_momentum() const { return kernel_->total_momentum(kernel_->time); }

@@ -22,6 +22,7 @@
 namespace tw {
 
 class Kernel;
+struct Checkpoint;
 
 // How a body comes into the world.  Absent mass properties come from shape and density.
 struct BodyDef {
@@ -167,6 +168,9 @@ class World {
   SlotsPtr slots(BodyId id) const;
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.
   void edit(BodyId id, const std::function<void(StateView&)>& change);
+  // The committed present, to come back to.  Bodies and callbacks must be the same at restore.
+  std::shared_ptr<const Checkpoint> checkpoint() const;
+  void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;
   double total_energy() const;              // kinetic + gravity, J, dynamic bodies, at time()
   Vec3 total_momentum() const;              // linear, kg m/s, dynamic bodies, at time()

@@ -1,0 +1,276 @@
+// Signed distance of placed shapes: the table of pairs of kinds, and the least over all parts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/separation.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "collision/clip.h"
+#include "collision/gjk.h"
+#include "collision/part-pairs.h"
+
+namespace tw {
+
+thread_local unsigned long long distance_queries = 0;
+
+namespace {
+
+using Query = Separation (*)(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                             const Frame& frame_b, SimplexCache* cache);
+
+// Two spheres around points, whose centres are `apart` from a to b.
+Separation spheres(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                   const Frame& frame_b, SimplexCache*) {
+  const Vec3 center_a = frame_a * a.placement.p;
+  const Vec3 center_b = frame_b * b.placement.p;
+  const Vec3 apart = center_b - center_a;
+  const double length = apart.norm();
+  Separation result;
+  // concentric spheres: any direction is least; z
+  if (length > 0) result.normal = apart / length;
+  result.distance = length - (a.radius + b.radius);
+  result.point_a = center_a + a.radius * result.normal;
+  result.point_b = center_b - b.radius * result.normal;
+  return result;
+}
+
+// A box (its core's frame) and a point: outside the vector from the nearest point, inside the
+// nearest face.
+CoreDistance box_to_point(const Vec3& half_edges, const Vec3& point) {
+  CoreDistance result;
+  const Vec3 nearest = point.cwiseMax(-half_edges).cwiseMin(half_edges);
+  const Vec3 apart = point - nearest;
+  result.distance = apart.norm();
+  result.point_a = nearest;
+  if (result.distance > 0) {
+    result.normal = apart / result.distance;
+    return result;
+  }
+  int axis = 0;
+  result.distance = (point.cwiseAbs() - half_edges).maxCoeff(&axis);
+  result.normal = (point[axis] < 0 ? -1 : 1) * Vec3::Unit(axis);
+  result.point_a = point - result.distance * result.normal;
+  return result;
+}
+
+// A polyhedron and a point in its frame, signed.
+CoreDistance polyhedron_to_point(const Polyhedron& core, const Vec3& point, SimplexCache* cache) {
+  const double touch = touch_ratio * core.radius();
+  CoreDistance result = core_distance(core, point, cache);
+  if (!result.overlap && result.distance > touch) return result;
+  if (cache != nullptr) {
+    result = core_distance(core, point, nullptr);
+    if (!result.overlap && result.distance > touch) return result;
+  }
+  // touching or inside: the nearest face plane
+  int face = 0;
+  const double height = core.face_separation(point, face);
+  if (result.overlap || height <= 0) result.distance = height;
+  result.normal = core.face(face).normal;
+  result.point_a = point - result.distance * result.normal;
+  return result;
+}
+
+Separation polyhedron_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                             const Frame& frame_b, SimplexCache* cache) {
+  const Frame world_a = frame_a * a.placement;
+  const Vec3 center = frame_b * b.placement.p;
+  const Vec3 local = world_a.to_local(center);
+  const CoreDistance core = a.is_box ? box_to_point(a.half_edges, local)
+                                     : polyhedron_to_point(*a.core, local, cache);
+  Separation result;
+  result.distance = core.distance - b.radius;
+  result.normal = world_a.R * core.normal;
+  result.point_a = world_a * core.point_a;
+  result.point_b = center - b.radius * result.normal;
+  return result;
+}
+
+// The witness points of an axis of penetration, in A's frame.
+void axis_witness(const CorePair& pair, const LeastAxis& axis, Vec3& on_a, Vec3& on_b) {
+  if (axis.kind == AxisKind::edges) return crossing_of_edges(pair, axis, on_a, on_b);
+  thread_local std::vector<ClippedPoint> points;
+  const bool of_a = axis.kind == AxisKind::face_a;
+  const double everything = std::numeric_limits<double>::infinity();
+  if (of_a)
+    clip_face(pair.a, axis.feature_a, pair.b, pair.b_in_a, axis.feature_b, everything, 64, points);
+  else
+    clip_face(pair.b, axis.feature_b, pair.a, pair.a_in_b(), axis.feature_a, everything, 64,
+              points);
+  // the deepest point of the clipped face, or the deepest vertex where rounding left nothing
+  ClippedPoint deepest;
+  if (points.empty()) {
+    deepest.point = of_a ? pair.b_in_a * pair.b.vertex(axis.feature_b)
+                         : pair.a_in_b() * pair.a.vertex(axis.feature_a);
+    deepest.gap = axis.distance;
+  } else {
+    deepest = *std::min_element(points.begin(), points.end(),
+                                [](const auto& p, const auto& q) { return p.gap < q.gap; });
+  }
+  if (of_a) {
+    on_b = deepest.point;
+    on_a = on_b - deepest.gap * axis.normal;
+  } else {
+    on_a = pair.b_in_a * deepest.point;
+    on_b = on_a + deepest.gap * axis.normal;
+  }
+}
+
+Separation separate_cores(const CorePair& pair, const CoreDistance& core) {
+  Separation result;
+  result.distance = core.distance;
+  result.normal = pair.world_a.R * core.normal;
+  result.point_a = pair.world_a * core.point_a;
+  result.point_b = pair.world_a * (core.point_a + core.distance * core.normal);
+  return result;
+}
+
+Separation polyhedra(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                     const Frame& frame_b, SimplexCache* cache) {
+  const CorePair pair(a, frame_a, b, frame_b);
+  const double touch = touch_ratio * pair.size();
+  CoreDistance core = core_distance(pair.a, pair.b, pair.b_in_a, cache);
+  if (!core.overlap && core.distance > touch) return separate_cores(pair, core);
+  if (cache != nullptr) {
+    core = core_distance(pair.a, pair.b, pair.b_in_a, nullptr);
+    if (!core.overlap && core.distance > touch) return separate_cores(pair, core);
+  }
+  const LeastAxis axis =
+      least_axis(pair.a, pair.b, pair.b_in_a, core.overlap ? 0 : core.distance);
+  Separation result;
+  // just apart GJK knows the distance, but only the axis knows the normal
+  result.distance = core.overlap || axis.distance <= 0 ? axis.distance : core.distance;
+  result.normal = pair.world_a.R * axis.normal;
+  Vec3 on_a, on_b;
+  axis_witness(pair, axis, on_a, on_b);
+  result.point_a = pair.world_a * on_a;
+  result.point_b = pair.world_a * on_b;
+  return result;
+}
+
+// Height of a point over the plane of a half-space; its world normal and offset are reused by all.
+struct Plane {
+  Vec3 normal;
+  Vec3 origin;
+  double offset;
+
+  Plane(const ConvexPart& part, const Frame& frame)
+      : normal(frame.R * part.normal), origin(frame.p), offset(part.offset) {}
+  double height(const Vec3& point) const { return normal.dot(point - origin) - offset; }
+};
+
+Separation half_space_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                             const Frame& frame_b, SimplexCache*) {
+  const Plane plane(a, frame_a);
+  const Vec3 center = frame_b * b.placement.p;
+  Separation result;
+  result.distance = plane.height(center) - b.radius;
+  result.normal = plane.normal;
+  result.point_b = center - b.radius * plane.normal;
+  result.point_a = result.point_b - result.distance * plane.normal;
+  return result;
+}
+
+Separation half_space_polyhedron(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                                 const Frame& frame_b, SimplexCache* cache) {
+  const Plane plane(a, frame_a);
+  const Frame world_b = frame_b * b.placement;
+  const Vec3 down = -(world_b.R.transpose() * plane.normal);
+  // hill climbing starts at the last vertex; near touch it starts cold, for ties
+  const int start = cache != nullptr && cache->count > 0 ? cache->vertex_b[0] : 0;
+  const int vertex = b.core->support(down, start);
+  Separation result;
+  result.normal = plane.normal;
+  result.point_b = world_b * b.core->vertex(vertex);
+  result.distance = plane.height(result.point_b);
+  if (cache != nullptr) {
+    cache->count = 1;
+    cache->vertex_b[0] = vertex;
+    if (result.distance <= touch_ratio * b.core->radius())
+      return half_space_polyhedron(a, frame_a, b, frame_b, nullptr);
+  }
+  result.point_a = result.point_b - result.distance * plane.normal;
+  return result;
+}
+
+// Two half-spaces overlap without end unless their normals are exactly opposite.
+Separation half_spaces(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                       const Frame& frame_b, SimplexCache*) {
+  const Plane plane_a(a, frame_a);
+  const Plane plane_b(b, frame_b);
+  Separation result;
+  result.normal = plane_a.normal;
+  result.point_a = plane_a.origin + plane_a.offset * plane_a.normal;
+  result.point_b = plane_b.origin + plane_b.offset * plane_b.normal;
+  result.distance = plane_a.normal == -plane_b.normal
+                        ? plane_a.height(result.point_b)
+                        : -std::numeric_limits<double>::infinity();
+  return result;
+}
+
+// The other order of a pair.
+template <Query query>
+Separation swapped(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                   const Frame& frame_b, SimplexCache* cache) {
+  Separation result = query(b, frame_b, a, frame_a, cache);
+  result.normal = -result.normal;
+  std::swap(result.point_a, result.point_b);
+  return result;
+}
+
+// The table of pairs of kinds; rows and columns: sphere, polyhedron, half-space.
+constexpr Query queries[3][3] = {
+    {spheres, swapped<polyhedron_sphere>, swapped<half_space_sphere>},
+    {polyhedron_sphere, polyhedra, swapped<half_space_polyhedron>},
+    {half_space_sphere, half_space_polyhedron, half_spaces},
+};
+
+// A lower bound of the distance of two parts by their bounding balls, lowered by what rounding can
+// do to either side of the comparison with a distance.
+double ball_bound(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                  const Frame& frame_b) {
+  constexpr double rounding = 1e-13;
+  const bool plane_a = a.kind == PartKind::half_space;
+  const bool plane_b = b.kind == PartKind::half_space;
+  if (plane_a && plane_b) return -std::numeric_limits<double>::infinity();
+  if (plane_b) return ball_bound(b, frame_b, a, frame_a);
+  const Vec3 center_b = frame_b * b.bound_center;
+  if (plane_a) {
+    const double height = Plane(a, frame_a).height(center_b);
+    return height - b.bound_radius -
+           rounding * (std::abs(height) + std::abs(a.offset) + b.bound_radius);
+  }
+  const double apart = (center_b - frame_a * a.bound_center).norm();
+  const double radii = a.bound_radius + b.bound_radius;
+  return apart - radii - rounding * (apart + radii);
+}
+
+}  // namespace
+
+Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                           const Frame& frame_b, SimplexCache* cache) {
+  ++distance_queries;
+  return queries[static_cast<int>(a.kind)][static_cast<int>(b.kind)](a, frame_a, b, frame_b,
+                                                                     cache);
+}
+
+Separation separation(const Shape& a, const Frame& frame_a, const Shape& b,
+                      const Frame& frame_b) {
+  const std::vector<ConvexPart>& parts_a = a.parts();
+  const std::vector<ConvexPart>& parts_b = b.parts();
+  Separation best = part_separation(parts_a[0], frame_a, parts_b[0], frame_b, nullptr);
+  for (std::size_t i = 0; i < parts_a.size(); ++i)
+    for (std::size_t j = i == 0 ? 1 : 0; j < parts_b.size(); ++j) {
+      if (ball_bound(parts_a[i], frame_a, parts_b[j], frame_b) > best.distance) continue;
+      const Separation found =
+          part_separation(parts_a[i], frame_a, parts_b[j], frame_b, nullptr);
+      if (!(found.distance < best.distance)) continue;
+      best = found;
+      best.part_a = static_cast<int>(i);
+      best.part_b = static_cast<int>(j);
+    }
+  return best;
+}
+
+}  // namespace tw

@@ -1,0 +1,186 @@
+// Shapes: constructors, bounds and mass properties of unions of placed convex parts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "geometry/shape.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "geometry/hull.h"
+#include "geometry/mass-properties.h"
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The vertices' box in the frame, exact for boxes by half edges, else over all vertices.
+Aabb polyhedron_bounds(const ConvexPart& part, const Frame& frame) {
+  Aabb box;
+  const Frame world = frame * part.placement;
+  if (part.is_box) {
+    // a box reaches sum_j |R_ij| h_j along axis i
+    const Vec3 reach = world.R.cwiseAbs() * part.half_edges;
+    box.add(world.p - reach);
+    box.add(world.p + reach);
+    return box;
+  }
+  for (const Vec3& v : part.core->vertices()) box.add(world * v);
+  return box;
+}
+
+Aabb half_space_bounds(const ConvexPart& part, const Frame& frame) {
+  Aabb box;
+  box.lo.setConstant(-infinity);
+  box.hi.setConstant(infinity);
+  const Vec3 n = frame.R * part.normal;
+  const double offset = part.offset + n.dot(frame.p);
+  // bounded along an axis only when the plane is exactly square to it
+  for (int axis = 0; axis < 3; ++axis)
+    if (n[(axis + 1) % 3] == 0 && n[(axis + 2) % 3] == 0) {
+      if (n[axis] > 0) box.hi[axis] = offset;
+      if (n[axis] < 0) box.lo[axis] = -offset;
+    }
+  return box;
+}
+
+Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
+  switch (part.kind) {
+    case PartKind::half_space: return half_space_bounds(part, frame);
+    case PartKind::polyhedron: return polyhedron_bounds(part, frame);
+    case PartKind::sphere: break;
+  }
+  Aabb box;
+  box.add(frame * part.placement.p);
+  box.grow(part.radius);
+  return box;
+}
+
+double radius_about_origin_of(const ConvexPart& part) {
+  if (part.kind == PartKind::half_space) return infinity;
+  if (part.kind == PartKind::sphere) return part.placement.p.norm() + part.radius;
+  double radius = 0;
+  for (const Vec3& v : part.core->vertices())
+    radius = std::max(radius, (part.placement * v).norm());
+  return radius;
+}
+
+ConvexPart polyhedron_part(Polyhedron polyhedron) {
+  ConvexPart part;
+  part.kind = PartKind::polyhedron;
+  part.core = std::make_shared<const Polyhedron>(std::move(polyhedron));
+  part.bound_center = part.core->center();
+  part.bound_radius = part.core->radius();
+  return part;
+}
+
+// The largest size for which products of six lengths (inertia is a fifth power) stay finite.
+constexpr double longest = 1e50;
+
+void require_length(const char* what, double value) {
+  TW_REQUIRE(value > 0 && value < longest,
+             std::string(what) + " is " + show(value) + "; expected a positive number of metres");
+}
+
+std::string show(const Vec3& v) {
+  return "(" + tw::show(v.x()) + " " + tw::show(v.y()) + " " + tw::show(v.z()) + ")";
+}
+
+}  // namespace
+
+ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
+                      const MassProperties& mass) {
+  auto shape = std::make_shared<Shape>();
+  shape->parts_ = std::move(parts);
+  shape->kind_name_ = std::move(kind_name);
+  for (const ConvexPart& part : shape->parts_) {
+    if (part.kind == PartKind::half_space) shape->bounded_ = false;
+    shape->radius_about_origin_ =
+        std::max(shape->radius_about_origin_, radius_about_origin_of(part));
+  }
+  shape->mass_ = shape->bounded_ ? mass : MassProperties{};
+  shape->least_width_ =
+      shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
+  return shape;
+}
+
+Aabb Shape::bounds(const Frame& frame) const {
+  Aabb box;
+  for (const ConvexPart& part : parts_) box.add(part_bounds(part, frame));
+  return box;
+}
+
+ShapePtr make_sphere(double radius) {
+  require_length("the radius of a sphere", radius);
+  ConvexPart part;
+  part.kind = PartKind::sphere;
+  part.radius = radius;
+  part.bound_radius = radius;
+  return finish_shape({part}, "sphere", sphere_mass(radius));
+}
+
+ShapePtr make_box(const Vec3& edges) {
+  require_length("the x edge of a box", edges.x());
+  require_length("the y edge of a box", edges.y());
+  require_length("the z edge of a box", edges.z());
+  ConvexPart part = polyhedron_part(Polyhedron::box(0.5 * edges));
+  part.is_box = true;
+  part.half_edges = 0.5 * edges;
+  return finish_shape({part}, "box", box_mass(edges));
+}
+
+ShapePtr make_hull(const std::vector<Vec3>& points) {
+  const ConvexPart part = polyhedron_part(convex_hull(points));
+  return finish_shape({part}, "hull", polyhedron_mass(*part.core));
+}
+
+ShapePtr make_half_space(const Vec3& normal, double offset) {
+  TW_REQUIRE(is_finite(normal) && normal.norm() > 0 && std::isfinite(normal.norm()),
+             "the normal of a half-space is " + show(normal) +
+                 "; expected a finite vector that isn't zero");
+  TW_REQUIRE(std::isfinite(offset),
+             "the offset of a half-space is " + tw::show(offset) + "; expected a finite number");
+  ConvexPart part;
+  part.kind = PartKind::half_space;
+  part.normal = normal / scaled_norm(normal);
+  part.offset = offset;
+  part.bound_radius = infinity;
+  return finish_shape({part}, "half-space", MassProperties{});
+}
+
+ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
+  TW_REQUIRE(!shapes.empty(), "a union has no parts; expected at least one shape");
+  std::vector<ConvexPart> parts;
+  std::vector<MassProperties> masses;
+  for (const ShapePtr& shape : shapes) {
+    TW_REQUIRE(shape != nullptr, "a part of a union is not a shape");
+    parts.insert(parts.end(), shape->parts().begin(), shape->parts().end());
+    masses.push_back(shape->mass_properties());
+  }
+  return finish_shape(std::move(parts), "union", summed_mass(masses));
+}
+
+ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {
+  TW_REQUIRE(shape != nullptr, "what is to be placed is not a shape");
+  TW_REQUIRE(is_finite(pose.p),
+             "a shape is placed at " + show(pose.p) + "; expected finite numbers");
+  TW_REQUIRE(is_finite(pose.q) && pose.q.norm() > 0,
+             "a shape is placed with a quaternion that is zero or not finite");
+  const Frame move(Pose{pose.p, pose.q.normalized()});
+  std::vector<ConvexPart> parts = shape->parts();
+  for (ConvexPart& part : parts) {
+    part.placement = move * part.placement;
+    part.bound_center = move * part.bound_center;
+    if (part.kind != PartKind::half_space) continue;
+    // n.(R^T (x - p)) <= offset
+    part.normal = (move.R * part.normal).normalized();
+    part.offset += part.normal.dot(move.p);
+  }
+  return finish_shape(std::move(parts), shape->kind_name(),
+                      placed_mass(shape->mass_properties(), move));
+}
+
+}  // namespace tw

@@ -1,0 +1,94 @@
+// Checkpoints: the committed present of a world, to come back to.
+//
+// What is committed is a state per body and the next tick per callback; everything else (claims, pairs,
+// events) is found anew, as after any change.  So a run that goes on from a restored checkpoint
+// commits the same history, bit for bit, as one that was never interrupted.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/checkpoint.h"
+
+#include "kernel/kernel.h"
+
+namespace tw {
+
+Checkpoint::Checkpoint() = default;
+Checkpoint::~Checkpoint() = default;
+
+std::shared_ptr<const Checkpoint> Kernel::checkpoint() const {
+  require_between_runs("a checkpoint was made");
+  auto result = std::make_shared<Checkpoint>();
+  result->owner = this;
+  result->time = time;
+  result->begun = begun;
+  result->counters = counters;
+  result->hash_sum = hash_sum_;
+  result->hash_count = hash_count_;
+  result->edits = edits_;
+  result->gravity = options.gravity;
+  for (const auto& body : bodies) {
+    const State* state = state_at(body->id(), time);
+    result->states.push_back({state->key, *state});
+  }
+  for (const CallbackRecord& callback : callbacks) {
+    // the first call that is not committed
+    Key next{callback.committed_next, 0, KeyKind::callback,
+             static_cast<std::uint64_t>(&callback - callbacks.data())};
+    if (callback.def.period)
+      next = first_tick(callback, begun ? Key{time, 0, KeyKind::group_check, 0} : Key{});
+    result->callbacks.push_back({next, callback.committed_next});
+  }
+  return result;
+}
+
+void Kernel::restore(const Checkpoint& checkpoint) {
+  require_between_runs("a checkpoint was restored");
+  TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
+  TW_REQUIRE(checkpoint.states.size() == bodies.size() &&
+                 checkpoint.callbacks.size() == callbacks.size(),
+             "bodies or callbacks were added since the checkpoint; expected the same ones");
+
+  // empty the graph and the event queue
+  for (std::uint32_t i = 0; i < pairs.size(); ++i)
+    if (pairs[i].live) drop_pair(i);
+  for (const auto& body : bodies) {
+    queue.withdraw(body->advance);
+    graph.clear(body->id());
+  }
+  undelivered_.clear();
+  error_ = nullptr;
+
+  // the committed present
+  time = gvt = checkpoint.time;
+  begun = checkpoint.begun;
+  counters = checkpoint.counters;
+  counters.live_pairs = 0;
+  hash_sum_ = checkpoint.hash_sum;
+  hash_count_ = checkpoint.hash_count;
+  edits_ = checkpoint.edits;
+  options.gravity = checkpoint.gravity;
+  const Key present{time, 0xffffffffu, KeyKind::edit, ~0ull};
+  newborn_.clear();
+  for (const auto& body : bodies) {
+    const auto& [key, data] = checkpoint.states[body->id()];
+    State* state = graph.append(body->id(), key);
+    static_cast<StateData&>(*state) = data;
+    state->committed = begun;
+    body->claim = body->fixed() && begun ? last_key : begun ? present : key;
+    if (begun)
+      schedule_advance(*body);
+    else
+      newborn_.push_back(body->id());
+  }
+  for (std::uint32_t i = 0; i < callbacks.size(); ++i) {
+    callbacks[i].next = checkpoint.callbacks[i].first;
+    callbacks[i].committed_next = checkpoint.callbacks[i].second;
+    callbacks[i].parked = false;
+    schedule_callback(i);
+  }
+  for (SinkRecord& sink : sinks) {
+    sink.next_frame = 0;
+    while (sink.next_time() < time) ++sink.next_frame;
+  }
+}
+
+}  // namespace tw

@@ -1,0 +1,30 @@
+// A checkpoint: what World::checkpoint keeps and World::restore brings back.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kernel/counters.h"
+#include "kernel/key.h"
+#include "kernel/state.h"
+
+namespace tw {
+
+class Kernel;
+
+struct Checkpoint {
+  Checkpoint();
+  ~Checkpoint();
+
+  const Kernel* owner = nullptr;
+  double time = 0;
+  bool begun = false;
+  Counters counters;
+  std::uint64_t hash_sum = 0, hash_count = 0, edits = 0;
+  Vec3 gravity = Vec3::Zero();
+  std::vector<std::pair<Key, StateData>> states;       // by body: the last committed one
+  std::vector<std::pair<Key, double>> callbacks;       // next tick; next time without a period
+};
+
+}  // namespace tw

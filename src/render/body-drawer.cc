@@ -1,0 +1,160 @@
+// Meshes, instances and draw calls of bodies.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "render/body-drawer.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace tw {
+
+namespace {
+
+double linear_channel(double c) {
+  // IEC 61966-2-1
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+const void* offset_pointer(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
+
+// Declares the vertex input `location` as `count` floats of the bound buffer.
+void declare_input(const GlApi& gl, GLuint location, GLint count, std::size_t stride,
+                   std::size_t offset, GLuint divisor) {
+  gl.EnableVertexAttribArray(location);
+  gl.VertexAttribPointer(location, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
+                         offset_pointer(offset));
+  gl.VertexAttribDivisor(location, divisor);
+}
+
+template <class T>
+GLuint make_buffer(const GlApi& gl, GLenum kind, const T& data, std::size_t count) {
+  GLuint buffer = 0;
+  gl.GenBuffers(1, &buffer);
+  gl.BindBuffer(kind, buffer);
+  gl.BufferData(kind, static_cast<GLsizeiptr>(count * sizeof data[0]), data.data(),
+                GL_STATIC_DRAW);
+  return buffer;
+}
+
+}  // namespace
+
+Vec3 linear_color(const Vec3& srgb) { return srgb.unaryExpr(&linear_channel); }
+
+BodyDrawer::BodyDrawer(const GlApi& gl) : gl_(&gl) {
+  static const std::array<float, 8> corners = {-1, -1, 1, -1, -1, 1, 1, 1};
+  gl.GenVertexArrays(1, &ball_vertex_array_);
+  gl.BindVertexArray(ball_vertex_array_);
+  make_buffer(gl, GL_ARRAY_BUFFER, corners, corners.size());
+  declare_input(gl, 0, 2, 2 * sizeof(float), 0, 0);
+  gl.GenBuffers(1, &ball_buffer_);
+  gl.BindBuffer(GL_ARRAY_BUFFER, ball_buffer_);
+  declare_input(gl, 1, 4, sizeof(BallInstance), offsetof(BallInstance, ball), 1);
+  declare_input(gl, 2, 4, sizeof(BallInstance), offsetof(BallInstance, color), 1);
+}
+
+void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
+  if (!body.shape || !body.visible) return;
+  shapes_.push_back(body.shape);
+  const Vec3 color = linear_color(body.color.value_or(default_color(index, body.fixed)));
+  for (const ConvexPart& part : body.shape->parts()) {
+    Part record;
+    record.body = index;
+    record.placement = part.placement;
+    record.color << color.cast<float>(), body.fixed ? 0.1f : 0.5f;
+    add_part(part, body, record);
+  }
+}
+
+void BodyDrawer::add_part(const ConvexPart& part, const DrawBody& body, Part record) {
+  if (part.kind == PartKind::half_space) return;
+  const bool smooth = body.smooth.value_or(part.kind == PartKind::sphere);
+  if (part.kind == PartKind::sphere) record.placement.R *= part.radius;
+  if (part.kind == PartKind::sphere && smooth) {
+    balls_.push_back(record);
+    return;
+  }
+  if (part.is_box) record.placement.R *= part.half_edges.asDiagonal();
+  group_of(part, smooth).parts.push_back(record);
+}
+
+BodyDrawer::MeshGroup& BodyDrawer::group_of(const ConvexPart& part, bool smooth) {
+  static const Polyhedron unit_box = Polyhedron::box(Vec3::Ones());
+  const bool sphere = part.kind == PartKind::sphere;
+  const Polyhedron* polyhedron = part.is_box ? &unit_box : part.core.get();
+  const MeshKey key(sphere ? nullptr : static_cast<const void*>(polyhedron), smooth);
+  const auto [found, fresh] = group_index_.emplace(key, groups_.size());
+  if (fresh)
+    groups_.push_back(make_group(sphere   ? facet_sphere_mesh()
+                                 : smooth ? smooth_mesh(*polyhedron)
+                                          : facet_mesh(*polyhedron)));
+  return groups_[found->second];
+}
+
+BodyDrawer::MeshGroup BodyDrawer::make_group(const Mesh& mesh) {
+  MeshGroup group;
+  gl_->GenVertexArrays(1, &group.vertex_array);
+  gl_->BindVertexArray(group.vertex_array);
+  make_buffer(*gl_, GL_ARRAY_BUFFER, mesh.vertices, mesh.vertices.size());
+  declare_input(*gl_, 0, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, position), 0);
+  declare_input(*gl_, 1, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, normal), 0);
+  make_buffer(*gl_, GL_ELEMENT_ARRAY_BUFFER, mesh.indices, mesh.indices.size());
+  gl_->GenBuffers(1, &group.instance_buffer);
+  gl_->BindBuffer(GL_ARRAY_BUFFER, group.instance_buffer);
+  // three rows and the colour, one after the other
+  for (GLuint i = 0; i < 4; ++i)
+    declare_input(*gl_, 2 + i, 4, sizeof(MeshInstance), 4 * sizeof(float) * i, 1);
+  group.index_count = static_cast<GLsizei>(mesh.indices.size());
+  return group;
+}
+
+void BodyDrawer::upload(GLuint buffer, const void* data, std::size_t size) const {
+  gl_->BindBuffer(GL_ARRAY_BUFFER, buffer);
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(size), data, GL_STREAM_DRAW);
+}
+
+void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye) {
+  const auto drawn = [&](const Part& part) {
+    return is_finite(poses[part.body].p) && is_finite(poses[part.body].q);
+  };
+  ball_instances_.clear();
+  for (const Part& part : balls_) {
+    if (!drawn(part)) continue;
+    const Vec3 center = Frame(poses[part.body]) * part.placement.p - eye;
+    BallInstance instance;
+    // the matrix of a sphere is a rotation times its radius
+    instance.ball << center.cast<float>(), static_cast<float>(part.placement.R.col(0).norm());
+    instance.color = part.color;
+    ball_instances_.push_back(instance);
+  }
+  upload(ball_buffer_, ball_instances_.data(), ball_instances_.size() * sizeof(BallInstance));
+  for (MeshGroup& group : groups_) {
+    group.instances.clear();
+    for (const Part& part : group.parts) {
+      if (!drawn(part)) continue;
+      const Frame frame = Frame(poses[part.body]) * part.placement;
+      MeshInstance instance;
+      instance.rows << frame.R.cast<float>(), (frame.p - eye).cast<float>();
+      instance.color = part.color;
+      group.instances.push_back(instance);
+    }
+    upload(group.instance_buffer, group.instances.data(),
+           group.instances.size() * sizeof(MeshInstance));
+  }
+}
+
+void BodyDrawer::draw_meshes() const {
+  for (const MeshGroup& group : groups_) {
+    if (group.instances.empty()) continue;
+    gl_->BindVertexArray(group.vertex_array);
+    gl_->DrawElementsInstanced(GL_TRIANGLES, group.index_count, GL_UNSIGNED_INT, nullptr,
+                               static_cast<GLsizei>(group.instances.size()));
+  }
+}
+
+void BodyDrawer::draw_spheres() const {
+  if (ball_instances_.empty()) return;
+  gl_->BindVertexArray(ball_vertex_array_);
+  gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(ball_instances_.size()));
+}
+
+}  // namespace tw

@@ -1,0 +1,28 @@
+// Triangles of convex parts, ready for the renderer.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+// Corners and their unit normals; three indices per triangle, counter-clockwise from outside.
+struct Mesh {
+  struct Vertex {
+    Eigen::Vector3f position, normal;
+  };
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+// Flat faces: every face has corners of its own, with the face's normal.
+Mesh facet_mesh(const Polyhedron& polyhedron);
+// Rounded looks: a vertex's normal is the mean of its faces' normals, weighted by their angles.
+Mesh smooth_mesh(const Polyhedron& polyhedron);
+// A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
+Mesh facet_sphere_mesh();
+
+}  // namespace tw

@@ -1,0 +1,355 @@
+// The passes of a frame.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/error.h"
+#include "render/hud.h"
+#include "render/shaders.h"
+
+namespace tw {
+
+namespace {
+
+// EXT_texture_sRGB_decode
+constexpr GLenum texture_srgb_decode = 0x8A48;
+constexpr GLint skip_decode = 0x8A4A;
+
+constexpr double farthest_pose = 1e12;   // m; beyond, products overflow single precision
+constexpr double ground_reach = 4000;    // of an unbounded plane, in distances of the target
+
+bool drawable(const Pose& pose) {
+  return is_finite(pose.p) && is_finite(pose.q) && pose.p.cwiseAbs().maxCoeff() <= farthest_pose;
+}
+
+// Reversed depth with an infinite far plane: x f/aspect, y f, near, -z with f = 1/tan(fov/2), so
+// that depth = near/distance.
+Matrix4f projection_of(const View& view) {
+  const double f = 1 / view.tan_half_fov;
+  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
+  p.row(0).head<3>() = f / view.aspect * view.right.transpose();
+  p.row(1).head<3>() = f * view.up.transpose();
+  p(2, 3) = view.near_distance;
+  p.row(3).head<3>() = view.forward.transpose();
+  return p.cast<float>();
+}
+
+// 1, 2 or 5 times a power of ten, nearest below.
+double round_size(double size) {
+  const double power = std::pow(10.0, std::floor(std::log10(size)));
+  return size >= 5 * power ? 5 * power : size >= 2 * power ? 2 * power : power;
+}
+
+std::string define(const char* name, int value) {
+  return std::string("#define ") + name + " " + std::to_string(value) + "\n";
+}
+
+// Points spread evenly over a disc, on a spiral by the golden angle, for EACH_POINT of the shader.
+std::string spiral_points(int count) {
+  if (count == 0) return "";
+  std::string text = "#define EACH_POINT(look)";
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.39996 * i, share = (i + 0.5) / count;
+    char point[80];
+    std::snprintf(point, sizeof point, " look(%.6f, %.6f, %.6f)", std::cos(angle),
+                  std::sin(angle), share);
+    text += point;
+  }
+  return text + "\n";
+}
+
+Ball ball_around(const DrawBody& body, const Pose& pose) {
+  return {pose.p, body.shape->radius_about_origin()};
+}
+
+bool casts_shadow(const DrawBody& body) {
+  return body.visible && body.shape && body.shape->bounded();
+}
+
+double median_radius(const std::vector<DrawBody>& bodies) {
+  std::vector<double> radii;
+  for (const DrawBody& body : bodies)
+    if (casts_shadow(body) && !body.fixed) radii.push_back(body.shape->radius_about_origin());
+  if (radii.empty()) return 0.5;
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return *middle;
+}
+
+}  // namespace
+
+struct Renderer::Programs {
+  GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, fxaa, average;
+
+  Programs(const GlApi& gl, const Effort& effort)
+      : mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
+        sphere(gl, shaders::sphere_vertex, shaders::sphere_fragment, shaders::surface_preamble),
+        ground(gl, shaders::ground_vertex, shaders::ground_fragment, shaders::surface_preamble),
+        mesh_shadow(gl, shaders::mesh_shadow_vertex, shaders::mesh_shadow_fragment),
+        sphere_shadow(gl, shaders::sphere_shadow_vertex, shaders::sphere_shadow_fragment),
+        light(gl, shaders::picture_vertex, shaders::light_fragment,
+              define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
+                  spiral_points(effort.overhead_taps)),
+        fxaa(gl, shaders::picture_vertex, shaders::fxaa_fragment),
+        average(gl, shaders::picture_vertex, shaders::average_fragment) {}
+};
+
+Renderer::Effort Renderer::effort_of(Quality quality) {
+  switch (quality) {
+    case Quality::draft: return {1024, 1, 16, 0, 1, false};
+    case Quality::normal: break;
+    case Quality::best: return {4096, 5, 2048, 6, 2, false};
+  }
+  return {2048, 3, 1024, 8, 1, true};
+}
+
+Renderer::Renderer(const RenderSettings& settings, const DrawScene& scene)
+    : settings_((check_size(settings.size, settings.quality), settings)),
+      effort_(effort_of(settings.quality)),
+      scene_(scene),
+      context_(gl_library().open_context()),
+      gl_(&context_->gl()),
+      programs_(std::make_unique<Programs>(*gl_, effort_)),
+      bodies_(*gl_),
+      sun_map_(*gl_, effort_.shadow_side),
+      overhead_map_(*gl_, effort_.overhead_side) {
+  check_scene(scene);
+  make_targets();
+  scene_.bodies.clear();
+  for (const DrawBody& body : scene.bodies) register_body(body);
+  first_bounds_ = scene_bounds(scene_.bodies, poses_);
+  body_size_ = median_radius(scene_.bodies);
+  gl_->ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::make_targets() {
+  surface_width_ = effort_.samples * settings_.size.width;
+  surface_height_ = effort_.samples * settings_.size.height;
+  const auto make = [&](GLint format) {
+    return make_texture(*gl_, format, surface_width_, surface_height_);
+  };
+  color_ = make(GL_SRGB8_ALPHA8);
+  normal_ = make(GL_RG16);
+  depth_ = make(GL_DEPTH_COMPONENT32F);
+  surface_buffer_ = make_framebuffer(*gl_, color_, normal_, depth_);
+  lit_ = make(GL_SRGB8_ALPHA8);
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // FXAA works on the bytes as they are; the mean of samples is one of light
+  if (effort_.fxaa) gl_->TexParameteri(GL_TEXTURE_2D, texture_srgb_decode, skip_decode);
+  lit_buffer_ = make_framebuffer(*gl_, lit_, 0, 0);
+  final_buffer_ = lit_buffer_;
+  if (effort_.fxaa || effort_.samples > 1) {
+    final_ = make_texture(*gl_, GL_SRGB8_ALPHA8, settings_.size.width, settings_.size.height);
+    final_buffer_ = make_framebuffer(*gl_, final_, 0, 0);
+  }
+  gl_->GenVertexArrays(1, &empty_array_);
+  gl_->GenVertexArrays(1, &ground_array_);
+  gl_->BindVertexArray(ground_array_);
+  gl_->GenBuffers(1, &ground_buffer_);
+  gl_->BindBuffer(GL_ARRAY_BUFFER, ground_buffer_);
+  gl_->EnableVertexAttribArray(0);
+  gl_->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
+void Renderer::register_body(const DrawBody& body) {
+  if (body.color) check_color(*body.color, "color");
+  bodies_.add_body(body, scene_.bodies.size());
+  scene_.bodies.push_back(body);
+  poses_.push_back(body.pose);
+}
+
+void Renderer::set_poses(const DrawFrame& frame) {
+  for (const DrawBody& body : frame.added) register_body(body);
+  TW_ASSERT(frame.poses.size() <= scene_.bodies.size(), "more poses than bodies");
+  std::copy(frame.poses.begin(), frame.poses.end(), poses_.begin());
+  for (Pose& pose : poses_) {
+    if (drawable(pose)) continue;
+    ++skipped_poses_;
+    pose.p.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void Renderer::set_view() {
+  Vec3 displacement = Vec3::Zero();
+  if (scene_.camera.follow) {
+    const std::size_t body = *scene_.camera.follow;
+    displacement = poses_[body].p - scene_.bodies[body].pose.p;
+    // a lost body is not followed
+    if (!is_finite(displacement)) displacement.setZero();
+  }
+  view_ = make_view(scene_.camera, first_bounds_, settings_.size, displacement);
+  projection_ = projection_of(view_);
+  cell_size_ = round_size(view_.focus_distance / 8);
+}
+
+void Renderer::fit_shadows() {
+  std::vector<Ball> casters;
+  for (std::size_t i = 0; i < poses_.size(); ++i)
+    if (casts_shadow(scene_.bodies[i]) && is_finite(poses_[i].p))
+      casters.push_back(ball_around(scene_.bodies[i], poses_[i]));
+  const Vec3 target = view_.eye + view_.focus_distance * view_.forward;
+  const double reach = 5 * view_.focus_distance;
+  sun_map_.fit(scene_.light.direction, casters, target, reach);
+  overhead_map_.fit(-Vec3::UnitZ(), casters, target, reach);
+}
+
+void Renderer::draw_surfaces() {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, surface_buffer_);
+  gl_->Viewport(0, 0, surface_width_, surface_height_);
+  gl_->Enable(GL_FRAMEBUFFER_SRGB);
+  gl_->Enable(GL_DEPTH_TEST);
+  gl_->DepthFunc(GL_GREATER);
+  gl_->ClearDepth(0);
+  gl_->ClearColor(0, 0, 0, 0);
+  gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  draw_bodies();
+  draw_grounds();
+}
+
+void Renderer::draw_bodies() {
+  gl_->Enable(GL_CULL_FACE);
+  programs_->mesh.use();
+  programs_->mesh.set("projection", projection_);
+  bodies_.draw_meshes();
+  gl_->Disable(GL_CULL_FACE);
+  programs_->sphere.use();
+  programs_->sphere.set("projection", projection_);
+  programs_->sphere.set("forward", view_.forward);
+  programs_->sphere.set("near_distance", view_.near_distance);
+  bodies_.draw_spheres();
+}
+
+void Renderer::set_rays(const GlProgram& program) const {
+  program.set("ray_middle", view_.forward);
+  program.set("ray_right", Vec3(view_.tan_half_fov * view_.aspect * view_.right));
+  program.set("ray_up", Vec3(view_.tan_half_fov * view_.up));
+}
+
+void Renderer::draw_grounds() {
+  const Vec3 target = view_.eye + view_.focus_distance * view_.forward;
+  const auto polygons = half_space_polygons(scene_.bodies, poses_, target,
+                                            ground_reach * view_.focus_distance);
+  if (polygons.empty()) return;
+  programs_->ground.use();
+  programs_->ground.set("projection", projection_);
+  programs_->ground.set("pixel_share", 1.0 / surface_width_, 1.0 / surface_height_);
+  set_rays(programs_->ground);
+  for (const HalfSpacePolygon& polygon : polygons) draw_ground(polygon);
+}
+
+void Renderer::draw_ground(const HalfSpacePolygon& polygon) {
+  const double height = polygon.normal.dot(polygon.origin - view_.eye);
+  // seen from inside the solid
+  if (height >= 0) return;
+  std::vector<Eigen::Vector3f> corners;
+  for (const Vec3& corner : polygon.corners) corners.push_back((corner - view_.eye).cast<float>());
+
+  const GlProgram& program = programs_->ground;
+  const DrawBody& body = scene_.bodies[polygon.body];
+  program.set("normal", polygon.normal);
+  program.set("height", height);
+  program.set("color", linear_color(body.color.value_or(default_color(polygon.body, true))));
+  program.set("cell_u", Vec3(polygon.u / cell_size_));
+  program.set("cell_v", Vec3(polygon.v / cell_size_));
+  // checks repeat after two cells: single precision needs no more of the eye's place
+  const Vec3 place = (view_.eye - polygon.origin) / cell_size_;
+  program.set("cell_origin", std::fmod(place.dot(polygon.u), 2.0),
+              std::fmod(place.dot(polygon.v), 2.0));
+  gl_->BindVertexArray(ground_array_);
+  gl_->BindBuffer(GL_ARRAY_BUFFER, ground_buffer_);
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof corners[0]),
+                  corners.data(), GL_STREAM_DRAW);
+  gl_->DrawArrays(GL_TRIANGLE_FAN, 0, static_cast<GLsizei>(corners.size()));
+}
+
+void Renderer::light_picture() {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, lit_buffer_);
+  gl_->Disable(GL_DEPTH_TEST);
+  const GlProgram& program = programs_->light;
+  program.use();
+  set_rays(program);
+  const GLuint textures[] = {color_, normal_, depth_, sun_map_.texture(), overhead_map_.texture()};
+  const char* const names[] = {"color_map", "normal_map", "depth_map", "sun_map", "overhead_map"};
+  for (int i = 0; i < 5; ++i) {
+    gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+    gl_->BindTexture(GL_TEXTURE_2D, textures[i]);
+    program.set(names[i], i);
+  }
+  gl_->ActiveTexture(GL_TEXTURE0);
+  program.set("to_sun_map", sun_map_.to_texture(view_.eye));
+  program.set("to_overhead_map", overhead_map_.to_texture(view_.eye));
+  program.set("sun_texel", sun_map_.texel());
+  program.set("sun_map_share", sun_map_.texel_share());
+  program.set("overhead_texel", overhead_map_.texel());
+  program.set("occlusion_radius", std::max(1.6 * body_size_, 3 * overhead_map_.texel()));
+  program.set("near_distance", view_.near_distance);
+  program.set("to_sun", Vec3(-scene_.light.direction.normalized()));
+  program.set("sun_color", linear_color(scene_.light.color));
+  program.set("zenith", linear_color(scene_.sky.zenith));
+  program.set("horizon", linear_color(scene_.sky.horizon));
+  program.set("ground", linear_color(scene_.sky.ground));
+  program.set("fog", scene_.sky.fog.value_or(0.04 / view_.focus_distance));
+  gl_->BindVertexArray(empty_array_);
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::smooth_edges() {
+  if (final_buffer_ == lit_buffer_) return;
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, final_buffer_);
+  gl_->Viewport(0, 0, settings_.size.width, settings_.size.height);
+  if (effort_.fxaa) gl_->Disable(GL_FRAMEBUFFER_SRGB);
+  const GlProgram& program = effort_.fxaa ? programs_->fxaa : programs_->average;
+  program.use();
+  gl_->BindTexture(GL_TEXTURE_2D, lit_);
+  program.set("picture", 0);
+  program.set("pixel_share", 1.0 / settings_.size.width, 1.0 / settings_.size.height);
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+Image Renderer::read_picture() const {
+  Image image{settings_.size.width, settings_.size.height, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  image.rgb.resize(row * static_cast<std::size_t>(image.height));
+  gl_->PixelStorei(GL_PACK_ALIGNMENT, 1);
+  gl_->ReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  // GL's rows run from the bottom
+  for (int y = 0; y < image.height / 2; ++y)
+    std::swap_ranges(image.pixel(0, y), image.pixel(0, y) + row,
+                     image.pixel(0, image.height - 1 - y));
+  return image;
+}
+
+void Renderer::finish_hud(Image& image, const DrawFrame& frame) const {
+  if (!settings_.hud) return;
+  draw_hud(image, {frame.time, frame.hud, settings_.footer, view_.pixels_per_metre()});
+}
+
+Image Renderer::draw(const DrawFrame& frame) {
+  if (frame.camera) {
+    check_camera(*frame.camera, scene_.bodies.size() + frame.added.size());
+    scene_.camera = *frame.camera;
+  }
+  set_poses(frame);
+  set_view();
+  bodies_.place(poses_, view_.eye);
+  fit_shadows();
+  sun_map_.draw(bodies_, programs_->mesh_shadow, programs_->sphere_shadow, view_.eye);
+  if (effort_.overhead_taps > 0)
+    overhead_map_.draw(bodies_, programs_->mesh_shadow, programs_->sphere_shadow, view_.eye);
+  draw_surfaces();
+  light_picture();
+  smooth_edges();
+  Image image = read_picture();
+  TW_REQUIRE(gl_->GetError() == GL_NO_ERROR, "drawing failed: OpenGL ran out of memory");
+  finish_hud(image, frame);
+  return image;
+}
+
+}  // namespace tw

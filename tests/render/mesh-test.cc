@@ -1,0 +1,51 @@
+// Meshes close, face outwards and have unit normals.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "render/mesh.h"
+
+#include "picture-tools.h"
+
+namespace tw::test {
+namespace {
+
+// Six times the volume inside the triangles is the sum of a . (b x c).
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) {
+      return Vec3(mesh.vertices[mesh.indices[i + k]].position.cast<double>());
+    };
+    sum += corner(0).dot(corner(1).cross(corner(2)));
+  }
+  return sum / 6;
+}
+
+void expect_outward_unit_normals(const Mesh& mesh) {
+  for (const Mesh::Vertex& vertex : mesh.vertices) {
+    EXPECT_NEAR(vertex.normal.norm(), 1, 1e-6);
+    EXPECT_GT(vertex.normal.dot(vertex.position), 0);
+  }
+}
+
+TEST(Mesh, a_box_has_its_volume_and_flat_or_rounded_normals) {
+  const Polyhedron box = Polyhedron::box({1, 2, 3});
+  const Mesh facets = facet_mesh(box), smooth = smooth_mesh(box);
+  EXPECT_EQ(facets.indices.size(), 36u);
+  EXPECT_NEAR(volume(facets), 48, 1e-5);
+  EXPECT_NEAR(volume(smooth), 48, 1e-5);
+  expect_outward_unit_normals(facets);
+  expect_outward_unit_normals(smooth);
+  EXPECT_EQ(facets.vertices[0].normal.cwiseAbs().maxCoeff(), 1);
+  // three right angles meet at every corner: the mean points along the diagonal
+  const Eigen::Vector3f n = smooth.vertices[0].normal.cwiseAbs();
+  EXPECT_NEAR(n.minCoeff(), n.maxCoeff(), 1e-6);
+}
+
+TEST(Mesh, a_facet_sphere_is_nearly_a_ball) {
+  const Mesh sphere = facet_sphere_mesh();
+  EXPECT_EQ(sphere.indices.size(), 3u * 320u);
+  EXPECT_NEAR(volume(sphere), 4 * pi / 3, 0.04 * 4 * pi / 3);
+  expect_outward_unit_normals(sphere);
+}
+
+}  // namespace
+}  // namespace tw::test
