@@ -1,0 +1,31 @@
+;; (timewarp): everything that scenes use, gathered from the modules in timewarp/.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp))
+
+(eval-when (expand load eval)
+  (define public-modules
+    '(((timewarp worlds)
+       make-world current-world scene scene-random-state world-time world-bodies find-body)
+      ((timewarp parameters) define-scene-parameter)
+      ((timewarp shapes))
+      ((timewarp bodies))
+      ((timewarp contact))
+      ((timewarp callbacks))
+      ((timewarp running)
+       run! run-for! step! statistics show-statistics state-queue total-energy total-momentum)
+      ((timewarp looking))
+      ((timewarp drawing) render!)
+      ((timewarp simulate))
+      ((timewarp loader) load-scene)))
+
+  ;; the interface gets the variables themselves, so that a module's own set! is seen by all
+  (let ((interface (module-public-interface (current-module))))
+    (define (add! name variable)
+      (module-add! interface name variable))
+    (for-each
+     (lambda (entry)
+       (let ((source (resolve-interface (car entry))))
+         (if (null? (cdr entry))
+             (module-for-each add! source)
+             (for-each (lambda (name) (add! name (module-variable source name))) (cdr entry)))))
+     public-modules)))

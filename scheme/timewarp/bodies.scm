@@ -1,0 +1,152 @@
+;; Bodies: adding them, their motion by keyframes, and reading and changing their states.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp bodies)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp worlds)
+  #:use-module (ice-9 match)
+  #:export (add-body! keyframes
+            body? view? body-name body-mass body-kind view-body
+            position orientation velocity angular-velocity kinetic-energy
+            slot slot? applied-force applied-torque random-real!))
+
+;; ---- adding ----
+
+(define body-keywords
+  '(#:name #:shape #:density #:mass #:inertia #:center-of-mass #:position #:orientation #:velocity
+    #:angular-velocity #:fixed? #:motion #:max-speed #:material #:color #:slots #:visible?))
+
+(define* (add-body! #:key name shape density mass inertia center-of-mass position orientation
+                    velocity angular-velocity fixed? motion max-speed material color slots visible?
+                    #:allow-other-keys #:rest given)
+  "Add a body to the current world and return it.  Mass properties come from the shape and the
+density (1000 kg/m^3) unless mass, inertia (about the centre of mass, body axes) and center-of-mass
+say otherwise; with #:shape #f the body touches nothing and needs all of them.  `position' is the body
+frame's origin, `velocity' the centre of mass's.  `motion', keyframes or a procedure of time that
+returns position and orientation and obeys max-speed, makes the body kinematic."
+  (check-keywords 'add-body! given body-keywords)
+  (let ((shape? (memq #:shape given)))
+    (unless shape?
+      (raise-error (string-append "add-body! got no #:shape; expected a shape, or #:shape #f for a "
+                                  "body that touches nothing")))
+    (%add-body! (current-world)
+                (body-properties given (body-motion motion max-speed shape))
+                (caller-place))))
+
+;; The motion of the body as the C++ side wants it, or #f.
+(define (body-motion motion max-speed shape)
+  (if (procedure? motion)
+      (%procedure-motion motion max-speed shape)
+      (begin
+        (when max-speed
+          (raise-error "add-body! got #:max-speed; expected it only where #:motion is a procedure"))
+        motion)))
+
+;; Keywords to an alist of properties; a keyword given #f counts as absent, except visible?.
+(define (body-properties given motion)
+  (match given
+    (() '())
+    ((keyword value . rest)
+     (let ((properties (body-properties rest motion)))
+       (cond ((eq? keyword #:max-speed) properties)
+             ((eq? keyword #:motion) (if motion (acons 'motion motion properties) properties))
+             ((or value (eq? keyword #:visible?))
+              (acons (keyword->symbol keyword) value properties))
+             (else properties))))))
+
+(define-keyword-procedure (keyframes list #:key smooth?)
+  "Return a motion through the keyframes LIST: ((time position [orientation]) ...), times
+increasing.  The body rests before the first and after the last.  Lines and constant angular velocity
+in between; with smooth? the same path at minimum jerk, at rest at every keyframe."
+  (%keyframes list smooth?))
+
+;; ---- asking ----
+
+(define (of-class? object class)
+  (and (struct? object) (eq? (struct-vtable object) class)))
+
+(define (body? object)
+  "Return #t if OBJECT is a body."
+  (of-class? object <body>))
+
+(define (view? object)
+  "Return #t if OBJECT is a view, as callbacks are handed."
+  (of-class? object <view>))
+
+(define (body-name body)
+  "Return the name of BODY, a body or a view."
+  (%body-name body))
+
+(define (body-mass body)
+  "Return the mass of BODY, a body or a view, in kg."
+  (%body-mass body))
+
+(define (body-kind body)
+  "Return what kind of body BODY is: dynamic, fixed or kinematic."
+  (%body-kind body))
+
+(define (view-body view)
+  "Return the body that VIEW looks at."
+  (%view-body view))
+
+;; ---- states: accessors with set! ----
+
+(define-syntax-rule (define-accessor name doc getter setter)
+  (define name
+    (let ((getter* (lambda (body) doc (getter body))))
+      (set-procedure-property! getter* 'name 'name)
+      (make-procedure-with-setter getter* (lambda (body value) (setter body value))))))
+
+(define-accessor position
+  "Return the position of the body frame's origin of BODY, a body or a view, in metres.
+(set! (position BODY) #(x y z)) moves a body between runs."
+  %position %set-position!)
+
+(define-accessor orientation
+  "Return the orientation of the body frame of BODY, a body or a view, as #(w x y z).
+(set! (orientation BODY) #(w x y z)) turns a body between runs."
+  %orientation %set-orientation!)
+
+(define-accessor velocity
+  "Return the velocity of the centre of mass of BODY, a body or a view, in m/s; with set!."
+  %velocity %set-velocity!)
+
+(define-accessor angular-velocity
+  "Return the angular velocity of BODY, a body or a view, in rad/s, world frame; with set!."
+  %angular-velocity %set-angular-velocity!)
+
+(define-accessor applied-force
+  "Return the force applied at the centre of mass of BODY, a body or a view, in N, world frame; with
+set!.  It stays constant until it is changed."
+  %applied-force %set-applied-force!)
+
+(define-accessor applied-torque
+  "Return the torque applied to BODY, a body or a view, in N m, world frame: zero, since setting one
+needs an integrator that comes later."
+  (lambda (body)
+    (unless (or (body? body) (view? body))
+      (bad-value "applied-torque" body "a body or a view of one"))
+    (vector 0.0 0.0 0.0))
+  (lambda (body torque)
+    (not-there-yet "set! of applied-torque" "an integrator for driven rotation")))
+
+(define (kinetic-energy body)
+  "Return the kinetic energy of BODY, a body or a view, in J."
+  (%kinetic-energy body))
+
+(define slot
+  (let ((slot (lambda (body name)
+                "Return the value of the slot NAME (a symbol) of BODY, a body or a view; with set!.
+Values are immutable: set! copies pairs, vectors and strings.  A slot that the body lacks is an error."
+                (%slot body name))))
+    (make-procedure-with-setter
+     slot
+     (lambda (body name value) (%set-slot! body name value)))))
+
+(define (slot? body name)
+  "Return #t if BODY, a body or a view, has a slot called NAME."
+  (%slot? body name))
+
+(define (random-real! body)
+  "Draw a number from [0, 1) from the generator that lives in the state of BODY, a view or a body."
+  (%random-real! body))

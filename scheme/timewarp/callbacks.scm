@@ -1,0 +1,92 @@
+;; Callbacks, which may change what they are handed and may run again after a rollback; observers,
+;; which only look and run exactly once; and what a collision was.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp callbacks)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp worlds)
+  #:use-module (timewarp bodies)
+  #:use-module (timewarp purity)
+  #:use-module (ice-9 match)
+  #:export (add-callback! on-collision! observe!
+            collision? collision-time collision-point collision-normal collision-speed
+            collision-impulse collision-bodies
+            frame-time frame-index frame-views))
+
+(define-keyword-procedure (add-callback! targets procedure #:key start period)
+  "Call PROCEDURE with the time and a view of each of TARGETS (a body or a list of bodies) at start +
+k period; without a period it returns its next time, or #f for never again.  Start is the current
+time unless given.  It may run again after a rollback: it must touch only what it is handed."
+  (%add-callback! (current-world)
+                  (if (body? targets) (list targets) targets)
+                  (watched procedure) start period (caller-place)))
+
+(define (on-collision! a b procedure)
+  "Call PROCEDURE with the collision and two views, in the order A, B, after each impact between A and
+B; each is a body, a material, or #t for all.  It may run again after a rollback."
+  (%on-collision! (current-world) a b (watched procedure) (caller-place)))
+
+(define (observe! kind procedure)
+  "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,
+'fission (with the collision) or 'frame (with the frame)."
+  (let ((world (current-world))
+        (place (caller-place)))
+    (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))
+    (match kind
+      ('collision (%observe-collisions! world procedure place))
+      ;; bodies fuse and part once there are contact groups
+      ((or 'fusion 'fission) #t)
+      ('frame
+       (at-first-run! world (lambda ()
+                              (%observe-frames! world procedure (world-fps world) place))))
+      (_ (bad-value "what to observe" kind "'collision, 'fusion, 'fission or 'frame")))
+    (if #f #f)))
+
+;; ---- collisions ----
+
+(define (collision? object)
+  "Return #t if OBJECT is a collision."
+  (and (struct? object) (eq? (struct-vtable object) <collision>)))
+
+(define (collision-time collision)
+  "Return the time of COLLISION, s."
+  (%collision-time collision))
+
+(define (collision-point collision)
+  "Return the point of COLLISION, world frame, m."
+  (%collision-point collision))
+
+(define (collision-normal collision)
+  "Return the unit normal of COLLISION from A to B, world frame."
+  (%collision-normal collision))
+
+(define (collision-speed collision)
+  "Return the approach speed of COLLISION before the impulse, m/s."
+  (%collision-speed collision))
+
+(define (collision-impulse collision)
+  "Return the sum of the normal impulses of COLLISION, N s."
+  (%collision-impulse collision))
+
+(define (collision-bodies collision)
+  "Return the list of the two bodies of COLLISION, in the order A, B."
+  (%collision-bodies collision))
+
+;; ---- frames ----
+
+(define (frame-part frame part)
+  (match frame
+    (((? real?) (? integer?) (views ...)) (part frame))
+    (_ (bad-value "the frame" frame "what an observer of frames is handed"))))
+
+(define (frame-time frame)
+  "Return the time of FRAME, s."
+  (frame-part frame car))
+
+(define (frame-index frame)
+  "Return the number of FRAME, counted from 0."
+  (frame-part frame cadr))
+
+(define (frame-views frame)
+  "Return a list of views of all moving bodies in FRAME, which only look."
+  (frame-part frame caddr))

@@ -1,0 +1,233 @@
+;; The command line: what the program `timewarp' does with its arguments.
+;;
+;; Exit status: 0; 1 for an error in the scene or the run; 2 for wrong usage; 130 after Ctrl-C.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp command-line)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp worlds)
+  #:use-module (timewarp parameters)
+  #:use-module (timewarp running)
+  #:use-module (timewarp recorders)
+  #:use-module (timewarp drawing)
+  #:use-module (timewarp loader)
+  #:use-module (timewarp options)
+  #:use-module (timewarp progress)
+  #:use-module (srfi srfi-1)
+  #:use-module (ice-9 match)
+  #:export (main))
+
+;; ---- help and version ----
+
+(define (show-help scene)
+  (display "Usage: timewarp [OPTION]... [SCENE.scm]\n")
+  (display "Without a scene: a REPL with (timewarp) loaded.\n")
+  (display "Simulate a scene of rigid bodies, written in Scheme.\n\n")
+  (display (option-help))
+  (when scene (show-parameters scene)))
+
+;; The scene is read, not run: --help must have no effects.
+(define (show-parameters scene)
+  (let ((parameters
+         (filter-map (match-lambda
+                       (('define-scene-parameter (? symbol? name) default . doc)
+                        (list name default (match doc (((? string? doc)) doc) (_ ""))))
+                       (_ #f))
+                     (read-scene-forms scene))))
+    (format #t "\nParameters of ~a, set by -D NAME=VALUE:\n" scene)
+    (when (null? parameters) (display "  none\n"))
+    (for-each (match-lambda
+                ((name default doc)
+                 (format #t "  ~a  ~a (~s)\n" (string-pad-right (symbol->string name) 20) doc
+                         default)))
+              parameters)))
+
+(define (show-version)
+  (format #t "timewarp ~a\n" (%version))
+  (format #t "Guile ~a~a\n" (version)
+          (string-concatenate
+           (map (match-lambda ((name . version) (string-append ", " name " " version)))
+                (%libraries))))
+  (format #t "drawing: ~a\n"
+          (if (%drawing?) "OSMesa or EGL, loaded when the first picture is drawn" "left out"))
+  (display "License LGPL-3.0-or-later; the REPL loads GNU readline (GPL) where it is installed.\n"))
+
+;; ---- the run ----
+
+;; What is given twice: the last one holds.
+(define (option-ref options key)
+  (fold (lambda (pair value) (if (eq? (car pair) key) (cdr pair) value)) #f options))
+
+(define (option-values options key)
+  (filter-map (lambda (pair) (and (eq? (car pair) key) (cdr pair))) options))
+
+(define override-keys
+  '(accuracy seed fps size quality hash check undo-redo gvt-interval window adversary))
+
+(define (take-overrides! options)
+  (set-overrides! (filter (lambda (pair) (memq (car pair) override-keys)) options))
+  (set-definitions! (option-values options 'define)))
+
+(define (check-definitions)
+  (match (unused-definitions)
+    (() #t)
+    ((name . _)
+     (usage-error "-D sets ~a, which is no parameter of the scene; expected one of: ~a" name
+                  (match (defined-parameters)
+                    (() "(it has none)")
+                    (names (string-join (map symbol->string names) ", ")))))))
+
+;; Runs to the end in pieces, by default one; a scene may have run farther by itself.
+(define (run-to-end! world options)
+  (let* ((end (or (option-ref options 'until) (world-duration world)))
+         (start (%world-time world))
+         (pieces (or (option-ref options 'pieces) 1)))
+    (when (> end start)
+      (for-each (lambda (k)
+                  (run-world! world (if (= k pieces)
+                                        end
+                                        (+ start (* k (/ (- end start) pieces))))))
+                (iota pieces 1)))
+    ;; also where nothing is left to run: frame 0 is due
+    (when (and (= end start) (zero? start)) (run-world! world end))))
+
+(define (simulate-scene! world scene options)
+  (call-with-recorders world
+    (lambda ()
+      (load-scene scene)
+      (check-definitions)
+      (run-to-end! world options))
+    #:frames (option-ref options 'frames)
+    #:poses (option-ref options 'poses)
+    #:events (option-ref options 'events)))
+
+(define (report-results world options)
+  (match (option-ref options 'stats)
+    (#f #t)
+    (#t (show-statistics))
+    (file (%write-statistics world file)))
+  (when (option-ref options 'hash)
+    (format #t "~a\n" (%history-hash world)))
+  (force-output (current-output-port)))
+
+(define (run-scene world scene options)
+  (call-with-values (if (option-ref options 'quiet)
+                        (lambda () (values (const #f) (const #f)))
+                        make-progress)
+    (lambda (progress end-progress)
+      (parameterize ((current-slice-hooks (list progress)))
+        (dynamic-wind
+          (const #t)
+          (lambda () (simulate-scene! world scene options))
+          end-progress))))
+  (report-results world options))
+
+;; With -i an error of the scene, or Ctrl-C, leads to the prompt, too.
+(define (run-scene-then-repl world scene options)
+  (exit-status (lambda () (run-scene world scene options)))
+  (start-repl* options))
+
+;; ---- REPL and -c ----
+
+(define (enter-user-module)
+  (set-current-module (resolve-module '(guile-user)))
+  (module-use! (current-module) (resolve-interface '(timewarp))))
+
+(define (start-repl* options)
+  ((module-ref (resolve-interface '(timewarp repl)) 'start-timewarp-repl)
+   #:init? (not (option-ref options 'no-init))))
+
+(define (evaluate-command text)
+  (call-with-input-string text
+    (lambda (port)
+      (let loop ()
+        (let ((form (read port)))
+          (unless (eof-object? form)
+            (eval form (current-module))
+            (loop)))))))
+
+;; ---- main ----
+
+(define (scene-operand options)
+  (match (option-values options 'operand)
+    (() #f)
+    ((scene)
+     (when (string-suffix? ".twr" scene)
+       (usage-error "~a is a recording, which is not there yet; expected a scene" scene))
+     scene)
+    (_ (usage-error "there is more than one scene; expected one"))))
+
+(define (check-usage options scene)
+  (when (and (not scene)
+             (any (lambda (key) (option-ref options key))
+                  '(until frames poses events stats hash)))
+    (usage-error "there is no scene; expected timewarp [OPTION]... SCENE.scm"))
+  (when (and (option-ref options 'frames) (not (%drawing?)))
+    (usage-error "--frames needs drawing, which was left out when timewarp was built ~a"
+                 "(--disable-render)")))
+
+(define (work options)
+  (let ((scene (scene-operand options)))
+    (cond
+     ((option-ref options 'version) (show-version))
+     ((option-ref options 'help) (show-help scene))
+     (else
+      (check-usage options scene)
+      (take-overrides! options)
+      (parameterize ((current-world (make-world)))
+        (enter-user-module)
+        (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
+        (for-each evaluate-command (option-values options 'command))
+        (cond ((and scene (option-ref options 'interactive))
+               (run-scene-then-repl (current-world) scene options))
+              (scene (run-scene (current-world) scene options))
+              ((or (option-ref options 'interactive) (not (option-ref options 'command)))
+               (start-repl* options))))))))
+
+(define (complain format-string . args)
+  ;; standard output may be what failed
+  (false-if-exception (force-output (current-output-port)))
+  (let ((port (current-error-port)))
+    (apply format port format-string args)
+    (newline port)))
+
+;; An error that is no timewarp-error, for instance in -c: as describe-error sees it.
+(define (complain-about key args description)
+  (match (if (eq? key 'timewarp-error) (describe-error key args) description)
+    (#(message place backtrace)
+     (complain "~a~a~a"
+               (if place (string-append (place->string place) ": ") "timewarp: ")
+               message
+               (if (string-null? backtrace) "" (string-append "\n" backtrace))))
+    (_ (complain "timewarp: ~a" (error-text key args)))))
+
+(define (exit-status thunk)
+  (let ((description #f))
+    (catch #t
+      (lambda () (thunk) 0)
+      (lambda (key . args)
+        (match (cons key args)
+          (('timewarp-usage message) (complain "timewarp: ~a" message) 2)
+          (('timewarp-interrupted) (complain "interrupted") 130)
+          (('quit . status)
+           (match status ((or () (#t)) 0) ((#f) 1) (((? integer? n) . _) n) (_ 1)))
+          (_ (complain-about key args description) 1)))
+      (lambda (key . args)
+        (unless (memq key '(quit timewarp-usage timewarp-interrupted timewarp-error))
+          (set! description (describe-error key args)))))))
+
+(define (main args)
+  "Do what the command line ARGS says; exit with a status."
+  (setlocale LC_ALL "")
+  (setlocale LC_NUMERIC "C")
+  ;; -L before any module is looked for
+  (let* ((options #f)
+         (status
+          (exit-status
+           (lambda ()
+             (set! options (parse-command-line args))
+             (for-each (lambda (folder) (set! %load-path (cons folder %load-path)))
+                       (reverse (option-values options 'load-path)))
+             (call-with-interrupts (lambda () (work options)))
+             (force-output (current-output-port))))))
+    (primitive-exit status)))

@@ -1,0 +1,68 @@
+;; Drawing: frames of a run and single pictures.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp drawing)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp worlds)
+  #:use-module (timewarp files)
+  #:use-module (ice-9 match)
+  #:export (render!)
+  ;; for the other modules
+  #:export (open-frames
+            attach-frames!
+            close-frames!
+            frames-written
+            require-drawing))
+
+(define (require-drawing what)
+  "Raise an error unless drawing is compiled in."
+  (unless (%drawing?)
+    (raise-error (string-append what " needs drawing, which was left out when timewarp was built; "
+                                "expected a build without --disable-render"))))
+
+;; SIZE as two values; (WIDTH HEIGHT), or #f for the default.
+(define (picture-size size)
+  (match (or size (override 'size) '(1280 720))
+    (((? exact-integer? width) (? exact-integer? height)) (values width height))
+    (other (bad-value "size" other "(WIDTH HEIGHT) in pixels"))))
+
+(define (picture-quality quality)
+  (let ((quality (or quality (override 'quality) 'normal)))
+    (unless (memq quality '(draft normal best))
+      (bad-value "quality" quality "'draft, 'normal or 'best"))
+    quality))
+
+(define (looks world)
+  (list (world-ref world 'camera '()) (world-ref world 'light '()) (world-ref world 'sky '())))
+
+(define (open-frames frames size quality)
+  "Prepare drawing into the folder or pattern FRAMES; refuse at once what cannot be written."
+  (require-drawing "drawing frames")
+  (call-with-values (lambda () (picture-size size))
+    (lambda (width height)
+      (%open-frames frames width height (picture-quality quality)))))
+
+(define (attach-frames! world drawer fps)
+  "Let WORLD feed DRAWER with FPS frames per second."
+  (world-set! world 'drawer drawer)
+  (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)))
+
+(define (close-frames! world drawer)
+  "Wait until all frames are on disk."
+  (world-set! world 'drawer #f)
+  (%close-frames! world drawer))
+
+(define (frames-written world)
+  "Return how many frames of WORLD are on disk in this run, or #f where none are drawn."
+  (let ((drawer (world-ref world 'drawer #f)))
+    (and drawer (%frames-written drawer))))
+
+(define-keyword-procedure (render! file #:key size quality)
+  "Draw the current world as it is now into FILE (PNG).  Size is (WIDTH HEIGHT), 1280 by 720 unless
+given; quality 'draft, 'normal or 'best."
+  (require-drawing "render!")
+  (let ((world (current-world)))
+    (call-with-values (lambda () (picture-size size))
+      (lambda (width height)
+        (%render! world (scene-file file) width height (picture-quality quality)
+                  (looks world) (world-ref world 'title #f))))))

@@ -1,0 +1,15 @@
+;; File names in scenes are relative to the scene's file.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp files)
+  #:use-module (timewarp errors)
+  #:export (current-scene-directory scene-file))
+
+;; The folder of the scene that is being loaded, or #f: the current folder.
+(define current-scene-directory (make-parameter #f))
+
+(define (scene-file name)
+  "Return NAME relative to the folder of the scene that is being loaded."
+  (unless (string? name) (bad-value "the file name" name "a string"))
+  (if (or (absolute-file-name? name) (not (current-scene-directory)))
+      name
+      (in-vicinity (current-scene-directory) name)))

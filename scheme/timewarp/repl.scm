@@ -1,0 +1,42 @@
+;; The REPL: Guile's own, with (timewarp) at hand, readline where it is installed, and a short banner.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp repl)
+  #:use-module (timewarp primitives)
+  #:use-module (system repl repl)
+  #:use-module (system repl common)
+  #:export (start-timewarp-repl))
+
+(define (activate-readline-if-there)
+  (when (and (isatty? (current-input-port))
+             (false-if-exception (resolve-interface '(ice-9 readline))))
+    (let ((activate (module-ref (resolve-interface '(ice-9 readline)) 'activate-readline)))
+      (activate))))
+
+(define (load-user-init)
+  (let ((file (string-append (or (getenv "HOME") "/") "/.guile")))
+    (when (file-exists? file)
+      (save-module-excursion
+       (lambda ()
+         (set-current-module (resolve-module '(guile-user)))
+         (primitive-load file))))))
+
+(define (banner)
+  (format #f "timewarp ~a on Guile ~a.  ,help for help, ,describe NAME for a procedure's, (exit) to leave."
+          (%version) (version)))
+
+(define* (start-timewarp-repl #:key (init? #t))
+  "Run a REPL in (guile-user) until the user leaves it."
+  (when init? (load-user-init))
+  (activate-readline-if-there)
+  (set-current-module (resolve-module '(guile-user)))
+  (module-set! (resolve-module '(system repl common)) '*version* (banner))
+  (call-with-sigint start-repl))
+
+;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt.
+(define (call-with-sigint thunk)
+  (let ((outer #f))
+    (dynamic-wind
+      (lambda ()
+        (set! outer (sigaction SIGINT (lambda (signal) (%interrupt!)))))
+      thunk
+      (lambda () (sigaction SIGINT (car outer) (cdr outer))))))

@@ -1,0 +1,96 @@
+;; Running worlds, in slices between which Ctrl-C and progress reports have their say.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp running)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp worlds)
+  #:use-module (ice-9 match)
+  #:use-module (ice-9 format)
+  #:export (run! run-for! step! statistics show-statistics state-queue total-energy total-momentum)
+  ;; for the other modules
+  #:export (run-world!
+            call-with-interrupts
+            current-slice-hooks))
+
+;; s of wall time: between slices no C++ frame is on the stack
+(define slice 0.02)
+
+;; Procedures that are called between slices with the world and the time to run to.
+(define current-slice-hooks (make-parameter '()))
+
+(define (check-interrupt)
+  (when (%take-interrupt!) (throw 'timewarp-interrupted)))
+
+(define (call-with-interrupts thunk)
+  "Call THUNK; Ctrl-C throws timewarp-interrupted where that is safe."
+  (let ((outer #f))
+    (dynamic-wind
+      (lambda ()
+        (set! outer (sigaction SIGINT (lambda (signal) (%interrupt!)))))
+      thunk
+      (lambda ()
+        (sigaction SIGINT (car outer) (cdr outer))))))
+
+(define (run-world! world until)
+  "Run WORLD until everything up to and including UNTIL is committed and observed."
+  (unless (and (real? until) (not (nan? until)) (not (inf? until)))
+    (bad-value "until" until "a finite time in seconds"))
+  (when (%inside-callback?)
+    (raise-error "run! was used inside a callback or observer; expected it outside"))
+  (start-first-run! world)
+  (call-with-interrupts
+   (lambda ()
+     (%take-interrupt!)
+     (let loop ()
+       (let ((finished? (%advance! world until slice)))
+         (check-interrupt)
+         (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
+         (unless finished? (loop))))))
+  (if #f #f))
+
+(define-keyword-procedure (run! #:key until)
+  "Run the current world; return when everything up to and including the time `until' (by default the
+scene's duration) is committed and observed.  Ctrl-C interrupts; the world stays usable."
+  (let ((world (current-world)))
+    (run-world! world (or until (world-duration world)))))
+
+(define (run-for! seconds)
+  "Run the current world for SECONDS more."
+  (unless (real? seconds) (bad-value "the duration" seconds "a number of seconds"))
+  (run-world! (current-world) (+ (world-time) seconds)))
+
+(define (step!)
+  "Process one event of the current world."
+  (let ((world (current-world)))
+    (start-first-run! world)
+    (call-with-interrupts (lambda () (%step! world)))
+    (if #f #f)))
+
+(define (statistics)
+  "Return the statistics of the current world as an association list; numbers are SI."
+  (%statistics (current-world)))
+
+(define (show-statistics)
+  "Print the statistics of the current world, one per line."
+  (for-each (match-lambda
+              ((name . value)
+               (format #t "~30a ~a~%" name
+                       (if (and (real? value) (inexact? value)) (short-number value) value))))
+            (statistics)))
+
+(define (short-number x)
+  (cond ((or (nan? x) (inf? x) (zero? x)) (number->string x))
+        ((and (>= (abs x) 1e-3) (< (abs x) 1e6)) (format #f "~,6f" x))
+        (else (format #f "~,5e" x))))
+
+(define (state-queue body)
+  "Return the states kept of BODY, oldest first: (time kind microstep committed? position velocity)."
+  (%state-queue body))
+
+(define (total-energy)
+  "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity, J."
+  (%total-energy (current-world)))
+
+(define (total-momentum)
+  "Return the total momentum of the dynamic bodies, kg m/s."
+  (%total-momentum (current-world)))

@@ -1,0 +1,156 @@
+;; Worlds, what a scene says about itself, and the command line's say in it.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp worlds)
+  #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (ice-9 match)
+  #:use-module (oop goops)
+  #:export (make-world
+            current-world
+            scene
+            scene-random-state
+            world-time
+            world-bodies
+            find-body)
+  ;; for the other modules
+  #:export (world-ref
+            world-set!
+            override
+            set-overrides!
+            world-fps
+            world-duration
+            world-seed
+            at-first-run!
+            start-first-run!))
+
+;; ---- overrides: what the command line says, whatever scenes say ----
+
+(define overrides '())
+
+(define (override name)
+  "Return what the command line set NAME to, or #f."
+  (assq-ref overrides name))
+
+(define (set-overrides! alist)
+  "Let every world made from now on obey ALIST, whatever scenes say."
+  (set! overrides alist))
+
+;; Settings of the kernel that the command line can override.
+(define kernel-settings '(accuracy seed hash check undo-redo gvt-interval window))
+
+(define (make-world)
+  "Return a new, empty world."
+  (let ((world (%make-world)))
+    (for-each (lambda (name)
+                (when (override name) (%set-world! world name (override name))))
+              kernel-settings)
+    (match (override 'adversary)
+      (#f #t)
+      ((seed head-start every?) (%set-adversary! world seed head-start every?)))
+    world))
+
+(define current-world (make-parameter (make-world)))
+(set-object-property! current-world 'documentation
+                      "The world that scenes fill and procedures act on: a parameter object.")
+
+(define* (world-ref world name #:optional default)
+  (hashq-ref (%world-table world) name default))
+
+(define (world-set! world name value)
+  (hashq-set! (%world-table world) name value))
+
+;; ---- what a scene says about itself ----
+
+(define (check-number name value valid? expected)
+  (unless (and (real? value) (valid? value)) (bad-value name value expected)))
+
+(define (finite-positive? x) (and (positive? x) (not (inf? x))))
+
+(define (policy->string policy)
+  (match policy
+    ((? symbol?) (symbol->string policy))
+    (('retroactive (? real? step)) (format #f "retroactive:~a" step))
+    (_ (bad-value "policy" policy "'timewarp, 'conservative or '(retroactive 0.01)"))))
+
+(define-keyword-procedure
+  (scene #:key title duration gravity accuracy fps seed policy group-check-rate)
+  "Set defaults of the current world: title (a string), duration in seconds (10), gravity
+(#(0 0 -9.81)), accuracy (1e-6), fps (30), seed (0) and policy ('timewarp).  The command line's
+options take precedence."
+  (let ((world (current-world)))
+    (when (%inside-callback?) (raise-error "scene was used inside a callback; expected it outside"))
+    (when title
+      (unless (string? title) (bad-value "title" title "a string"))
+      (world-set! world 'title title))
+    (when duration
+      (check-number "duration" duration (lambda (d) (and (>= d 0) (not (inf? d))))
+                    "a number of seconds, not negative")
+      (world-set! world 'duration duration))
+    (when fps
+      (check-number "fps" fps finite-positive? "a positive number of frames per second")
+      (world-set! world 'fps fps))
+    (when gravity (%set-world! world 'gravity gravity))
+    (when (and accuracy (not (override 'accuracy))) (%set-world! world 'accuracy accuracy))
+    (when (and seed (not (override 'seed))) (%set-world! world 'seed seed))
+    (when policy (%set-world! world 'policy (policy->string policy)))
+    (when group-check-rate (not-there-yet "#:group-check-rate" "contact groups"))))
+
+(define (world-duration world)
+  "Return the duration of the scene in WORLD, s."
+  (world-ref world 'duration 10))
+
+(define (world-fps world)
+  "Return the frames per second of WORLD: the command line's, the scene's, or 30."
+  (or (override 'fps) (world-ref world 'fps 30)))
+
+(define (world-seed world)
+  (%world-seed world))
+
+(define (scene-random-state)
+  "Return a fresh Guile random state, seeded by --seed, else by the scene's #:seed."
+  (seed->random-state (world-seed (current-world))))
+
+;; ---- looking ----
+
+(define (world-time)
+  "Return the simulated time up to which the current world is committed, s."
+  (%world-time (current-world)))
+
+(define (world-bodies)
+  "Return the list of all bodies of the current world, in the order in which they were added."
+  (%world-bodies (current-world)))
+
+(define (find-body name)
+  "Return the body called NAME in the current world; it is an error if there is none."
+  (or (%find-body (current-world) name)
+      (bad-value "the name" name "the name of a body of the current world")))
+
+;; ---- before the first run ----
+
+(define (at-first-run! world thunk)
+  "Call THUNK when WORLD runs next."
+  (world-set! world 'first-run (cons thunk (world-ref world 'first-run '()))))
+
+(define (start-first-run! world)
+  "Call what at-first-run! has gathered, oldest first."
+  (let ((thunks (reverse (world-ref world 'first-run '()))))
+    (world-set! world 'first-run '())
+    (for-each (lambda (thunk) (thunk)) thunks)))
+
+;; ---- how things are written ----
+
+(define-method (write (world <world>) port)
+  (format port "#<world ~a bodies>" (length (%world-bodies world))))
+
+(define-method (write (body <body>) port)
+  (format port "#<body ~a>" (%body-name body)))
+
+(define-method (write (view <view>) port)
+  (display "#<view>" port))
+
+(define-method (write (shape <shape>) port)
+  (format port "#<shape ~a>" (%shape-kind shape)))
+
+(define-method (write (collision <collision>) port)
+  (format port "#<collision ~a s ~a>" (%collision-time collision)
+          (map %body-name (%collision-bodies collision))))

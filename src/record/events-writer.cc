@@ -1,0 +1,21 @@
+// Writes every committed collision as a row of CSV.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "record/events-writer.h"
+
+namespace tw {
+
+EventsWriter::EventsWriter(const std::string& path)
+    : file_(path, "time,kind,body1,body2,x,y,z,nx,ny,nz,impulse") {}
+
+void EventsWriter::collision(const Collision& collision) {
+  file_.number(collision.time);
+  file_.text("collision");
+  file_.text(names_(collision.body1));
+  file_.text(names_(collision.body2));
+  for (const Vec3* v : {&collision.point, &collision.normal})
+    for (int i = 0; i < 3; ++i) file_.number((*v)[i]);
+  file_.number(collision.impulse);
+  file_.end_row();
+}
+
+}  // namespace tw

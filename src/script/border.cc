@@ -1,0 +1,220 @@
+// The border between C++ and Guile.
+//
+// Source: the pattern was measured before it was adopted: fourteen kinds of exit, none of which
+// skips a destructor.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "script/border.h"
+
+#include "kernel/callback.h"
+#include "script/primitive.h"
+#include "script/values.h"
+
+namespace tw {
+
+namespace {
+
+// Scheme procedures that errors.scm installs
+SCM raise_hook = SCM_BOOL_F;     // (message name value place backtrace) -> never returns
+SCM describe_hook = SCM_BOOL_F;  // (key args) -> #(message place backtrace)
+
+int call_depth = 0;
+// set only while our catch is in place: then an interrupt may throw
+bool interruptible = false;
+bool interrupt_requested = false;
+
+SCM key_interrupted() {
+  static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-interrupted"));
+  return key;
+}
+
+SCM key_escape() {
+  static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-escape"));
+  return key;
+}
+
+struct CallState : Live<LiveKind::border_call> {
+  SCM procedure;
+  std::span<SCM> arguments;
+  SCM result = SCM_UNDEFINED;
+  SCM description = SCM_BOOL_F;
+  SCM key = SCM_BOOL_F, key_arguments = SCM_EOL;
+  bool finished = false;
+  bool saw_exception = false;
+  bool interrupted = false;
+};
+
+// runs while something unwinds through us; an escape that is no exception becomes one, which
+// lands in our own catch
+void on_unwind(void* data) {
+  auto* state = static_cast<CallState*>(data);
+  interruptible = false;
+  if (!state->finished && !state->saw_exception) scm_throw(key_escape(), SCM_EOL);
+}
+
+SCM call_body(void* data) {
+  auto* state = static_cast<CallState*>(data);
+  scm_dynwind_begin(static_cast<scm_t_dynwind_flags>(0));
+  scm_dynwind_unwind_handler(on_unwind, data, static_cast<scm_t_wind_flags>(0));
+  interruptible = true;
+  state->result = scm_call_n(state->procedure, state->arguments.data(), state->arguments.size());
+  interruptible = false;
+  state->finished = true;
+  scm_dynwind_end();
+  return SCM_UNSPECIFIED;
+}
+
+SCM describe_body(void* data) {
+  auto* state = static_cast<CallState*>(data);
+  state->description = scm_call_2(describe_hook, state->key, state->key_arguments);
+  return SCM_UNSPECIFIED;
+}
+
+SCM ignore_handler(void*, SCM, SCM) {
+  return SCM_UNSPECIFIED;
+}
+
+// the stack still stands here: what the message needs of it is taken now
+SCM on_throw(void* data, SCM key, SCM arguments) {
+  auto* state = static_cast<CallState*>(data);
+  interruptible = false;
+  state->saw_exception = true;
+  state->interrupted = scm_is_eq(key, key_interrupted());
+  if (state->interrupted || scm_is_false(describe_hook)) return SCM_UNSPECIFIED;
+  state->key = key;
+  state->key_arguments = arguments;
+  return scm_c_catch(SCM_BOOL_T, describe_body, data, ignore_handler, nullptr, nullptr, nullptr);
+}
+
+SCM on_caught(void*, SCM, SCM) {
+  return SCM_UNSPECIFIED;
+}
+
+void* call_barrier(void* data) {
+  scm_c_catch(SCM_BOOL_T, call_body, data, on_caught, data, on_throw, data);
+  return data;
+}
+
+Place place_of(SCM place) {
+  return is_place(place) ? to_place(place) : Place{};
+}
+
+[[noreturn]] void throw_described(const CallState& state) {
+  const SCM d = state.description;
+  if (!scm_is_vector(d) || SCM_SIMPLE_VECTOR_LENGTH(d) != 3)
+    throw SchemeError("a Scheme procedure failed, and so did describing its error", {}, "");
+  throw SchemeError(text_of(SCM_SIMPLE_VECTOR_REF(d, 0)), place_of(SCM_SIMPLE_VECTOR_REF(d, 1)),
+                    text_of(SCM_SIMPLE_VECTOR_REF(d, 2)));
+}
+
+void set_pending(PendingError& pending, const std::string& message, const Place& place,
+                 const std::string& backtrace) {
+  pending.raised = true;
+  pending.message = from_string(message);
+  pending.place = from_place(place);
+  pending.backtrace = from_string(backtrace);
+}
+
+}  // namespace
+
+SCM call_scheme(SCM procedure, std::span<SCM> arguments) {
+  ++guile_calls;
+  CallState state;
+  state.procedure = procedure;
+  state.arguments = arguments;
+  ++call_depth;
+  const bool outer_interruptible = interruptible;
+  scm_c_with_continuation_barrier(call_barrier, &state);
+  interruptible = outer_interruptible;
+  --call_depth;
+  if (state.finished) return state.result;
+  if (state.interrupted) throw Interrupted();
+  throw_described(state);
+}
+
+bool inside_call() {
+  return call_depth > 0;
+}
+
+void require_outside_callbacks(const char* what) {
+  TW_REQUIRE(!inside_call(),
+             std::string(what) +
+                 " was used inside a callback or observer; expected only what the procedure is "
+                 "handed there, through its views");
+}
+
+PendingError run_catching(SCM (*body)(void*), void* data, SCM* result) noexcept {
+  PendingError pending;
+  try {
+    *result = body(data);
+  } catch (const BadValue& bad) {
+    set_pending(pending, bad.expected, {}, "");
+    pending.name = from_string(bad.name);
+    pending.value = bad.value;
+  } catch (const SchemeError& error) {
+    set_pending(pending, error.what(), error.place(), error.backtrace());
+  } catch (const UserError& error) {
+    set_pending(pending, error.what(), error.place(), "");
+  } catch (const Interrupted&) {
+    pending.raised = true;
+    pending.message = key_interrupted();
+  } catch (const std::exception& error) {
+    set_pending(pending, std::string("internal error: ") + error.what(), {}, "");
+  }
+  return pending;
+}
+
+void raise_pending(const PendingError& error) {
+  if (scm_is_eq(error.message, key_interrupted())) scm_throw(key_interrupted(), SCM_EOL);
+  scm_call_5(raise_hook, error.message, error.name, error.value, error.place, error.backtrace);
+  std::abort();  // the hook does not return
+}
+
+TW_PRIMITIVES(define_border)
+
+TW_PRIMITIVE(set_error_hooks, "%set-error-hooks!", (SCM raise, SCM describe),
+             "Install the procedures that raise and describe errors.") {
+  raise_hook = scm_gc_protect_object(raise);
+  describe_hook = scm_gc_protect_object(describe);
+  return SCM_UNSPECIFIED;
+}
+
+// Called by the handler of SIGINT.  Throws where nothing of C++ is on the stack between here and a
+// catch of ours; elsewhere it leaves a note for the next slice.
+static SCM interrupt() {
+  if (call_depth == 0 || interruptible) scm_throw(key_interrupted(), SCM_EOL);
+  interrupt_requested = true;
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(take_interrupt, "%take-interrupt!", (),
+             "Tell whether an interrupt is waiting, and forget it.") {
+  const bool requested = interrupt_requested;
+  interrupt_requested = false;
+  return scm_from_bool(requested);
+}
+
+TW_PRIMITIVE(is_inside_call, "%inside-callback?", (), "Is a callback or observer running?") {
+  return scm_from_bool(inside_call());
+}
+
+TW_PRIMITIVE(live_objects, "%live-objects", (),
+             "Return an alist of the numbers of living C++ objects by kind.") {
+  SCM list = SCM_EOL;
+  for (int i = live_kinds - 1; i >= 0; --i) {
+    const auto k = static_cast<std::size_t>(i);
+    list = scm_acons(scm_from_utf8_symbol(live_names[k]), scm_from_int64(live_counts[k]), list);
+  }
+  return list;
+}
+
+TW_PRIMITIVE(count_guile_calls, "%guile-calls", (),
+             "Return the number of calls from C++ into Guile.") {
+  return scm_from_int64(guile_calls);
+}
+
+void define_interrupt() {
+  scm_c_define_gsubr("%interrupt!", 0, 0, 0, reinterpret_cast<scm_t_subr>(interrupt));
+}
+
+}  // namespace tw

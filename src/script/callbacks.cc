@@ -1,0 +1,234 @@
+// Callbacks and observers that call Scheme procedures.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "script/callbacks.h"
+
+#include <cmath>
+#include <ctime>
+
+#include "script/frame-view.h"
+#include "script/primitive.h"
+#include "script/sides.h"
+#include "script/values.h"
+
+namespace tw {
+
+TW_PRIMITIVES(define_callbacks)
+
+namespace {
+
+// Arguments of one call, in memory that the garbage collector scans.
+class Arguments {
+ public:
+  explicit Arguments(std::size_t count) : count_(count), list_(local_) {
+    if (count > std::size(local_))
+      list_ = static_cast<SCM*>(scm_gc_malloc(count * sizeof(SCM), "arguments"));
+  }
+  SCM& operator[](std::size_t i) { return list_[i]; }
+  std::span<SCM> all() { return {list_, count_}; }
+
+ private:
+  std::size_t count_;
+  SCM local_[8] = {};
+  SCM* list_;
+};
+
+// Kills the views among the arguments when the call is over, however it ends.
+class ViewKiller {
+ public:
+  explicit ViewKiller(std::span<SCM> views) : views_(views) {}
+  ~ViewKiller() {
+    for (const SCM view : views_) kill_view(view);
+  }
+
+ private:
+  std::span<SCM> views_;
+};
+
+std::string body_names(const World& world, std::initializer_list<BodyId> ids) {
+  std::string text;
+  for (const BodyId id : ids) text += (text.empty() ? "" : ", ") + world.body(id).name;
+  return text;
+}
+
+std::string target_names(const World& world, std::span<StateView* const> targets) {
+  std::string text;
+  for (const StateView* view : targets)
+    text += (text.empty() ? "" : ", ") + world.body(view->body()).name;
+  return text;
+}
+
+double thread_cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Adds the time of a call to the world's statistics.  Reading the clock costs as much as a small
+// callback: after the first thousand calls every sixteenth stands for sixteen.
+class CallTimer {
+ public:
+  explicit CallTimer(const Hook& hook) : hook_(hook) {
+    if (!hook.timed) return;
+    static std::int64_t calls = 0;
+    ++calls;
+    weight_ = calls <= 1000 ? 1 : (calls % 16 == 0 ? 16 : 0);
+    if (weight_ > 0) start_ = thread_cpu_seconds();
+  }
+  ~CallTimer() {
+    if (weight_ > 0) hook_.box->callback_cpu_seconds += weight_ * (thread_cpu_seconds() - start_);
+  }
+  CallTimer(const CallTimer&) = delete;
+  CallTimer& operator=(const CallTimer&) = delete;
+
+ private:
+  const Hook& hook_;
+  double weight_ = 0, start_ = 0;
+};
+
+// Calls the procedure; an error is raised again with its circumstances.
+template <class Names>
+SCM call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names names) {
+  const CallTimer timer(hook);
+  try {
+    return call_scheme(hook.procedure, arguments);
+  } catch (const SchemeError& error) {
+    const Place& place = error.place().known() ? error.place() : hook.place;
+    const std::string made = hook.place.text();
+    throw SchemeError(std::string(error.what()) + "\n  in the " + hook.what +
+                          (made == place.text() ? "" : " made at " + made) + " at " + show(time) +
+                          " s, bodies: " + names(),
+                      place, error.backtrace());
+  }
+}
+
+Hook make_hook(SCM world, SCM procedure, const char* what, SCM place) {
+  require_outside_callbacks(what);
+  if (scm_is_false(scm_procedure_p(procedure))) throw BadValue{what, procedure, "a procedure"};
+  keep_with_world(world, procedure);
+  Hook hook;
+  hook.box = &to_world_box(world);
+  hook.procedure = procedure;
+  hook.what = what;
+  if (is_place(place)) hook.place = to_place(place);
+  return hook;
+}
+
+std::vector<BodyId> to_targets(SCM value) {
+  std::vector<BodyId> ids;
+  for (; scm_is_pair(value); value = SCM_CDR(value)) {
+    if (!is_body(SCM_CAR(value))) throw BadValue{"a target", SCM_CAR(value), "a body"};
+    ids.push_back(body_id(SCM_CAR(value)));
+  }
+  TW_REQUIRE(!ids.empty(), "a callback has no targets; expected a body or a list of bodies");
+  return ids;
+}
+
+std::optional<double> next_time(SCM result) {
+  if (scm_is_false(result)) return std::nullopt;
+  if (!scm_is_real(result))
+    throw UserError(
+        "a callback without a period returned no time; expected its next time in seconds, or #f");
+  return scm_to_double(result);
+}
+
+// When a callback that names no start is called first: at once, which is just after the present
+// where the present is committed already.
+double default_start(const World& world) {
+  return world.time() > 0 ? std::nextafter(world.time(), never) : 0;
+}
+
+}  // namespace
+
+std::optional<double> ScmCallback::run(double event_time, std::span<StateView* const> targets) {
+  Arguments arguments(targets.size() + 1);
+  arguments[0] = scm_from_double(event_time);
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    arguments[i + 1] = make_view(*targets[i], hook_.box->handle);
+  const ViewKiller killer(arguments.all().subspan(1));
+  const SCM result = call_hook(hook_, arguments.all(), event_time,
+                               [&] { return target_names(hook_.box->world, targets); });
+  if (periodic_) return std::nullopt;
+  return next_time(result);
+}
+
+void ScmCollisionCallback::run(const Collision& collision, bool reversed, StateView& a,
+                               StateView& b) {
+  const SCM world = hook_.box->handle;
+  Arguments arguments(3);
+  arguments[0] = from_collision(collision, reversed, world);
+  arguments[1] = make_view(a, world);
+  arguments[2] = make_view(b, world);
+  const ViewKiller killer(arguments.all().subspan(1));
+  call_hook(hook_, arguments.all(), collision.time, [&] {
+    return body_names(hook_.box->world, {a.body(), b.body()});
+  });
+}
+
+void ScmFrameObserver::frame(long index, double frame_time, std::span<const BodyPose> poses) {
+  const SCM world = hook_.box->handle;
+  std::vector<FrameView> views;
+  views.reserve(poses.size());
+  for (const BodyPose& pose : poses) views.emplace_back(pose);
+  Arguments handles(poses.size());
+  SCM list = SCM_EOL;
+  for (std::size_t i = views.size(); i-- > 0;) {
+    handles[i] = make_view(views[i], world);
+    list = scm_cons(handles[i], list);
+  }
+  const ViewKiller killer(handles.all());
+  SCM arguments[] = {scm_list_3(scm_from_double(frame_time), scm_from_long(index), list)};
+  call_hook(hook_, arguments, frame_time, [] { return std::string("all"); });
+}
+
+// ---- registering ----
+
+TW_PRIMITIVE(add_callback, "%add-callback!",
+             (SCM world, SCM targets, SCM procedure, SCM start, SCM period, SCM place),
+             "Register a callback on a list of bodies.") {
+  CallbackDef def;
+  Hook hook = make_hook(world, procedure, "callback", place);
+  hook.timed = true;
+  def.targets = to_targets(targets);
+  def.start = scm_is_true(start) ? to_finite(start, "start") : default_start(to_world(world));
+  def.period = to_optional_real(period, "period");
+  def.callback = std::make_shared<ScmCallback>(hook, def.period.has_value());
+  def.name = "callback";
+  def.place = hook.place;
+  return scm_from_uint64(to_world(world).add_callback(def));
+}
+
+TW_PRIMITIVE(add_collision_callback, "%on-collision!",
+             (SCM world, SCM a, SCM b, SCM procedure, SCM place),
+             "Register a callback on collisions.") {
+  CollisionCallbackDef def;
+  Hook hook = make_hook(world, procedure, "collision callback", place);
+  hook.timed = true;
+  def.a = to_side(a, "the first side");
+  def.b = to_side(b, "the second side");
+  def.callback = std::make_shared<ScmCollisionCallback>(hook);
+  def.name = "collision callback";
+  def.place = hook.place;
+  to_world(world).add_collision_callback(def);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(observe_collisions, "%observe-collisions!", (SCM world, SCM procedure, SCM place),
+             "Call a procedure with every committed collision.") {
+  const auto hook = std::make_shared<Hook>(make_hook(world, procedure, "observer", place));
+  to_world(world).add_collision_observer([hook](const Collision& collision) {
+    SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
+    call_hook(*hook, arguments, collision.time, [&] {
+      return body_names(hook->box->world, {collision.body1, collision.body2});
+    });
+  });
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(observe_frames, "%observe-frames!", (SCM world, SCM procedure, SCM fps, SCM place),
+             "Call a procedure with every committed frame.") {
+  const Hook hook = make_hook(world, procedure, "observer", place);
+  to_world(world).add_frame_sink(std::make_shared<ScmFrameObserver>(hook), to_real(fps, "fps"));
+  return SCM_UNSPECIFIED;
+}
+
+}  // namespace tw

@@ -1,0 +1,205 @@
+// Scheme primitives: drawing frames and single pictures.
+//
+// Without drawing compiled in only %drawing? is there, and says so.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "script/primitive.h"
+#include "script/types.h"
+#include "script/values.h"
+
+#ifdef TW_RENDER
+#include "render/whole-file.h"
+#include "script/frame-drawer.h"
+#endif
+
+namespace tw {
+
+TW_PRIMITIVES(define_drawing_primitives)
+
+#ifndef TW_RENDER
+
+TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") {
+  return SCM_BOOL_F;
+}
+
+void define_drawing() {
+  define_drawing_primitives();
+}
+
+#else
+
+TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") {
+  return SCM_BOOL_T;
+}
+
+namespace {
+
+struct DrawerBox : Live<LiveKind::recorder> {
+  FrameSettings settings;
+  std::shared_ptr<FrameDrawer> drawer;  // once attached
+};
+
+SCM drawer_type = SCM_BOOL_F;
+
+void finalize_drawer(SCM object) {
+  delete static_cast<DrawerBox*>(scm_foreign_object_ref(object, 0));
+  scm_foreign_object_set_x(object, 0, nullptr);
+}
+
+DrawerBox& to_drawer(SCM object) {
+  if (!SCM_STRUCTP(object) || !scm_is_eq(SCM_STRUCT_VTABLE(object), drawer_type))
+    throw BadValue{"the drawer", object, "a drawer of frames"};
+  return *static_cast<DrawerBox*>(scm_foreign_object_ref(object, 0));
+}
+
+// The value of a symbol in an alist, #f if it is not there.
+SCM entry(SCM alist, const char* name) {
+  return scm_assq_ref(alist, scm_from_utf8_symbol(name));
+}
+
+template <class Target>
+void set_vec3(Target& target, SCM alist, const char* name) {
+  const SCM value = entry(alist, name);
+  if (scm_is_true(value)) target = to_vec3(value, name);
+}
+
+Camera to_camera(SCM alist) {
+  Camera camera;
+  set_vec3(camera.eye, alist, "eye");
+  set_vec3(camera.target, alist, "target");
+  set_vec3(camera.up, alist, "up");
+  if (scm_is_true(entry(alist, "fov"))) camera.fov = to_real(entry(alist, "fov"), "fov");
+  if (is_body(entry(alist, "follow"))) camera.follow = body_id(entry(alist, "follow"));
+  return camera;
+}
+
+Light to_light(SCM alist) {
+  Light light;
+  set_vec3(light.direction, alist, "direction");
+  set_vec3(light.color, alist, "color");
+  return light;
+}
+
+Sky to_sky(SCM alist) {
+  Sky sky;
+  set_vec3(sky.zenith, alist, "zenith");
+  set_vec3(sky.horizon, alist, "horizon");
+  set_vec3(sky.ground, alist, "ground");
+  if (scm_is_true(entry(alist, "fog"))) sky.fog = to_real(entry(alist, "fog"), "fog");
+  return sky;
+}
+
+Quality to_quality(SCM value) {
+  const std::string text = to_symbol_name(value, "quality");
+  if (text == "draft") return Quality::draft;
+  if (text == "normal") return Quality::normal;
+  if (text == "best") return Quality::best;
+  throw BadValue{"quality", value, "draft, normal or best"};
+}
+
+int to_side(SCM value) {
+  const long side = to_integer(value, "a side of the picture");
+  TW_REQUIRE(side >= 1 && side <= 16384,
+             "a side of the picture is " + std::to_string(side) + "; expected 1 to 16384 pixels");
+  return static_cast<int>(side);
+}
+
+RenderSettings to_render_settings(SCM width, SCM height, SCM quality) {
+  RenderSettings settings;
+  settings.size = {to_side(width), to_side(height)};
+  settings.quality = to_quality(quality);
+  check_size(settings.size, settings.quality);
+  return settings;
+}
+
+// `looks` is (camera light sky), each an alist.
+DrawScene scene_of(const World& world, SCM looks) {
+  DrawScene scene = draw_scene(world);
+  scene.camera = to_camera(SCM_CAR(looks));
+  scene.light = to_light(SCM_CADR(looks));
+  scene.sky = to_sky(SCM_CADDR(looks));
+  return scene;
+}
+
+// Frame k is at k/fps: the first that is not before the world's time.
+long first_frame(const World& world, double fps) {
+  auto k = static_cast<long>(std::floor(world.time() * fps));
+  while (static_cast<double>(k) / fps < world.time()) ++k;
+  return k;
+}
+
+std::vector<std::string> hud_lines(SCM title) {
+  if (!scm_is_string(title)) return {};
+  return {text_of(title)};
+}
+
+}  // namespace
+
+// Refuses at once what no run could draw; the drawing library is not opened yet.
+TW_PRIMITIVE(open_frames, "%open-frames", (SCM frames, SCM width, SCM height, SCM quality),
+             "Prepare drawing frames into a folder.") {
+  auto box = std::make_unique<DrawerBox>();
+  box->settings.frames = to_string(frames, "the folder for frames");
+  box->settings.render = to_render_settings(width, height, quality);
+  make_writable_folder(FrameName(box->settings.frames).folder());
+  return scm_make_foreign_object_1(drawer_type, box.release());
+}
+
+TW_PRIMITIVE(attach_frames, "%attach-frames!",
+             (SCM world, SCM object, SCM fps, SCM looks, SCM title),
+             "Let a world feed the drawer.") {
+  World& w = to_world(world);
+  DrawerBox& box = to_drawer(object);
+  const double rate = to_real(fps, "fps");
+  box.settings.first_frame = first_frame(w, rate);
+  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(w, looks), hud_lines(title));
+  w.add_frame_sink(box.drawer, rate);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(frames_written, "%frames-written", (SCM object), "Return how many are on disk.") {
+  const DrawerBox& box = to_drawer(object);
+  return scm_from_long(box.drawer ? box.drawer->pipeline().frames_written() : 0);
+}
+
+TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object),
+             "Wait until all frames are written.") {
+  DrawerBox& box = to_drawer(object);
+  const std::shared_ptr<FrameDrawer> drawer = std::move(box.drawer);
+  box.drawer.reset();
+  if (!drawer) return SCM_UNSPECIFIED;
+  WorldBox& world_box = to_world_box(world);
+  world_box.world.remove_frame_sink(drawer.get());
+  world_box.frames = std::max<std::int64_t>(world_box.frames, drawer->frames());
+  drawer->pipeline().finish();
+  world_box.draw_cpu_seconds += drawer->pipeline().draw_cpu_seconds();
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(render, "%render!",
+             (SCM world, SCM file, SCM width, SCM height, SCM quality, SCM looks, SCM title),
+             "Draw the world as it is now.") {
+  require_outside_callbacks("render!");
+  const World& w = to_world(world);
+  const DrawScene scene = scene_of(w, looks);
+  DrawFrame frame;
+  frame.time = w.time();
+  for (const DrawBody& body : scene.bodies) frame.poses.push_back(body.pose);
+  frame.hud = hud_lines(title);
+  render_image(to_string(file, "the picture's file"), to_render_settings(width, height, quality),
+               scene, frame);
+  return SCM_UNSPECIFIED;
+}
+
+void define_drawing() {
+  define_drawing_primitives();
+  drawer_type = scm_gc_protect_object(scm_make_foreign_object_type(
+      scm_from_utf8_symbol("<drawer>"), scm_list_1(scm_from_utf8_symbol("box")), finalize_drawer));
+}
+
+#endif
+
+}  // namespace tw

@@ -1,0 +1,54 @@
+// Feeds the frames of a run to the drawing thread.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#ifdef TW_RENDER
+#include "script/frame-drawer.h"
+
+namespace tw {
+
+DrawBody draw_body(const World& world, BodyId id) {
+  const BodyInfo& info = world.body(id);
+  const BodyState state = world.state(id);
+  DrawBody body;
+  body.shape = info.shape;
+  body.pose = {state.position, state.orientation};
+  body.color = info.color;
+  body.fixed = info.kind == BodyKind::fixed;
+  body.visible = info.visible;
+  body.name = info.name;
+  return body;
+}
+
+DrawScene draw_scene(const World& world) {
+  DrawScene scene;
+  for (BodyId id = 0; id < world.body_count(); ++id) scene.bodies.push_back(draw_body(world, id));
+  return scene;
+}
+
+static std::vector<Pose> poses_of(const DrawScene& scene) {
+  std::vector<Pose> poses;
+  for (const DrawBody& body : scene.bodies) poses.push_back(body.pose);
+  return poses;
+}
+
+FrameDrawer::FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
+                         std::vector<std::string> hud)
+    : world_(world), poses_(poses_of(scene)), hud_(std::move(hud)), pipeline_(settings, scene) {}
+
+void FrameDrawer::frame(long, double frame_time, std::span<const BodyPose> poses) {
+  ++frames_;
+  DrawFrame frame;
+  // bodies that came since the frame before
+  for (auto id = static_cast<BodyId>(poses_.size()); id < world_.body_count(); ++id) {
+    frame.added.push_back(draw_body(world_, id));
+    poses_.push_back(frame.added.back().pose);
+  }
+  for (const BodyPose& pose : poses)
+    poses_[pose.body] = {pose.state.position, pose.state.orientation};
+  frame.time = frame_time;
+  frame.poses = poses_;
+  frame.hud = hud_;
+  pipeline_.submit(std::move(frame));
+}
+
+}  // namespace tw
+#endif

@@ -1,0 +1,37 @@
+// Feeds the frames of a run to the drawing thread.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernel/world.h"
+#include "render/frame-pipeline.h"
+
+namespace tw {
+
+class FrameDrawer : public FrameSink {
+ public:
+  // Opens the drawing library.  `scene` holds the world's bodies at present.
+  FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
+              std::vector<std::string> hud);
+
+  void frame(long index, double frame_time, std::span<const BodyPose> poses) override;
+  FramePipeline& pipeline() { return pipeline_; }
+  // How many frames have come so far.
+  long frames() const { return frames_; }
+
+ private:
+  const World& world_;
+  std::vector<Pose> poses_;  // by body, as last known
+  std::vector<std::string> hud_;
+  long frames_ = 0;
+  FramePipeline pipeline_;
+};
+
+// All bodies of a world as they are now; camera, light and sky are the defaults.
+DrawScene draw_scene(const World& world);
+DrawBody draw_body(const World& world, BodyId id);
+
+}  // namespace tw

@@ -1,0 +1,120 @@
+// User slots that hold Scheme values.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "script/scm-slots.h"
+
+#include <gc/gc.h>
+
+#include <bit>
+#include <cstring>
+#include <new>
+
+#include "script/border.h"
+#include "script/values.h"
+
+namespace tw {
+
+namespace {
+
+// Mixes one word into a hash: the finalizer of SplitMix64 over their sum.
+std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
+  std::uint64_t z = hash * 0x9e3779b97f4a7c15ull + word + 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
+// The numbers of a value in order; everything else adds nothing.
+std::uint64_t hash_value(std::uint64_t hash, SCM value) {
+  if (scm_is_real(value)) {
+    const double number = scm_to_double(value);
+    return mix(hash, std::bit_cast<std::uint64_t>(number));
+  }
+  if (scm_is_vector(value)) {
+    for (std::size_t i = 0; i < SCM_SIMPLE_VECTOR_LENGTH(value); ++i)
+      hash = hash_value(hash, SCM_SIMPLE_VECTOR_REF(value, i));
+    return hash;
+  }
+  if (!scm_is_pair(value)) return hash;
+  for (; scm_is_pair(value); value = SCM_CDR(value)) hash = hash_value(hash, SCM_CAR(value));
+  return hash_value(hash, value);
+}
+
+}  // namespace
+
+SCM frozen_copy(SCM value) {
+  if (scm_is_pair(value)) {
+    // along the spine by a loop, so that long lists don't need a deep stack
+    const SCM head = scm_cons(frozen_copy(SCM_CAR(value)), SCM_EOL);
+    SCM tail = head;
+    for (value = SCM_CDR(value); scm_is_pair(value); value = SCM_CDR(value)) {
+      const SCM next = scm_cons(frozen_copy(SCM_CAR(value)), SCM_EOL);
+      SCM_SETCDR(tail, next);
+      tail = next;
+    }
+    SCM_SETCDR(tail, frozen_copy(value));
+    return head;
+  }
+  if (scm_is_vector(value)) {
+    const std::size_t size = SCM_SIMPLE_VECTOR_LENGTH(value);
+    const SCM copy = scm_c_make_vector(size, SCM_BOOL_F);
+    for (std::size_t i = 0; i < size; ++i)
+      SCM_SIMPLE_VECTOR_SET(copy, i, frozen_copy(SCM_SIMPLE_VECTOR_REF(value, i)));
+    return copy;
+  }
+  if (scm_is_string(value)) return scm_string_copy(value);
+  return value;
+}
+
+ScmSlots::ScmSlots(std::shared_ptr<const Names> names) : names_(std::move(names)) {
+  values_ = static_cast<SCM*>(GC_MALLOC_UNCOLLECTABLE(names_->size() * sizeof(SCM) + 1));
+  if (!values_) throw std::bad_alloc();
+}
+
+ScmSlots::~ScmSlots() {
+  GC_FREE(values_);
+}
+
+SlotsPtr ScmSlots::from_alist(SCM alist) {
+  constexpr const char* expected = "an association list like '((bounces . 0)), each name once";
+  auto names = std::make_shared<Names>();
+  for (SCM rest = alist; !scm_is_null(rest); rest = SCM_CDR(rest)) {
+    if (!scm_is_pair(rest) || !scm_is_pair(SCM_CAR(rest)) || !scm_is_symbol(SCM_CAAR(rest)))
+      throw BadValue{"slots", alist, expected};
+    for (const SCM known : *names)
+      if (scm_is_eq(known, SCM_CAAR(rest))) throw BadValue{"slots", alist, expected};
+    names->push_back(SCM_CAAR(rest));
+  }
+  const std::shared_ptr<ScmSlots> slots(new ScmSlots(names));
+  int index = 0;
+  for (SCM rest = alist; !scm_is_null(rest); rest = SCM_CDR(rest))
+    slots->values_[index++] = frozen_copy(SCM_CDAR(rest));
+  return slots;
+}
+
+int ScmSlots::find(SCM name) const {
+  for (std::size_t i = 0; i < names_->size(); ++i)
+    if (scm_is_eq((*names_)[i], name)) return static_cast<int>(i);
+  return -1;
+}
+
+SlotsPtr ScmSlots::with(int index, SCM value) const {
+  const std::shared_ptr<ScmSlots> copy(new ScmSlots(names_));
+  std::memcpy(copy->values_, values_, names_->size() * sizeof(SCM));
+  copy->values_[index] = frozen_copy(value);
+  return copy;
+}
+
+std::uint64_t ScmSlots::hash() const {
+  std::uint64_t hash = names_->size();
+  for (std::size_t i = 0; i < names_->size(); ++i) hash = hash_value(mix(hash, i), values_[i]);
+  return hash;
+}
+
+std::string ScmSlots::names_text() const {
+  std::string text;
+  for (const SCM name : *names_)
+    text += (text.empty() ? "" : ", ") + text_of(scm_symbol_to_string(name));
+  return text;
+}
+
+}  // namespace tw

@@ -1,0 +1,50 @@
+// User slots that hold Scheme values.
+//
+// Invariants: names and their order are fixed when the body is added; values are never changed in
+// place, setting one makes a new ScmSlots.  Values stand in memory that the garbage collector
+// scans as a root and never frees by itself; the destructor frees it.
+// Cost: a copy with one value set 0.1-0.2 us.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <libguile.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernel/slots.h"
+#include "script/live.h"
+
+namespace tw {
+
+class ScmSlots : public Slots, Live<LiveKind::slots> {
+ public:
+  // From an association list of symbols and values.  Errors: BadValue.
+  static SlotsPtr from_alist(SCM alist);
+  ~ScmSlots() override;
+  ScmSlots(const ScmSlots&) = delete;
+  ScmSlots& operator=(const ScmSlots&) = delete;
+
+  // Index of a name, or -1.
+  int find(SCM name) const;
+  SCM value(int index) const { return values_[index]; }
+  SlotsPtr with(int index, SCM value) const;
+  // Over the numbers, also those inside pairs and vectors; other values don't count.
+  std::uint64_t hash() const override;
+  // "bounces, energy": for messages.
+  std::string names_text() const;
+  std::size_t size() const { return names_->size(); }
+
+ private:
+  using Names = std::vector<SCM>;  // interned symbols, kept by the world's table
+  explicit ScmSlots(std::shared_ptr<const Names> names);
+  std::shared_ptr<const Names> names_;
+  SCM* values_;
+};
+
+// A copy that shares nothing that could be changed: pairs, vectors and strings are copied.
+SCM frozen_copy(SCM value);
+
+}  // namespace tw

@@ -1,0 +1,80 @@
+// Scheme primitives: shapes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "geometry/shape.h"
+
+#include "script/primitive.h"
+#include "script/types.h"
+#include "script/values.h"
+
+namespace tw {
+
+TW_PRIMITIVES(define_shapes)
+
+TW_PRIMITIVE(sphere, "%sphere", (SCM radius), "Return a sphere.") {
+  return from_shape(make_sphere(to_real(radius, "radius")));
+}
+
+TW_PRIMITIVE(box, "%box", (SCM x, SCM y, SCM z), "Return a box with full edges x, y, z.") {
+  return from_shape(make_box({to_real(x, "edge x"), to_real(y, "edge y"), to_real(z, "edge z")}));
+}
+
+TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.") {
+  return from_shape(make_hull(to_points(points, "points")));
+}
+
+TW_PRIMITIVE(half_space, "%half-space", (SCM normal, SCM offset),
+             "Return the half-space where normal.x <= offset.") {
+  return from_shape(make_half_space(to_vec3(normal, "normal"), to_finite(offset, "offset")));
+}
+
+TW_PRIMITIVE(shape_union, "%union", (SCM list), "Return the union of a list of shapes.") {
+  std::vector<ShapePtr> shapes;
+  for (; scm_is_pair(list); list = SCM_CDR(list))
+    shapes.push_back(to_shape(SCM_CAR(list), "a part of the union"));
+  TW_REQUIRE(!shapes.empty(), "the union has no parts; expected at least one shape");
+  return from_shape(make_union(shapes));
+}
+
+TW_PRIMITIVE(placed, "%placed", (SCM shape, SCM position, SCM orientation),
+             "Return the shape moved within the body's frame.") {
+  Pose pose;
+  if (scm_is_true(position)) pose.p = to_vec3(position, "position");
+  if (scm_is_true(orientation)) pose.q = to_quat(orientation, "orientation");
+  return from_shape(place_shape(to_shape(shape, "the shape to place"), pose));
+}
+
+// The mass properties of a bounded shape.
+static const MassProperties& bounded_mass(const ShapePtr& shape) {
+  TW_REQUIRE(shape->bounded(), "the shape is a " + shape->kind_name() +
+                                   ", which has no bounds; expected a bounded shape");
+  return shape->mass_properties();
+}
+
+TW_PRIMITIVE(shape_volume, "%shape-volume", (SCM shape), "Return the volume in cubic metres.") {
+  return scm_from_double(bounded_mass(to_shape(shape, "the shape")).volume);
+}
+
+TW_PRIMITIVE(shape_inertia, "%shape-inertia", (SCM shape),
+             "Return the inertia about the centroid at density 1, as three rows.") {
+  return from_matrix(bounded_mass(to_shape(shape, "the shape")).inertia);
+}
+
+TW_PRIMITIVE(shape_centroid, "%shape-centroid", (SCM shape), "Return the centroid.") {
+  return from_vec3(bounded_mass(to_shape(shape, "the shape")).centroid);
+}
+
+TW_PRIMITIVE(shape_kind, "%shape-kind", (SCM shape), "Return one word that names the shape.") {
+  return from_string(to_shape(shape, "the shape")->kind_name());
+}
+
+TW_PRIMITIVE(rotation, "%rotation", (SCM axis, SCM angle),
+             "Return the quaternion that rotates by angle about axis.") {
+  const Vec3 a = to_vec3(axis, "axis");
+  const double half = 0.5 * to_finite(angle, "angle");
+  const double norm = scaled_norm(a);
+  if (!(norm > 0)) throw BadValue{"axis", axis, "a vector #(x y z) that is not zero"};
+  const Vec3 v = std::sin(half) / norm * a;
+  return from_quat(Quat(std::cos(half), v.x(), v.y(), v.z()));
+}
+
+}  // namespace tw

@@ -1,0 +1,14 @@
+// Sides of contact rules and collision callbacks as Scheme writes them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <libguile.h>
+
+#include "dynamics/contact-parameters.h"
+
+namespace tw {
+
+// A body, a material (symbol), or #t for all.
+ContactSide to_side(SCM value, const char* name);
+
+}  // namespace tw

@@ -1,0 +1,201 @@
+// The Scheme types of the binding.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "script/types.h"
+
+#include "script/border.h"
+#include "script/primitive.h"
+
+namespace tw {
+
+namespace {
+
+SCM world_type, body_type, view_type, shape_type, motion_type, collision_type;
+
+struct ShapeBox : Live<LiveKind::shape> {
+  ShapePtr shape;
+};
+
+struct MotionBox : Live<LiveKind::motion> {
+  MotionPtr motion;
+};
+
+template <class Box>
+void finalize_box(SCM object) {
+  auto* box = static_cast<Box*>(scm_foreign_object_ref(object, 0));
+  scm_foreign_object_set_x(object, 0, nullptr);
+  delete box;
+}
+
+SCM make_type(const char* name, std::initializer_list<const char*> fields,
+              scm_t_struct_finalize finalizer) {
+  SCM list = SCM_EOL;
+  for (const char* field : fields) list = scm_cons(scm_from_utf8_symbol(field), list);
+  const SCM type =
+      scm_make_foreign_object_type(scm_from_utf8_symbol(name), scm_reverse(list), finalizer);
+  scm_c_define(name, type);
+  scm_c_export(name, nullptr);
+  return scm_gc_protect_object(type);
+}
+
+bool has_type(SCM object, SCM type) {
+  return SCM_STRUCTP(object) && scm_is_eq(SCM_STRUCT_VTABLE(object), type);
+}
+
+void* field(SCM object, std::size_t index) {
+  return scm_foreign_object_ref(object, index);
+}
+
+SCM scm_field(SCM object, std::size_t index) {
+  return SCM_PACK_POINTER(scm_foreign_object_ref(object, index));
+}
+
+}  // namespace
+
+// ---- worlds ----
+
+bool is_world(SCM object) {
+  return has_type(object, world_type);
+}
+
+WorldBox& to_world_box(SCM object) {
+  if (!is_world(object)) throw BadValue{"the world", object, "a world, as (make-world) returns"};
+  return *static_cast<WorldBox*>(field(object, 0));
+}
+
+SCM make_world_handle() {
+  const SCM table = scm_c_make_hash_table(31);
+  auto* box = new WorldBox;
+  const SCM handle = scm_make_foreign_object_2(world_type, box, SCM_UNPACK_POINTER(table));
+  box->handle = handle;
+  return handle;
+}
+
+SCM world_table(SCM world) {
+  return scm_field(world, 1);
+}
+
+void keep_with_world(SCM world, SCM object) {
+  static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("kept"));
+  const SCM table = world_table(world);
+  scm_hashq_set_x(table, key, scm_cons(object, scm_hashq_ref(table, key, SCM_EOL)));
+}
+
+// ---- bodies ----
+
+bool is_body(SCM object) {
+  return has_type(object, body_type);
+}
+
+BodyId body_id(SCM body) {
+  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(body, 0)));
+}
+
+SCM body_world(SCM body) {
+  return scm_field(body, 1);
+}
+
+SCM from_body(SCM world, BodyId id) {
+  const SCM table = world_table(world);
+  const SCM key = scm_from_uint32(id);
+  SCM body = scm_hashv_ref(table, key, SCM_BOOL_F);
+  if (scm_is_true(body)) return body;
+  body = scm_make_foreign_object_2(body_type, reinterpret_cast<void*>(std::uintptr_t{id}),
+                                   SCM_UNPACK_POINTER(world));
+  scm_hashv_set_x(table, key, body);
+  return body;
+}
+
+// ---- views ----
+
+bool is_view(SCM object) {
+  return has_type(object, view_type);
+}
+
+StateView& to_view(SCM view) {
+  auto* pointer = static_cast<StateView*>(field(view, 0));
+  TW_REQUIRE(pointer,
+             "this view is dead: it was used after its callback returned; expected a view only "
+             "during the call that was handed it");
+  return *pointer;
+}
+
+SCM view_world(SCM view) {
+  return scm_field(view, 1);
+}
+
+SCM make_view(StateView& view, SCM world) {
+  ++live_counts[static_cast<std::size_t>(LiveKind::view)];
+  return scm_make_foreign_object_2(view_type, &view, SCM_UNPACK_POINTER(world));
+}
+
+void kill_view(SCM view) {
+  --live_counts[static_cast<std::size_t>(LiveKind::view)];
+  scm_foreign_object_set_x(view, 0, nullptr);
+}
+
+// ---- shapes, motions ----
+
+bool is_shape(SCM object) {
+  return has_type(object, shape_type);
+}
+
+ShapePtr to_shape(SCM object, const char* name) {
+  if (!is_shape(object)) throw BadValue{name, object, "a shape, as (sphere 0.1) returns"};
+  return static_cast<ShapeBox*>(field(object, 0))->shape;
+}
+
+SCM from_shape(ShapePtr shape) {
+  auto* box = new ShapeBox;
+  box->shape = std::move(shape);
+  return scm_make_foreign_object_1(shape_type, box);
+}
+
+bool is_motion(SCM object) {
+  return has_type(object, motion_type);
+}
+
+MotionPtr to_motion(SCM object, const char* name) {
+  if (!is_motion(object))
+    throw BadValue{name, object, "keyframes, as (keyframes '((0 #(0 0 0)) ...)) returns"};
+  return static_cast<MotionBox*>(field(object, 0))->motion;
+}
+
+SCM from_motion(MotionPtr motion, SCM kept) {
+  auto* box = new MotionBox;
+  box->motion = std::move(motion);
+  return scm_make_foreign_object_2(motion_type, box, SCM_UNPACK_POINTER(kept));
+}
+
+// ---- collisions ----
+
+bool is_collision(SCM object) {
+  return has_type(object, collision_type);
+}
+
+const CollisionCopy& to_collision(SCM object) {
+  if (!is_collision(object))
+    throw BadValue{"the collision", object, "the collision that a procedure is handed"};
+  return *static_cast<const CollisionCopy*>(field(object, 0));
+}
+
+SCM collision_world(SCM object) {
+  return scm_field(object, 1);
+}
+
+SCM from_collision(const Collision& collision, bool reversed, SCM world) {
+  static_assert(std::is_trivially_destructible_v<CollisionCopy>);
+  void* memory = scm_gc_malloc_pointerless(sizeof(CollisionCopy), "collision");
+  return scm_make_foreign_object_2(collision_type, new (memory) CollisionCopy{collision, reversed},
+                                   SCM_UNPACK_POINTER(world));
+}
+
+void define_types() {
+  world_type = make_type("<world>", {"box", "table"}, finalize_box<WorldBox>);
+  body_type = make_type("<body>", {"id", "world"}, nullptr);
+  view_type = make_type("<view>", {"state", "world"}, nullptr);
+  shape_type = make_type("<shape>", {"box"}, finalize_box<ShapeBox>);
+  motion_type = make_type("<motion>", {"box", "kept"}, finalize_box<MotionBox>);
+  collision_type = make_type("<collision>", {"copy", "world"}, nullptr);
+}
+
+}  // namespace tw

@@ -1,0 +1,85 @@
+// The Scheme types of the binding: foreign objects, and who owns what.
+//
+// Values are copies, identities are handles.  A *world* owns its tw::World; a *body* is a handle
+// that keeps its world alive (one handle per body, so `eq?` works); a *shape* and a *motion* hold
+// counted references; a *view* points into the kernel during one call and is dead afterwards; a
+// *collision* and a *frame* are copies.  Procedures registered with a world are kept alive by the
+// world's table, in Guile's heap, so that a world nobody refers to is collected.
+//
+// Invariants: finalizers only drop references: Guile may run them in another thread.
+// Cost: a type check 2 ns.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <libguile.h>
+
+#include "dynamics/motion.h"
+#include "geometry/shape.h"
+#include "kernel/callback.h"
+#include "kernel/world.h"
+#include "script/live.h"
+
+namespace tw {
+
+// A world and its Scheme handle (not counted: the handle owns the box).
+struct WorldBox : Live<LiveKind::world> {
+  World world;
+  SCM handle = SCM_BOOL_F;
+  // the binding's own statistics
+  std::int64_t guile_calls = 0;
+  std::int64_t frames = 0;  // that recorders took; closed recorders count
+  double callback_cpu_seconds = 0, draw_cpu_seconds = 0;
+};
+
+// ---- worlds ----
+bool is_world(SCM object);
+WorldBox& to_world_box(SCM object);
+inline World& to_world(SCM object) {
+  return to_world_box(object).world;
+}
+SCM make_world_handle();
+// The world's hash table for whatever Scheme keeps with it.
+SCM world_table(SCM world);
+// Keeps a Scheme object alive as long as the world.
+void keep_with_world(SCM world, SCM object);
+
+// ---- bodies ----
+bool is_body(SCM object);
+BodyId body_id(SCM body);
+SCM body_world(SCM body);
+// The handle of a body, always the same object.
+SCM from_body(SCM world, BodyId id);
+
+// ---- views ----
+bool is_view(SCM object);
+// BadValue-like UserError if the view is dead.
+StateView& to_view(SCM view);
+SCM view_world(SCM view);
+SCM make_view(StateView& view, SCM world);
+void kill_view(SCM view);
+
+// ---- shapes, motions ----
+bool is_shape(SCM object);
+ShapePtr to_shape(SCM object, const char* name);
+SCM from_shape(ShapePtr shape);
+bool is_motion(SCM object);
+MotionPtr to_motion(SCM object, const char* name);
+// `kept`: a Scheme object that the motion needs.
+SCM from_motion(MotionPtr motion, SCM kept = SCM_BOOL_F);
+
+// ---- collisions ----
+bool is_collision(SCM object);
+// `reversed`: the first side is collision.body2.
+struct CollisionCopy {
+  Collision collision;
+  bool reversed = false;
+};
+const CollisionCopy& to_collision(SCM object);
+SCM collision_world(SCM object);
+SCM from_collision(const Collision& collision, bool reversed, SCM world);
+
+// Makes the types and defines <world> and its like in the current module.
+void define_types();
+
+}  // namespace tw

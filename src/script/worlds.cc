@@ -1,0 +1,176 @@
+// Scheme primitives: worlds, their settings, and running them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "record/statistics-json.h"
+#include "script/primitive.h"
+#include "script/types.h"
+#include "script/values.h"
+
+namespace tw {
+
+TW_PRIMITIVES(define_worlds)
+
+namespace {
+
+WorldBox& quiet_box(SCM world, const char* what) {
+  require_outside_callbacks(what);
+  return to_world_box(world);
+}
+
+World& quiet_world(SCM world, const char* what) {
+  return quiet_box(world, what).world;
+}
+
+// Adds the calls into Guile that happen while it lives to the world's statistics.
+class CallCounter {
+ public:
+  explicit CallCounter(WorldBox& box) : box_(box), before_(guile_calls) {}
+  ~CallCounter() { box_.guile_calls += guile_calls - before_; }
+  CallCounter(const CallCounter&) = delete;
+  CallCounter& operator=(const CallCounter&) = delete;
+
+ private:
+  WorldBox& box_;
+  std::int64_t before_;
+};
+
+// The kernel's statistics and the binding's own.
+StatisticsTable all_statistics(const WorldBox& box) {
+  StatisticsTable table = box.world.statistics();
+  // the kernel knows only the sinks that are still attached
+  double cpu_seconds = 0;
+  for (auto& [name, value] : table) {
+    if (name == "cpu_seconds") cpu_seconds = std::get<double>(value);
+    if (box.frames == 0) continue;
+    if (name == "frames") value = box.frames;
+    if (name == "cpu_seconds_per_frame") value = cpu_seconds / static_cast<double>(box.frames);
+  }
+  table.emplace_back("guile_calls", box.guile_calls);
+  table.emplace_back("callback_cpu_seconds", box.callback_cpu_seconds);
+  table.emplace_back("draw_cpu_seconds", box.draw_cpu_seconds);
+  return table;
+}
+
+SCM from_value(const std::variant<std::int64_t, double, std::string>& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return scm_from_int64(*integer);
+  if (const auto* real = std::get_if<double>(&value)) return scm_from_double(*real);
+  return from_string(std::get<std::string>(value));
+}
+
+struct WorldSetting {
+  const char* name;
+  void (*set)(World&, SCM value, const char* name);
+};
+
+// Settings of a world by name, the test modes among them.
+constexpr WorldSetting world_settings[] = {
+    {"gravity", [](World& w, SCM v, const char* n) { w.set_gravity(to_vec3(v, n)); }},
+    {"accuracy", [](World& w, SCM v, const char* n) { w.set_accuracy(to_real(v, n)); }},
+    {"seed", [](World& w, SCM v, const char* n) { w.set_seed(to_seed(v, n)); }},
+    {"policy", [](World& w, SCM v, const char* n) { w.set_policy(to_string(v, n)); }},
+    {"hash", [](World& w, SCM v, const char*) { w.set_hash(to_bool(v)); }},
+    {"check", [](World& w, SCM v, const char*) { w.set_check(to_bool(v)); }},
+    {"undo-redo", [](World& w, SCM v, const char*) { w.set_undo_redo(to_bool(v)); }},
+    {"gvt-interval", [](World& w, SCM v, const char* n) { w.set_gvt_interval(to_integer(v, n)); }},
+    {"window", [](World& w, SCM v, const char* n) { w.set_window_cells(to_real(v, n)); }},
+};
+
+}  // namespace
+
+TW_PRIMITIVE(make_world, "%make-world", (), "Return a new, empty world.") {
+  require_outside_callbacks("make-world");
+  return make_world_handle();
+}
+
+TW_PRIMITIVE(world_properties, "%world-table", (SCM world), "Return the world's hash table.") {
+  to_world(world);
+  return world_table(world);
+}
+
+TW_PRIMITIVE(set_world, "%set-world!", (SCM world, SCM name, SCM value), "Set a world's setting.") {
+  const std::string text = to_symbol_name(name, "the setting");
+  World& w = quiet_world(world, "a world's setting");
+  for (const WorldSetting& option : world_settings)
+    if (text == option.name) {
+      option.set(w, value, option.name);
+      return SCM_UNSPECIFIED;
+    }
+  throw UserError("a world has no setting " + text);
+}
+
+TW_PRIMITIVE(set_adversary, "%set-adversary!", (SCM world, SCM seed, SCM head_start, SCM every),
+             "Make the scheduler an adversary: a test mode.") {
+  AdversaryOptions options;
+  options.seed = to_seed(seed, "the adversary's seed");
+  options.head_start = to_finite(head_start, "the adversary's head start");
+  options.every_event = to_bool(every);
+  quiet_world(world, "the adversary").set_adversary(options);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(world_seed, "%world-seed", (SCM world), "Return the seed.") {
+  return scm_from_uint64(to_world(world).options().seed);
+}
+
+// ---- running ----
+
+TW_PRIMITIVE(advance, "%advance!", (SCM world, SCM until, SCM slice),
+             "Run for a slice of wall time; true when everything up to `until` is committed.") {
+  WorldBox& box = quiet_box(world, "run!");
+  const CallCounter counter(box);
+  return scm_from_bool(box.world.advance(to_real(until, "until"), to_real(slice, "slice")) ==
+                       RunStatus::finished);
+}
+
+TW_PRIMITIVE(step, "%step!", (SCM world), "Process one event; false if there is none.") {
+  WorldBox& box = quiet_box(world, "step!");
+  const CallCounter counter(box);
+  return scm_from_bool(box.world.step());
+}
+
+TW_PRIMITIVE(world_time, "%world-time", (SCM world), "Return the last committed time, s.") {
+  return scm_from_double(quiet_world(world, "world-time").time());
+}
+
+// ---- looking ----
+
+TW_PRIMITIVE(total_energy, "%total-energy", (SCM world), "Return the total energy, J.") {
+  return scm_from_double(quiet_world(world, "total-energy").total_energy());
+}
+
+TW_PRIMITIVE(total_momentum, "%total-momentum", (SCM world), "Return the momentum, kg m/s.") {
+  return from_vec3(quiet_world(world, "total-momentum").total_momentum());
+}
+
+TW_PRIMITIVE(history_hash, "%history-hash", (SCM world), "Return the committed history's hash.") {
+  return from_string(quiet_world(world, "history-hash").history_hash());
+}
+
+TW_PRIMITIVE(statistics, "%statistics", (SCM world), "Return an alist of statistics.") {
+  SCM list = SCM_EOL;
+  for (const auto& [name, value] : all_statistics(quiet_box(world, "statistics")))
+    list = scm_acons(scm_from_utf8_symbol(name.c_str()), from_value(value), list);
+  return scm_reverse(list);
+}
+
+TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
+             "Write the statistics as JSON.") {
+  write_statistics_json(to_string(path, "the file"),
+                        all_statistics(quiet_box(world, "statistics")));
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(state_queue, "%state-queue", (SCM body),
+             "Return ((time kind microstep committed? position velocity) ...).") {
+  if (!is_body(body)) throw BadValue{"the body", body, "a body"};
+  SCM list = SCM_EOL;
+  for (const QueuedState& s :
+       quiet_world(body_world(body), "state-queue").state_queue(body_id(body)))
+    list = scm_cons(
+        scm_list_n(scm_from_double(s.key.time), scm_from_utf8_symbol(kind_name(s.key.kind)),
+                   scm_from_uint32(s.key.microstep), scm_from_bool(s.committed),
+                   from_vec3(s.state.position), from_vec3(s.state.velocity), SCM_UNDEFINED),
+        list);
+  return scm_reverse(list);
+}
+
+}  // namespace tw

@@ -1,0 +1,138 @@
+;; Bodies: what they are made of, how they are read and changed between runs.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+
+(test-begin "bodies")
+
+(in-world ()
+  (let* ((a (add-body! #:name "a" #:shape (box 1 1 1) #:density 500 #:position '(0 0 5)
+                       #:velocity #(1 2 3) #:slots '((hits . 0) (path . #(1 (2 "x"))))))
+         (b (add-body! #:shape (sphere 1) #:position #(9 0 50) #:mass 3))
+         (g (ground)))
+    (test-equal "names are kept" "a" (body-name a))
+    (test-equal "a body without a name is body-N" "body-1" (body-name b))
+    (test-assert "the body of a name is the same object" (eq? b (find-body "body-1")))
+    (test-equal "bodies in order" (list a b g) (world-bodies))
+    (test-equal "mass from shape and density" 500.0 (body-mass a))
+    (test-equal "mass as given" 3.0 (body-mass b))
+    (test-equal "kinds" '(dynamic fixed) (list (body-kind a) (body-kind g)))
+    (test-equal "a body is written with its name" "#<body a>" (format #f "~s" a))
+    (test-equal "state at the start" '(#(0.0 0.0 5.0) #(1.0 0.0 0.0 0.0) #(1.0 2.0 3.0))
+                (list (position a) (orientation a) (velocity a)))
+    (test-equal "kinetic energy" 3500.0 (kinetic-energy a))
+    (test-message "unknown name" "\"nobody\"; expected the name of a body" (find-body "nobody"))
+    (test-message "a name used twice" "name a is taken" (add-body! #:name "a" #:shape #f #:mass 1
+                                                                  #:inertia #(1 1 1) #:center-of-mass #(0 0 0)))
+
+    ;; slots
+    (test-equal "slots" '(0 #(1 (2 "x"))) (list (slot a 'hits) (slot a 'path)))
+    (test-equal "slot?" '(#t #f #f) (list (slot? a 'hits) (slot? a 'nix) (slot? b 'hits)))
+    (test-message "a slot that is not there" "body a has no slot nix; expected one of: hits, path"
+      (slot a 'nix))
+    (test-message "a body without slots" "expected slots given by #:slots" (slot b 'hits))
+    (let ((value (list 1 (vector 2 3) (string #\x))))
+      (set! (slot a 'path) value)
+      (vector-set! (cadr value) 0 'changed)
+      (string-set! (caddr value) 0 #\y)
+      (test-equal "a slot keeps a copy" '(1 #(2 3) "x") (slot a 'path)))
+
+    ;; changes between runs are discontinuities of kind edit at the world's time
+    (run! #:until 0.5)
+    (test-equal "world-time" 0.5 (world-time))
+    (set! (velocity a) #(0 0 0))
+    (set! (position a) #(0 0 20))
+    (set! (angular-velocity a) #(0 0 1))
+    (set! (orientation a) #(0 0 0 2))
+    (test-equal "set!" '(#(0.0 0.0 20.0) #(0.0 0.0 0.0 1.0) #(0.0 0.0 0.0) #(0.0 0.0 1.0))
+                (list (position a) (orientation a) (velocity a) (angular-velocity a)))
+    (run-for! 1)
+    (test-assert "the motion goes on from there"
+      (close? #(0 0 15.095) (position a) 1e-12))
+    (set! (applied-force a) (vector 0 0 (* 500 9.81)))
+    (run-for! 1)
+    (test-assert "a constant force against gravity keeps the velocity"
+      (close? #(0 0 -9.81) (velocity a) 1e-12))
+    (test-message "no torque yet" "applied-torque is not there yet" (set! (applied-torque a) #(0 0 1)))
+    (test-message "a fixed body has no velocity to set" "ground" (set! (velocity g) #(1 0 0)))
+    (test-message "a velocity that is no vector" "velocity is 5; expected a vector"
+      (set! (velocity a) 5))
+    (test-assert "the state queue holds the edit" (assq 'edit (map cdr (state-queue a))))))
+
+(in-world ()
+  (let ((free (add-body! #:shape #f #:mass 2 #:inertia #(1 2 3) #:center-of-mass #(0 0 0)
+                         #:velocity #(0 0 1))))
+    (run! #:until 1)
+    (test-assert "a body without a shape flies" (close? #(0 0 -3.905) (position free) 1e-12))
+    (test-assert "momentum" (close? #(0 0 -17.62) (total-momentum) 1e-12))))
+
+(in-world ()
+  (test-message "no shape" "no #:shape" (add-body! #:mass 1))
+  (test-message "#:shape #f needs mass" "mass" (add-body! #:shape #f))
+  (test-message "zero mass" "mass of body-0 is 0" (add-body! #:shape (sphere 1) #:mass 0))
+  (test-message "negative density" "density of body-0 is -1" (add-body! #:shape (sphere 1) #:density -1))
+  (test-message "NaN position" "position is #\\(0 0 \\+nan.0\\)"
+    (add-body! #:shape (sphere 1) #:position #(0 0 +nan.0)))
+  (test-message "zero quaternion" "orientation is .* not zero"
+    (add-body! #:shape (sphere 1) #:orientation #(0 0 0 0)))
+  (test-message "unknown keyword" "unknown keyword #:positon; expected one of .*#:position"
+    (add-body! #:shape (sphere 1) #:positon #(0 0 0)))
+  (test-message "a value where a keyword belongs" "add-body! got 5; expected a keyword"
+    (add-body! 5 (sphere 1)))
+  (test-message "a shape of the wrong type" "shape is ball; expected a shape" (add-body! #:shape 'ball))
+  (test-message "a half-space that moves" "unbounded shape" (add-body! #:shape (half-space #(0 0 1) 0)))
+  (test-message "slots that are no alist" "slots is \\(hits\\); expected an association list"
+    (add-body! #:shape (sphere 1) #:slots '(hits)))
+  (test-message "a slot given twice" "each name once"
+    (add-body! #:shape (sphere 1) #:slots '((a . 1) (a . 2))))
+  (test-equal "a failed body leaves nothing behind" '() (world-bodies))
+  (test-assert "a keyword given #f counts as absent"
+    (body? (add-body! #:shape (sphere 1) #:mass #f #:name #f #:velocity #f))))
+
+;; ---- keyframes ----
+
+(in-world ()
+  (let ((door (add-body! #:name "door" #:shape (box 1 1 1)
+                         #:motion (keyframes '((0 #(0 0 0)) (1 #(0 0 2)) (2 #(0 0 2) #(0 0 0 1))))))
+        (lift (add-body! #:name "lift" #:shape (box 1 1 1)
+                         #:motion (keyframes '((1 #(5 0 0)) (3 #(5 0 4))) #:smooth? #t))))
+    (test-equal "kinematic" 'kinematic (body-kind door))
+    (run! #:until 0.5)
+    (test-equal "halfway on a line" '(#(0.0 0.0 1.0) #(0.0 0.0 2.0)) (list (position door) (velocity door)))
+    (test-equal "at rest before the first keyframe" #(0.0 0.0 0.0) (velocity lift))
+    (run! #:until 2)
+    (test-assert "smooth motion is halfway at half the time" (close? #(5 0 2) (position lift) 1e-14))
+    (run! #:until 4)
+    (test-assert "at rest after the last" (close? #(0 0 0 1) (orientation door) 1e-14))
+    (test-message "a kinematic body can't be pushed" "kinematic" (set! (velocity door) #(1 0 0))))
+  (test-message "times must increase" "expected a time after" (keyframes '((1 #(0 0 0)) (1 #(0 0 1)))))
+  (test-message "no keyframes" "keyframes is \\(\\)" (keyframes '()))
+  (test-message "a keyframe without a position" "keyframe is \\(1\\)" (keyframes '((1))))
+  (test-message "max-speed without a procedure" "max-speed"
+    (add-body! #:shape (sphere 1) #:max-speed 1)))
+
+;; ---- motion by a procedure ----
+
+(in-world ()
+  (let* ((swing (lambda (time) (values (vector (sin time) 0 0) (rotation #(0 0 1) time))))
+         (paddle (add-body! #:shape (box 1 1 1) #:motion swing #:max-speed 1.8)))
+    (run! #:until 2)
+    (test-assert "it is where the procedure says" (close? (vector (sin 2) 0 0) (position paddle) 1e-15))
+    (test-assert "velocities are differences" (close? (vector (cos 2) 0 0) (velocity paddle) 1e-9))
+    (test-assert "so are angular velocities" (close? #(0 0 1) (angular-velocity paddle) 1e-9)))
+  (test-message "a procedure needs a bound" "max-speed is #f" 
+    (add-body! #:shape (sphere 1) #:motion (lambda (time) #f))))
+
+(in-world ()
+  (let ((ball (add-body! #:name "ball" #:shape (sphere 0.1) #:position #(0 0 1)))
+        (paddle (add-body! #:name "paddle" #:shape (box 1 1 0.1) #:max-speed 1
+                           #:motion (lambda (time) (values (vector (* 3 time) 0 0) #(1 0 0 0))))))
+    (test-message "the bound is verified" "expected at most max-speed, 1 m/s" (run! #:until 1))
+    (test-assert "the world stays usable" (real? (world-time)))))
+
+(in-world ()
+  (test-message "one value is not enough" "expected two values"
+    (begin
+      (add-body! #:shape (sphere 1) #:motion (lambda (time) #(0 0 0)) #:max-speed 1)
+      (run! #:until 1))))
+
+(test-end "bodies")

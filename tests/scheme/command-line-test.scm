@@ -1,0 +1,259 @@
+;; The command line of the program.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+
+(test-begin "command line")
+
+(write-file "ball.scm"
+            "(use-modules (timewarp))"
+            "(scene #:title \"Ball\" #:duration 3 #:seed 5)"
+            "(define-scene-parameter height 1.0 \"height of the drop, m\")"
+            "(define-scene-parameter label \"ball\" \"name of the ball\")"
+            "(define-scene-parameter elastic? #f \"bounces for ever\")"
+            "(define ground (add-body! #:name \"ground\" #:shape (half-space #(0 0 1) 0) #:fixed? #t))"
+            "(define ball (add-body! #:name label #:shape (sphere 0.1)"
+            "                        #:position (vector 0 0 (+ 0.1 height)) #:slots '((bounces . 0))))"
+            "(set-contact-parameters! ball ground #:restitution (if elastic? 1 0.8))"
+            "(on-collision! ball ground"
+            "  (lambda (collision ball ground) (set! (slot ball 'bounces) (1+ (slot ball 'bounces)))))"
+            "(observe! 'collision (lambda (c) (format #t \"bounce ~,3f~%\" (collision-time c))))")
+
+;; ---- help and version ----
+
+(let ((result (run "--version")))
+  (test-equal "--version: status 0" 0 (run-status result))
+  (for-each (lambda (name)
+              (test-assert (string-append "--version names " name)
+                (string-contains (run-output result) name)))
+            '("timewarp 0." "Guile 3" "Eigen" "Qhull" "nlohmann-json" "LGPL")))
+
+(let ((result (run "--help")))
+  (test-equal "--help: status 0" 0 (run-status result))
+  (for-each (lambda (option)
+              (test-assert (string-append "--help shows " option)
+                (string-contains (run-output result) option)))
+            '("--until" "--frames" "--fps" "--size" "--quality" "--poses" "--events" "--stats" "--hash"
+              "-D" "--accuracy" "--seed" "--check" "--quiet" "--version" "-i" "-L" "-l" "-c" "-q"))
+  (test-assert "test modes are not in --help"
+    (not (string-match "adversary|gvt-interval|undo-redo|pieces" (run-output result)))))
+
+(let ((result (run "--help" "ball.scm")))
+  (test-assert "--help with a scene lists its parameters"
+    (string-match "height +height of the drop, m \\(1.0\\)(.|\n)*label .*\"ball\"" (run-output result)))
+  (test-assert "and doesn't run it" (not (string-contains (run-output result) "bounce 0"))))
+
+;; ---- running ----
+
+(let ((result (run "ball.scm")))
+  (test-equal "a run: status 0" 0 (run-status result))
+  (test-equal "observers print once, in order" '("bounce 0.452" "bounce 1.174" "bounce 1.752")
+              (list-head (lines-of (run-output result)) 3)))
+
+(let ((result (run "ball.scm" "-t" "0.5" "--hash")))
+  (test-equal "-t ends the run" 2 (length (lines-of (run-output result))))
+  (test-assert "--hash is the last line"
+    (string-match "^[0-9a-f]{64}$" (last (lines-of (run-output result))))))
+
+(define (hash-of . args)
+  (last (lines-of (run-output (apply run "ball.scm" "--hash" "--quiet" args)))))
+
+(let ((hash (hash-of)))
+  (for-each (lambda (args)
+              (test-equal (format #f "the hash doesn't depend on ~a" args) hash (apply hash-of args)))
+            '(("--poses=p.csv") ("--poses=p.csv" "--fps=1000") ("--check") ("--pieces=7")
+              ("--gvt-interval=1") ("--gvt-interval=10000") ("--adversary=1,0.5,every")
+              ("--adversary=2,0.5") ("--window=3") ("--undo-redo") ("--stats=s.json")))
+  (test-assert "but on the scene" (not (equal? hash (hash-of "-D" "height=1.01")))))
+
+;; ---- parameters ----
+
+(let ((result (run "ball.scm" "--until" "1" "-D" "height=0.5" "--define=label=a,\\\"b\\\"" "-D" "elastic?=#t"
+                   "--events" "e.csv" "--poses=p.csv" "--fps=4")))
+  (test-equal "-D: status 0" 0 (run-status result))
+  (test-equal "events: columns" "time,kind,body1,body2,x,y,z,nx,ny,nz,impulse"
+              (first (lines-of (read-file "e.csv"))))
+  (test-assert "events: rows, with names quoted"
+    (string-match "^0.3192[0-9]*,collision,ground,\"a,\"\"b\"\"\",0,0,[-0-9.e]+,0,0,1,[0-9.]+$"
+                  (second (lines-of (read-file "e.csv")))))
+  (test-equal "poses: columns" "time,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz"
+              (first (lines-of (read-file "p.csv"))))
+  (test-equal "poses: frame k is at k/fps, from 0 to the end"
+    '("0" "0.25" "0.5" "0.75" "1")
+    (map (lambda (row) (first (string-split row #\,))) (cdr (lines-of (read-file "p.csv")))))
+  (test-assert "poses: rows of moving bodies, read back to the same doubles"
+    (match (string-match "^0.25,\"a,\"\"b\"\"\",0,0,([0-9.]+),1,0,0,0,0,0,([-0-9.]+),0,0,0$"
+                         (third (lines-of (read-file "p.csv"))))
+      ((? identity m)
+       (and (close? (string->number (match:substring m 1)) 0.2934375 1e-15)
+            (= (string->number (match:substring m 2)) (* -9.81 0.25))))
+      (_ #f))))
+
+(define (refused pattern . args)
+  (let ((result (apply run args)))
+    (test-equal (format #f "~a: status 2" args) 2 (run-status result))
+    (test-assert (format #f "~a: ~s" args (run-errors result))
+      (string-match pattern (run-errors result)))))
+
+(refused "-D sets heigth, which is no parameter.*expected one of: height, label" "ball.scm" "-D" "heigth=3")
+(refused "expected NAME=VALUE" "ball.scm" "-D" "height")
+(let ((result (run "ball.scm" "-D" "height=tall")))
+  (test-equal "a parameter of the wrong kind: status 1" 1 (run-status result))
+  (test-assert (run-errors result)
+    (string-match "ball.scm:3:1: the scene parameter height is tall; expected a number" (run-errors result))))
+
+;; ---- wrong usage ----
+
+(refused "unknown option --untill" "ball.scm" "--untill=3")
+(refused "unknown option -x" "-x")
+(refused "--until has no value" "ball.scm" "--until")
+(refused "--until is \"soon\"; expected a number of seconds" "ball.scm" "--until=soon")
+(refused "--fps is \"0\"; expected a positive" "ball.scm" "--fps=0")
+(refused "--size is \"12\"; expected WIDTHxHEIGHT" "ball.scm" "--size=12")
+(refused "--quality is \"great\"; expected draft" "ball.scm" "--quality=great")
+(refused "--seed is \"-1\"" "ball.scm" "--seed=-1")
+(refused "more than one scene" "ball.scm" "ball.scm")
+(refused "there is no scene" "--until=3")
+
+;; what is not there yet says so
+(for-each (lambda (args) (apply refused "not there yet" "ball.scm" args))
+          '(("--movie=x.mp4") ("-m" "x.mp4") ("--record=x.twr") ("-o" "x.twr") ("--integrator=rk45")
+            ("--group-check-rate=60") ("--listen") ("--listen=sock") ("--policy=conservative")
+            ("--policy=retroactive:0.01")))
+(refused "not there yet" "x.twr")
+(test-equal "--policy=timewarp --integrator=auto are" 0
+            (run-status (run "ball.scm" "--policy=timewarp" "--integrator=auto")))
+
+;; ---- --check ----
+
+(write-file "impure.scm" "(use-modules (timewarp))"
+            "(define count 0)" "(define seen (list 1 (vector 2)))" "(define table (make-hash-table))"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 1) #:slots '((n . 0))))"
+            "(define-scene-parameter what 0 \"what to do\")"
+            "(add-callback! ball"
+            "  (lambda (time view)"
+            "    (set! (slot view 'n) time)"
+            "    (case what"
+            "      ((1) (set! count (1+ count)))"
+            "      ((2) (vector-set! (cadr seen) 0 time))"
+            "      ((3) (hash-set! table time #t)))"
+            "    #f)"
+            "  #:start 0.1)")
+(define (impure what . options)
+  (apply run "impure.scm" "-D" (format #f "what=~a" what) "--until=1" options))
+(test-equal "--check passes a callback that touches what it is handed" 0 (run-status (impure 0 "--check")))
+(for-each (lambda (what name)
+            (test-equal "without --check nobody looks" 0 (run-status (impure what)))
+            (test-assert (string-append "--check finds a change of " name)
+              (string-match (string-append "^impure.scm:.*changed the variable " name ",")
+                            (run-errors (impure what "--check")))))
+          '(1 2 3) '("count" "seen" "table"))
+
+;; ---- statistics ----
+
+(let ((result (run "ball.scm" "--stats=s.json" "--seed=7" "--accuracy=1e-7")))
+  (for-each
+   (lambda (key)
+     (test-assert (string-append "--stats has " key)
+       (string-contains (read-file "s.json") (string-append "\"" key "\": "))))
+   (string-tokenize
+    "duration frames bodies_moving bodies_total discontinuities collisions fusions fissions
+     callback_changes contact_changes avg_time_between_discontinuities avg_integration_step
+     integrations integration_per_moving_body rollback_per_moving_body rollbacks cpu_seconds
+     cpu_seconds_per_frame draw_cpu_seconds callback_cpu_seconds checks active_pairs_avg
+     distance_queries groups largest_group_bodies largest_group_contacts implicit_steps
+     factorizations peak_states peak_rss_bytes max_penetration energy_start energy_end policy
+     accuracy seed guile_calls"))
+  (test-assert "the command line's seed and accuracy hold"
+    (and (string-contains (read-file "s.json") "\"seed\": 7")
+         (string-contains (read-file "s.json") "\"accuracy\": 1e-07"))))
+
+(run "ball.scm" "--stats=s.json" "--poses=p.csv" "--fps=10")
+(test-assert "frames are counted" (string-contains (read-file "s.json") "\"frames\": 31,"))
+
+(test-assert "--stats without a file prints them"
+  (string-match "collisions +[0-9]+" (run-output (run "ball.scm" "--stats"))))
+
+;; ---- scenes that run themselves, file names, seeds ----
+
+(mkdir (in-folder "sub"))
+(write-file "sub/own.scm"
+            "(use-modules (timewarp))"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 0.1)))"
+            "(load \"part.scm\")"
+            "(simulate! #:until 0.5 #:poses \"own.csv\" #:events \"own-events.csv\")"
+            "(format #t \"at ~a, random ~a~%\" (world-time) (random 1000 (scene-random-state)))")
+(write-file "sub/part.scm" "(define part #t)")
+
+(let ((result (run "sub/own.scm" "--until=0.25" "--poses=all.csv")))
+  (test-equal "a scene may run itself" 0 (run-status result))
+  (test-assert "the command line goes on only if its end is later"
+    (string-match "at 0.5, " (run-output result)))
+  (test-assert "file names in a scene are relative to the scene's file"
+    (file-exists? (in-folder "sub/own.csv")))
+  (test-equal "recorders of the command line see what the scene runs" 16
+              (length (cdr (lines-of (read-file "all.csv"))))))
+
+(define (random-of . args) (run-output (apply run "sub/own.scm" args)))
+(test-equal "the same seed draws the same" (random-of "--seed=3") (random-of "--seed=3"))
+(test-assert "another seed draws otherwise" (not (equal? (random-of "--seed=3") (random-of "--seed=4"))))
+
+(test-equal "a scene's exit is the program's" 7
+            (begin (write-file "exit.scm" "(exit 7)") (run-status (run "exit.scm"))))
+
+;; ---- progress ----
+
+(test-equal "short runs report no progress" "" (run-errors (run "ball.scm")))
+(write-file "slow.scm" "(use-modules (timewarp))" "(scene #:duration 8)"
+            "(define ball (add-body! #:shape (sphere 1)))"
+            "(add-callback! ball (lambda (time view) (usleep 4000)) #:period 0.01)")
+(test-assert "long ones do, in plain lines"
+  (string-match "^[0-9.]+ of 8.00 s simulated, [0-9.]+ s left, 0 rollbacks\n" (run-errors (run "slow.scm"))))
+(test-equal "--quiet" "" (run-errors (run "slow.scm" "--quiet")))
+
+;; ---- Ctrl-C ----
+
+(write-file "endless.scm" "(use-modules (timewarp))" "(scene #:duration 1e9)"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 1)))"
+            "(add-callback! ball (lambda (time view) #t) #:period 0.1)")
+(let ((result (shell (format #f "timeout --preserve-status -s INT 1 ~a endless.scm --quiet --poses=p.csv"
+                             timewarp))))
+  (test-equal "Ctrl-C: status 130" 130 (run-status result))
+  (test-assert "what was written is kept, in whole lines"
+    (and (> (length (lines-of (read-file "p.csv"))) 10)
+         (string-suffix? "\n" (read-file "p.csv")))))
+
+(write-file "stuck.scm" "(use-modules (timewarp))"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 1)))"
+            "(add-callback! ball (lambda (time view) (let loop () (loop))) #:start 0.5)")
+(test-equal "Ctrl-C ends an endless callback, too" 130
+            (run-status (shell (format #f "timeout --preserve-status -s INT 1 ~a stuck.scm --quiet" timewarp))))
+
+;; ---- as Guile ----
+
+(test-equal "-c evaluates and exits" "3\n" (run-output (run "-c" "'(display (+ 1 2)) (newline)'")))
+(write-file "lib.scm" "(define thing 5)")
+(test-equal "-l loads first" "5" (run-output (run "-q" "-l" "lib.scm" "-c" "'(display thing)'")))
+(mkdir (in-folder "modules"))
+(write-file "modules/mine.scm" "(define-module (mine) #:export (x))" "(define x 42)")
+(test-equal "-L adds a load path" "42"
+            (run-output (run "-L" "modules" "-c" "'(use-modules (mine)) (display x)'")))
+(test-assert "a REPL has (timewarp) at hand"
+  (string-contains
+   (run-output (shell (string-append "echo '(body-name (add-body! #:shape (sphere 1)))' | " timewarp " -q")))
+   "\"body-0\""))
+(test-assert "-i has the scene's world and names after the run"
+  (string-match "bounce 0.452(.|\n)*\"ball\" 1"
+                (run-output
+                 (shell (string-append
+                         "echo '(format #t \"~s ~a~%\" (body-name ball) (slot ball (quote bounces)))' | "
+                         timewarp " -q -i --until=1 ball.scm")))))
+
+;; an error of the scene leads to the prompt, too
+(write-file "broken.scm" "(use-modules (timewarp))" "(define before 42)" "(add-body! #:shape 5)")
+(let ((result (shell (string-append "echo '(+ before 1)' | " timewarp " -q -i broken.scm"))))
+  (test-assert "-i after an error: it is shown"
+    (string-match "^broken.scm:3:1: shape is 5" (run-errors result)))
+  (test-assert "and the prompt is there" (string-match "= 43" (run-output result))))
+
+(clean-up)
+(test-end "command line")

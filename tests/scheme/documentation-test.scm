@@ -1,0 +1,50 @@
+;; Every export of (timewarp) and (timewarp vectors) has a docstring; importing them is quiet; and
+;; plain guile has the same binding as the program.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+(use-modules (ice-9 documentation) (ice-9 format))
+
+(define (exports module)
+  (sort (module-map (lambda (name variable) (cons name (variable-ref variable)))
+                    (resolve-interface module))
+        (lambda (a b) (string<? (symbol->string (car a)) (symbol->string (car b))))))
+
+(test-begin "documentation")
+
+(for-each
+ (lambda (module)
+   (test-assert (format #f "~a exports something" module) (pair? (exports module)))
+   (for-each (match-lambda
+               ((name . value)
+                (let ((text (object-documentation value)))
+                  (test-assert (format #f "~a has a docstring" name)
+                    (and (string? text) (> (string-length text) 10))))))
+             (exports module)))
+ '((timewarp) (timewarp vectors)))
+
+;; the names that scenes rely on
+(for-each
+ (lambda (name)
+   (test-assert (format #f "~a is exported" name) (assq name (exports '(timewarp)))))
+ '(scene define-scene-parameter scene-random-state make-world current-world world-time world-bodies
+   find-body sphere box convex half-space union placed rotation shape-volume shape-inertia add-body!
+   keyframes set-contact-parameters! disable-collisions! enable-collisions! add-callback!
+   on-collision! collision-time collision-point collision-normal collision-speed collision-impulse
+   position orientation velocity angular-velocity kinetic-energy slot slot? applied-force
+   applied-torque body-name random-real! observe! run! run-for! step! simulate! statistics
+   show-statistics state-queue total-energy total-momentum camera light sky render!))
+
+(test-equal "no private name is exported" '()
+  (filter (lambda (name) (string-prefix? "%" (symbol->string name))) (map car (exports '(timewarp)))))
+
+(test-equal "importing (timewarp) beside others gives no warning" ""
+  (run-errors
+   (shell "guile --no-auto-compile -c '(use-modules (timewarp) (srfi srfi-1) (ice-9 match) (oop goops) (ice-9 format)) union position slot'")))
+
+(test-equal "plain guile runs what the program runs"
+  (run-output (run "-c" "'(define b (add-body! #:shape (sphere 1))) (run! #:until 2) (display (position b))'"))
+  (run-output
+   (shell "guile --no-auto-compile -c '(use-modules (timewarp)) (define b (add-body! #:shape (sphere 1))) (run! #:until 2) (display (position b))'")))
+
+(clean-up)
+(test-end "documentation")

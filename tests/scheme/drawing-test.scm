@@ -1,0 +1,82 @@
+;; Drawing from scenes and the command line; and that nothing of it is loaded where nothing is drawn.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+(use-modules (timewarp primitives))
+
+(test-begin "drawing")
+
+(write-file "ball.scm"
+            "(use-modules (timewarp))"
+            "(scene #:title \"Ball\" #:duration 0.5)"
+            "(add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 0.1) #:position #(0 0 0.5)))"
+            "(camera #:eye #(2 -3 1) #:target #(0 0 0.4) #:follow ball)"
+            "(light #:direction #(1 1 -2) #:color #(1 1 0.9))"
+            "(sky #:zenith #(0.2 0.4 0.8) #:fog 0.01)")
+
+;; what the program has mapped after a run with these options
+(define (libraries-after . options)
+  (run-output
+   (shell (string-append
+           "echo '(begin (use-modules (ice-9 textual-ports)) (display (call-with-input-file \"/proc/self/maps\" get-string-all)))' | "
+           timewarp " -q -i ball.scm --quiet " (string-join options " ")))))
+
+(test-assert "a run without drawing maps neither OSMesa nor LLVM"
+  (not (string-match "libOSMesa|libEGL|libLLVM" (libraries-after "--poses=p.csv" "--hash"))))
+
+;; wrong looks are errors, drawn or not
+(in-world ()
+  (test-message "camera" "eye is 5; expected a vector" (camera #:eye 5))
+  (test-message "field of view" "fov is 4; expected an angle" (camera #:fov 4))
+  (test-message "whom to follow" "follow is \"ball\"; expected a body" (camera #:follow "ball"))
+  (test-message "light" "direction is .*; expected a vector" (light #:direction #(0 1)))
+  (test-message "sky" "unknown keyword #:colour; expected one of #:zenith" (sky #:colour #(1 1 1))))
+
+(define (png? name)
+  (and (file-exists? (in-folder name))
+       (string-prefix? "\x89PNG" (call-with-input-file (in-folder name)
+                                   (lambda (port) (list->string (map (lambda (_) (read-char port)) (iota 8))))
+                                   #:encoding "ISO-8859-1"))))
+
+(define (hash-of . options)
+  (last (lines-of (run-output (apply run "ball.scm" "--quiet" "--hash" options)))))
+
+(cond
+ ((%drawing?)
+  (let ((result (run "ball.scm" "--frames=out" "--fps=4" "--size=160x90" "--quality=draft" "--stats=s.json")))
+    (test-equal "--frames: status 0" 0 (run-status result))
+    (test-equal "frames at k/fps up to the end" '(#t #t #t #f)
+      (map (lambda (k) (png? (format #f "out/0000~a.png" k))) (iota 4)))
+    (test-assert "drawing is counted apart"
+      (string-match "\"draw_cpu_seconds\": (0.0[0-9]*[1-9]|0.[1-9])" (read-file "s.json"))))
+  (run "ball.scm" "--frames=frame-%02d.png" "--fps=2" "--size=64x36" "--quality=draft")
+  (test-assert "a pattern names the frames" (png? "frame-01.png"))
+  (test-assert "drawing does load a library (so the test above can fail)"
+    (string-match "libOSMesa|libEGL"
+                  (libraries-after "--frames=out" "--size=64x36" "--quality=draft" "--until=0")))
+  (test-equal "drawing doesn't change the history" (hash-of)
+    (hash-of "--frames=out" "--fps=24" "--size=64x36" "--quality=draft"))
+  (write-file "shots.scm"
+              "(load \"ball.scm\")"
+              "(render! \"shot.png\" #:size '(64 36) #:quality 'draft)"
+              "(simulate! #:until 0.1 #:frames \"own\" #:size '(64 36) #:quality 'draft)")
+  (let ((result (run "shots.scm" "--quiet" "--until=0")))
+    (test-equal "render! and simulate!: status 0" 0 (run-status result))
+    (test-assert "render! draws one picture" (png? "shot.png"))
+    (test-equal "simulate! draws frames" '(#t #t #t #t #f)
+      (map (lambda (k) (png? (format #f "own/0000~a.png" k))) (iota 5))))
+  (let ((result (run "ball.scm" "--frames=out" "--size=99999x10")))
+    (test-equal "a picture too large: status 2" 2 (run-status result)))
+  (write-file "bad-size.scm" "(use-modules (timewarp))" "(render! \"x.png\" #:size 5)")
+  (test-assert "a size that is none"
+    (string-match "bad-size.scm:2:1: size is 5; expected" (run-errors (run "bad-size.scm")))))
+ (else
+  (let ((result (run "ball.scm" "--frames=out")))
+    (test-equal "without drawing --frames is refused: status 2" 2 (run-status result))
+    (test-assert (run-errors result) (string-match "--disable-render" (run-errors result))))
+  (write-file "shots.scm" "(load \"ball.scm\")" "(render! \"shot.png\")")
+  (test-assert "and render! is an error that says why"
+    (string-match "shots.scm:2:1: render! needs drawing" (run-errors (run "shots.scm"))))))
+
+(clean-up)
+(test-end "drawing")

@@ -1,0 +1,48 @@
+;; Shapes and rotations.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+(use-modules (srfi srfi-4))
+
+(define pi (acos -1))
+
+(test-begin "shapes")
+
+(test-assert "a sphere's volume" (close? (shape-volume (sphere 0.5)) (* 4/3 pi 0.125) 1e-15))
+(test-equal "a box has full edges" 24.0 (shape-volume (box 2 3 4)))
+(test-assert "a box's inertia at density 1"
+  (close? #(#(50.0 0.0 0.0) #(0.0 40.0 0.0) #(0.0 0.0 26.0)) (shape-inertia (box 2 3 4)) 1e-13))
+(test-assert "a hull's volume"
+  (close? 1/6 (shape-volume (convex '(#(0 0 0) #(1 0 0) #(0 1 0) #(0 0 1)))) 1e-15))
+(test-assert "a hull keeps the frame of its points"
+  (close? #(1/4 1/4 1/4) (shape-centroid (convex '(#(0 0 0) #(1 0 0) #(0 1 0) #(0 0 1)))) 1e-15))
+(test-assert "points may stand in a vector and be lists or f64vectors"
+  (close? 1/6 (shape-volume (convex (vector '(0 0 0) #(1 0 0) (f64vector 0 1 0) #(0 0 1)))) 1e-15))
+(test-equal "a union adds up" 2.0
+  (shape-volume (union (box 1 1 1) (placed (box 1 1 1) #:position #(3 0 0)))))
+(test-assert "placed turns before it shifts"
+  (close? #(1 2 0)
+          (shape-centroid (placed (placed (box 1 1 1) #:position #(2 0 0))
+                                  #:position #(1 0 0)
+                                  #:orientation (rotation #(0 0 1) (/ pi 2))))
+          1e-15))
+(test-assert "a rotation is a unit quaternion about its axis"
+  (close? #(0.5 0 0 0.8660254037844386) (rotation '(0 0 7) (* 2/3 pi)) 1e-15))
+(test-assert "shape?" (and (shape? (sphere 1)) (not (shape? 5))))
+(test-equal "a shape is written by its kind" "#<shape sphere>" (format #f "~s" (sphere 1)))
+
+(test-message "negative radius" "radius.* is -1" (sphere -1))
+(test-message "zero edge" "0" (box 1 0 1))
+(test-message "NaN radius" "NaN" (sphere +nan.0))
+(test-message "a radius that is no number" "radius is \"big\"; expected a real number" (sphere "big"))
+(test-message "flat hull" "flat" (convex '(#(0 0 0) #(1 0 0) #(0 1 0) #(1 1 0))))
+(test-message "empty hull" "points" (convex '()))
+(test-message "no points" "points is 5; expected a list of points" (convex 5))
+(test-message "zero normal" "normal" (half-space #(0 0 0) 0))
+(test-message "empty union" "no parts" (union))
+(test-message "zero axis" "axis is #\\(0 0 0\\); expected .* not zero" (rotation #(0 0 0) 1))
+(test-message "zero quaternion" "not zero" (placed (sphere 1) #:orientation #(0 0 0 0)))
+(test-message "unknown keyword" "placed got the unknown keyword #:at; expected one of #:position"
+  (placed (sphere 1) #:at #(0 0 0)))
+(test-message "a half-space has no volume" "no bounds" (shape-volume (half-space #(0 0 1) 0)))
+
+(test-end "shapes")
