@@ -104,4 +104,4 @@
   (for-each (lambda (index spot) (add-atom! index spot (< (vector-ref spot 0) 0)))
             order spots))
 
-(camera #:eye #(7 -19 8.5) #:target #(0.4 0 -0.6) #:fov 0.72)
+(camera #:eye #(7 -19 8.5) #:target #(0.2 0 -0.9) #:fov 0.66)

@@ -12,7 +12,7 @@
       ((timewarp contact))
       ((timewarp callbacks))
       ((timewarp running)
-       run! run-for! step! statistics show-statistics state-queue total-energy total-momentum)
+       run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
       ((timewarp looking))
       ((timewarp drawing) render!)
       ((timewarp simulate))

@@ -37,4 +37,4 @@
                 #:velocity (vector vx vy vz))))
  (iota (expt balls-per-side 3)))
 
-(camera #:eye #(1.2 -6.2 1.6) #:target #(0 0 -0.3))
+(camera #:eye #(3.2 -8.6 2.4) #:target #(0 0 -0.2) #:fov 0.62)

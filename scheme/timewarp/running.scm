@@ -6,7 +6,7 @@
   #:use-module (timewarp worlds)
   #:use-module (ice-9 match)
   #:use-module (ice-9 format)
-  #:export (run! run-for! step! statistics show-statistics state-queue total-energy total-momentum)
+  #:export (run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
   ;; for the other modules
   #:export (run-world!
             call-with-interrupts
@@ -86,6 +86,16 @@ scene's duration) is committed and observed.  Ctrl-C interrupts; the world stays
 (define (state-queue body)
   "Return the states kept of BODY, oldest first: (time kind microstep committed? position velocity)."
   (%state-queue body))
+
+(define (checkpoint)
+  "Return the present of the current world, for restore!.  Slots and random generators are part of it."
+  (%checkpoint (current-world)))
+
+(define (restore! checkpoint)
+  "Bring the world of CHECKPOINT back to the time at which it was made.  What was added since then is an
+error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
+bit, as if the world had never run further."
+  (%restore! checkpoint))
 
 (define (total-energy)
   "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity, J."

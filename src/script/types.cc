@@ -9,12 +9,15 @@ namespace tw {
 
 namespace {
 
-SCM world_type, body_type, view_type, shape_type, motion_type, collision_type;
+SCM world_type, body_type, view_type, shape_type, motion_type, collision_type, checkpoint_type;
 
 struct ShapeBox : Live<LiveKind::shape> {
   ShapePtr shape;
 };
 
+struct CheckpointBox : Live<LiveKind::checkpoint> {
+  std::shared_ptr<const Checkpoint> checkpoint;
+};
 struct MotionBox : Live<LiveKind::motion> {
   MotionPtr motion;
 };
@@ -189,7 +192,26 @@ SCM from_collision(const Collision& collision, bool reversed, SCM world) {
                                    SCM_UNPACK_POINTER(world));
 }
 
+// ---- checkpoints ----
+
+SCM from_checkpoint(std::shared_ptr<const Checkpoint> checkpoint, SCM world) {
+  auto* box = new CheckpointBox;
+  box->checkpoint = std::move(checkpoint);
+  return scm_make_foreign_object_2(checkpoint_type, box, SCM_UNPACK_POINTER(world));
+}
+
+const Checkpoint& to_checkpoint(SCM object) {
+  if (!has_type(object, checkpoint_type))
+    throw BadValue{"the checkpoint", object, "what (checkpoint) returned"};
+  return *static_cast<CheckpointBox*>(field(object, 0))->checkpoint;
+}
+
+SCM checkpoint_world(SCM object) {
+  return scm_field(object, 1);
+}
+
 void define_types() {
+  checkpoint_type = make_type("<checkpoint>", {"box", "world"}, finalize_box<CheckpointBox>);
   world_type = make_type("<world>", {"box", "table"}, finalize_box<WorldBox>);
   body_type = make_type("<body>", {"id", "world"}, nullptr);
   view_type = make_type("<view>", {"state", "world"}, nullptr);

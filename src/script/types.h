@@ -17,6 +17,7 @@
 #include "dynamics/motion.h"
 #include "geometry/shape.h"
 #include "kernel/callback.h"
+#include "kernel/checkpoint.h"
 #include "kernel/world.h"
 #include "script/live.h"
 
@@ -78,6 +79,12 @@ struct CollisionCopy {
 const CollisionCopy& to_collision(SCM object);
 SCM collision_world(SCM object);
 SCM from_collision(const Collision& collision, bool reversed, SCM world);
+
+// ---- checkpoints ----
+// The world they belong to is kept alive.
+SCM from_checkpoint(std::shared_ptr<const Checkpoint> checkpoint, SCM world);
+const Checkpoint& to_checkpoint(SCM object);
+SCM checkpoint_world(SCM object);
 
 // Makes the types and defines <world> and its like in the current module.
 void define_types();

@@ -159,6 +159,16 @@ TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
   return SCM_UNSPECIFIED;
 }
 
+TW_PRIMITIVE(checkpoint, "%checkpoint", (SCM world), "Return the committed present of a world.") {
+  return from_checkpoint(quiet_world(world, "checkpoint").checkpoint(), world);
+}
+
+TW_PRIMITIVE(restore, "%restore!", (SCM checkpoint), "Bring a world back to a checkpoint.") {
+  const Checkpoint& kept = to_checkpoint(checkpoint);
+  quiet_world(checkpoint_world(checkpoint), "restore!").restore(kept);
+  return SCM_UNSPECIFIED;
+}
+
 TW_PRIMITIVE(state_queue, "%state-queue", (SCM body),
              "Return ((time kind microstep committed? position velocity) ...).") {
   if (!is_body(body)) throw BadValue{"the body", body, "a body"};

@@ -56,7 +56,18 @@
     (test-message "a fixed body has no velocity to set" "ground" (set! (velocity g) #(1 0 0)))
     (test-message "a velocity that is no vector" "velocity is 5; expected a vector"
       (set! (velocity a) 5))
-    (test-assert "the state queue holds the edit" (assq 'edit (map cdr (state-queue a))))))
+    (test-assert "the state queue holds the edit" (assq 'edit (map cdr (state-queue a))))
+    (let ((kept (checkpoint)) (before (position a)) (now (world-time)))
+      (run-for! 1)
+      (let ((after (position a)))
+        (restore! kept)
+        (test-equal "a restored world stands where it stood" (list now before)
+                    (list (world-time) (position a)))
+        (run-for! 1)
+        (test-equal "and goes on to the same bits" after (position a)))
+      (add-body! #:shape (sphere 0.1) #:position #(0 0 99))
+      (test-message "a body more than at the checkpoint" "added since the checkpoint"
+        (restore! kept)))))
 
 (in-world ()
   (let ((free (add-body! #:shape #f #:mass 2 #:inertia #(1 2 3) #:center-of-mass #(0 0 0)
