@@ -8,6 +8,9 @@ namespace {
 // Cell edges from 2^-40 to 2^55 m; what is larger or smaller shares the end's cells.
 constexpr int least_exponent = -40, greatest_exponent = 55;
 
+// A box moves to the next finer level when its longest edge is below this share of that level's cells.
+constexpr double stays_above = 0.75;
+
 // A table has at least this many buckets for each box.
 constexpr std::size_t buckets_per_box = 2;
 
@@ -20,18 +23,23 @@ int SpatialHash::exponent_of(const Aabb& box) {
   return std::clamp(exponent, least_exponent, greatest_exponent);
 }
 
-SpatialHash::RoughBox SpatialHash::rough(const Aabb& box) {
-  // one conversion and one sum are off by at most 2^-24 of the magnitude each
+void SpatialHash::set_rough(Entry& entry, const Aabb& box) {
+  // one conversion and one sum are off by at most 2^-24 of the magnitude each; what is beyond the rim
+  // counts as at the rim
   const auto down = [](double x) {
-    const float f = static_cast<float>(x);
+    const double rim = 0x1p126;
+    const float f = static_cast<float>(std::min(std::max(x, -rim), rim));
     return f - std::abs(f) * 0x1p-22f - 0x1p-126f;
   };
-  RoughBox result;
   for (int i = 0; i < 3; ++i) {
-    result.lo[static_cast<std::size_t>(i)] = down(box.lo[i]);
-    result.hi[static_cast<std::size_t>(i)] = -down(-box.hi[i]);
+    entry.lo[static_cast<std::size_t>(i)] = down(box.lo[i]);
+    entry.hi[static_cast<std::size_t>(i)] = -down(-box.hi[i]);
   }
-  return result;
+}
+
+std::uint64_t SpatialHash::Level::bucket_of(const Aabb& box) const {
+  const Vec3 center = box.center();
+  return row(cell(center[0]), cell(center[1])) | (cell(center[2]) & mask());
 }
 
 SpatialHash::Level& SpatialHash::level_at(int exponent) {
@@ -45,7 +53,7 @@ SpatialHash::Level& SpatialHash::level_at(int exponent) {
 
 void SpatialHash::link(Level& level, std::uint32_t id) {
   Entry& entry = entries_[id];
-  std::uint32_t& first = level.first[entry.bucket];
+  std::uint32_t& first = level.first[residences_[id].bucket];
   entry.next = first;
   entry.previous = nobody;
   if (first != nobody) entries_[first].previous = id;
@@ -55,49 +63,49 @@ void SpatialHash::link(Level& level, std::uint32_t id) {
 void SpatialHash::unlink(Level& level, std::uint32_t id) {
   const Entry& entry = entries_[id];
   std::uint32_t& link_to_it =
-      entry.previous == nobody ? level.first[entry.bucket] : entries_[entry.previous].next;
+      entry.previous == nobody ? level.first[residences_[id].bucket]
+                                : entries_[entry.previous].next;
   link_to_it = entry.next;
   if (entry.next != nobody) entries_[entry.next].previous = entry.previous;
 }
 
 void SpatialHash::place(std::uint32_t id, const Aabb& box) {
-  if (id >= entries_.size()) {
-    entries_.resize(id + 1);
+  if (id >= boxes_.size()) {
     boxes_.resize(id + 1);
+    entries_.resize(id + 1);
+    residences_.resize(id + 1);
   }
-  Entry& entry = entries_[id];
+  Residence& residence = residences_[id];
   int exponent = exponent_of(box);
   // a box that shrank a little stays where it is: levels would flap otherwise
-  if (entry.present && exponent == entry.level - 1) exponent = entry.level;
-  if (entry.present && exponent != entry.level) remove(id);
+  if (residence.present && exponent == residence.level - 1 &&
+      box.size().maxCoeff() > std::ldexp(stays_above, exponent))
+    exponent = residence.level;
+  if (residence.present && exponent != residence.level) remove(id);
 
   boxes_[id] = box;
-  entry.rough = rough(box);
+  set_rough(entries_[id], box);
   Level& level = level_at(exponent);
-  level.reach = level.reach.cwiseMax(0.5 * box.size());
-  const Vec3 center = box.center();
-  const std::size_t bucket =
-      level.bucket(level.cell(center[0]), level.cell(center[1]), level.cell(center[2]));
-  if (entry.present && bucket == entry.bucket) return;
+  level.reach = level.reach.cwiseMax((0.5 + 0x1p-48) * box.size());
+  const std::uint32_t bucket = static_cast<std::uint32_t>(level.bucket_of(box));
+  if (residence.present && bucket == residence.bucket) return;
 
-  if (entry.present) {
+  if (residence.present) {
     unlink(level, id);
   } else {
-    entry.present = true;
-    entry.level = static_cast<std::int16_t>(exponent);
     ++level.count;
     ++count_;
   }
-  entry.bucket = static_cast<std::uint32_t>(bucket);
+  residence = {bucket, exponent, true};
   link(level, id);
   if (level.count * buckets_per_box > level.first.size()) grow_table(level);
 }
 
 void SpatialHash::remove(std::uint32_t id) {
-  if (id >= entries_.size() || !entries_[id].present) return;
-  Level& level = level_at(entries_[id].level);
+  if (id >= residences_.size() || !residences_[id].present) return;
+  Level& level = level_at(residences_[id].level);
   unlink(level, id);
-  entries_[id].present = false;
+  residences_[id].present = false;
   --level.count;
   --count_;
 }
@@ -105,12 +113,10 @@ void SpatialHash::remove(std::uint32_t id) {
 void SpatialHash::grow_table(Level& level) {
   ++level.bits;
   level.first.assign(std::size_t{1} << (3 * level.bits), nobody);
-  for (std::uint32_t id = 0; id < entries_.size(); ++id) {
-    Entry& entry = entries_[id];
-    if (!entry.present || entry.level != level.exponent) continue;
-    const Vec3 center = boxes_[id].center();
-    entry.bucket = static_cast<std::uint32_t>(
-        level.bucket(level.cell(center[0]), level.cell(center[1]), level.cell(center[2])));
+  for (std::uint32_t id = 0; id < residences_.size(); ++id) {
+    Residence& residence = residences_[id];
+    if (!residence.present || residence.level != level.exponent) continue;
+    residence.bucket = static_cast<std::uint32_t>(level.bucket_of(boxes_[id]));
     link(level, id);
   }
 }
@@ -120,13 +126,11 @@ bool SpatialHash::consistent() const {
   for (const Level& level : levels_) {
     std::size_t here = 0;
     for (std::size_t bucket = 0; bucket < level.first.size(); ++bucket)
-      for (std::uint32_t id = level.first[bucket]; id != nobody; id = entries_[id].next, ++here) {
-        const Entry& entry = entries_[id];
-        const Vec3 center = boxes_[id].center();
-        if (here > level.count || !entry.present || entry.level != level.exponent) return false;
-        if (level.bucket(level.cell(center[0]), level.cell(center[1]), level.cell(center[2])) !=
-            bucket)
-          return false;
+      for (std::uint32_t id = level.first[bucket]; id != nobody; id = entries_[id].next) {
+        const Residence& residence = residences_[id];
+        if (++here > level.count || !residence.present) return false;
+        if (residence.level != level.exponent || residence.bucket != bucket) return false;
+        if (level.bucket_of(boxes_[id]) != bucket) return false;
       }
     if (here != level.count) return false;
     found += here;

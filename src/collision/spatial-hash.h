@@ -31,6 +31,7 @@ class SpatialHash {
   // Inserts or moves box `id` (dense numbers from 0).  Must be finite and not empty.
   void place(std::uint32_t id, const Aabb& box);
   void remove(std::uint32_t id);
+  bool contains(std::uint32_t id) const { return id < boxes_.size() && residences_[id].present; }
   const Aabb& box(std::uint32_t id) const { return boxes_[id]; }
 
   // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The visit
@@ -48,41 +49,44 @@ class SpatialHash {
  private:
   static constexpr std::uint32_t nobody = 0xffffffffu;
 
-  // Single precision, outwards: overlaps wherever the true boxes do.
-  struct RoughBox {
+  // A box in single precision, outwards: overlaps wherever the true box does; and its place in the
+  // bucket's list.  Half a cache line.
+  struct alignas(32) Entry {
     std::array<float, 3> lo{}, hi{};
-    bool overlaps(const RoughBox& other) const {
-      // without jumps: the outcome of each comparison is a coin's
-      return (lo[0] <= other.hi[0]) & (other.lo[0] <= hi[0]) & (lo[1] <= other.hi[1]) &
-             (other.lo[1] <= hi[1]) & (lo[2] <= other.hi[2]) & (other.lo[2] <= hi[2]);
+    std::uint32_t next = nobody, previous = nobody;
+
+    // The widest gap along an axis, without jumps: each comparison's outcome is a coin's.
+    bool overlaps(const Entry& other) const {
+      const float x = std::max(lo[0] - other.hi[0], other.lo[0] - hi[0]);
+      const float y = std::max(lo[1] - other.hi[1], other.lo[1] - hi[1]);
+      const float z = std::max(lo[2] - other.hi[2], other.lo[2] - hi[2]);
+      return std::max(std::max(x, y), z) <= 0;
     }
   };
-  struct Entry {
-    RoughBox rough;
-    std::uint32_t next = nobody, previous = nobody;  // in the bucket's list
+  struct Residence {
     std::uint32_t bucket = 0;
-    std::int16_t level = 0;         // exponent of the cell edge
+    int level = 0;                  // exponent of the cell edge
     bool present = false;
   };
   struct Level {
     int exponent = 0;
     double per_cell = 1;            // 1 / cell edge
-    Vec3 reach = Vec3::Zero();      // the largest half-extents that ever lived here
+    Vec3 reach = Vec3::Zero();      // the largest half-extents that ever lived here, and a little
     int bits = 2;                   // of a cell coordinate in the table
     std::vector<std::uint32_t> first = std::vector<std::uint32_t>(64, nobody);
     std::size_t count = 0;
 
-    std::int64_t cell(double coordinate) const;
-    std::size_t bucket(std::int64_t x, std::int64_t y, std::int64_t z) const {
-      const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
-      return static_cast<std::size_t>(
-          (((static_cast<std::uint64_t>(x) & mask) << bits | (static_cast<std::uint64_t>(y) & mask))
-           << bits) | (static_cast<std::uint64_t>(z) & mask));
+    // Cell coordinates are numbers mod 2^64: only their low bits count.
+    std::uint64_t cell(double coordinate) const;
+    std::uint64_t mask() const { return (std::uint64_t{1} << bits) - 1; }
+    std::uint64_t row(std::uint64_t x, std::uint64_t y) const {
+      return ((x & mask()) << bits | (y & mask())) << bits;
     }
+    std::uint64_t bucket_of(const Aabb& box) const;
   };
 
   static int exponent_of(const Aabb& box);
-  static RoughBox rough(const Aabb& box);
+  static void set_rough(Entry& entry, const Aabb& box);
   Level& level_at(int exponent);
   void link(Level& level, std::uint32_t id);
   void unlink(Level& level, std::uint32_t id);
@@ -91,35 +95,42 @@ class SpatialHash {
   template <class Visit>
   void overlapping_on(const Level& level, std::uint32_t id, Visit&& visit) const {
     const Aabb& box = boxes_[id];
-    const RoughBox wanted = entries_[id].rough;
-    std::array<std::int64_t, 3> lo, hi;
+    const Entry* const entries = entries_.data();
+    const Entry wanted = entries[id];
+    const std::uint64_t mask = level.mask();
+    std::array<std::uint64_t, 3> first, count;
     for (int i = 0; i < 3; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
-      lo[k] = level.cell(box.lo[i] - level.reach[i]);
+      // centres are rounded
+      const double reach = level.reach[i] + 0x1p-50 * (std::abs(box.lo[i]) + std::abs(box.hi[i]));
+      first[k] = level.cell(box.lo[i] - reach);
       // around the table once is everywhere
-      hi[k] = std::min(level.cell(box.hi[i] + level.reach[i]), lo[k] + (1 << level.bits) - 1);
+      count[k] = std::min(level.cell(box.hi[i] + reach) - first[k], level.mask()) + 1;
     }
-    for (std::int64_t x = lo[0]; x <= hi[0]; ++x)
-      for (std::int64_t y = lo[1]; y <= hi[1]; ++y)
-        for (std::int64_t z = lo[2]; z <= hi[2]; ++z)
-          for (std::uint32_t other = level.first[level.bucket(x, y, z)]; other != nobody;) {
-            const Entry& entry = entries_[other];
-            if (entry.rough.overlaps(wanted) && other != id && boxes_[other].overlaps(box))
-              visit(other);
+    for (std::uint64_t x = 0; x < count[0]; ++x)
+      for (std::uint64_t y = 0; y < count[1]; ++y) {
+        const std::uint32_t* const row = &level.first[level.row(first[0] + x, first[1] + y)];
+        for (std::uint64_t z = 0; z < count[2]; ++z)
+          for (std::uint32_t other = row[(first[2] + z) & mask]; other != nobody;) {
+            const Entry& entry = entries[other];
+            if (entry.overlaps(wanted) && other != id && boxes_[other].overlaps(box)) visit(other);
             other = entry.next;
           }
+      }
   }
 
   std::vector<Aabb> boxes_;
   std::vector<Entry> entries_;
+  std::vector<Residence> residences_;
   std::vector<Level> levels_;       // those in use, few
   std::size_t count_ = 0;
 };
 
-inline std::int64_t SpatialHash::Level::cell(double coordinate) const {
+inline std::uint64_t SpatialHash::Level::cell(double coordinate) const {
   // beyond the rim all cells are one: more candidates, none lost
   const double rim = 0x1p50;
-  return static_cast<std::int64_t>(std::floor(std::clamp(coordinate * per_cell, -rim, rim)));
+  const double inside = std::min(std::max(coordinate * per_cell, -rim), rim);
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(inside)));
 }
 
 }  // namespace tw

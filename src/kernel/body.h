@@ -36,12 +36,13 @@ struct Body {
   bool is_fixed_plane = false;
 
   // ---- the process ----
+  double window_growth = 1;        // doubles with every window in which nobody was near
   Key claim;                       // every key below it has been looked at with its box in place
   std::vector<std::uint32_t> pairs;      // active pair records
   std::vector<std::uint32_t> callbacks;  // that receive its states
   EventQueue::Handle advance = EventQueue::none;
   double head_start = 0;           // adversary scheduler
-  bool placed = false;             // has a box in the hash, or stands in the list of unbounded ones
+  bool placed = false;             // has claimed: has a box in the hash unless it is unbounded
 
   bool dynamic() const { return info.kind == BodyKind::dynamic; }
   bool fixed() const { return info.kind == BodyKind::fixed; }

@@ -10,6 +10,9 @@
 // close to the true impact time, and never after it.  Kinematic bodies are bounded by their speed,
 // over a horizon.
 //
+// With an allowance the plane gives way by half of it to either side: bodies that slide past each other
+// at touch are then apart for as long as they do.
+//
 // The certificate decides only where the next query is made, never the answer: warm simplices are
 // allowed here.
 //
@@ -66,6 +69,7 @@ double first_zero(double gap, double speed, double pull) {
 struct Plane {
   Vec3 n;
   double c = 0, u = 0, alpha = 0;
+  double allowance = 0;  // points may stand this far on the wrong side
 };
 
 // When a core point (offset r from the centre, world) with a radius may reach the plane, n towards it.
@@ -87,7 +91,8 @@ double reach(const Side& side, const Vec3& n, double c, double u, double alpha, 
 double part_reach(const Side& side, const ConvexPart& part, const Plane& plane, double sign,
                   bool as_ball) {
   const Vec3 n = sign * plane.n;
-  const double c = sign * plane.c, u = sign * plane.u, alpha = sign * plane.alpha;
+  const double c = sign * plane.c + plane.allowance;
+  const double u = sign * plane.u, alpha = sign * plane.alpha;
   if (part.kind == PartKind::half_space) {
     // stands, or moves without turning
     const double gap = c - n.dot(side.frame * (part.normal * part.offset));
@@ -104,8 +109,10 @@ double part_reach(const Side& side, const ConvexPart& part, const Plane& plane, 
 
 // Seconds until the two parts may meet, given n from a to b and the witness points.
 double time_apart(const Side& a, const ConvexPart& part_a, const Side& b, const ConvexPart& part_b,
-                  const Vec3& n, const Vec3& point_a, const Vec3& point_b, bool as_balls) {
+                  const Vec3& n, const Vec3& point_a, const Vec3& point_b, double allowance,
+                  bool as_balls) {
   Plane plane;
+  plane.allowance = 0.5 * allowance;
   plane.n = n;
   plane.c = 0.5 * n.dot(point_a + point_b);
   plane.u = 0.5 * n.dot(a.velocity_at(point_a) + b.velocity_at(point_b));
@@ -117,7 +124,7 @@ double time_apart(const Side& a, const ConvexPart& part_a, const Side& b, const 
 
 }  // namespace
 
-double Kernel::certificate(Pair& pair, const Piece& piece, double when) {
+double Kernel::certificate(Pair& pair, const Piece& piece, double when, double allowance) {
   const Side a(*bodies[pair.a], *piece.a, when), b(*bodies[pair.b], *piece.b, when);
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
@@ -136,11 +143,11 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when) {
         const Vec3 ca = a.frame * pa.bound_center, cb = b.frame * pb.bound_center;
         const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
         const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
-        if (spheres && !(centers > radii)) return -never;
+        if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
         if (spheres || centers - radii > far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
           least = std::min(least, time_apart(a, pa, b, pb, n, ca + pa.bound_radius * n,
-                                             cb - pb.bound_radius * n, true));
+                                             cb - pb.bound_radius * n, allowance, true));
           continue;
         }
       }
@@ -148,8 +155,9 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when) {
       if (pair.caches.empty()) pair.caches.resize(parts_a.size() * parts_b.size());
       SimplexCache& cache = pair.caches[i * parts_b.size() + j];
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
-      if (!(s.distance > 0)) return -never;
-      least = std::min(least, time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, false));
+      if (!(s.distance > -allowance)) return -never;
+      least = std::min(least, time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, allowance,
+                                         false));
     }
   ++counters.certificates;
   return when + least;

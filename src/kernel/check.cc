@@ -48,6 +48,21 @@ double point_speed(const Body& body, const ArcPoint& p) {
   return p.v.norm() + (turn > 0 ? turn * body.radius : 0);
 }
 
+Vec3 velocity_at(const Body& body, const State& arc, double when) {
+  if (!body.dynamic()) return Vec3::Zero();
+  return arc.v + (when - arc.arc_time) * arc.acceleration;
+}
+
+// Seconds from `start` to the first impact of a ball on a fixed plane.
+double ball_meets_plane(const Body& ball, const State& arc, const Body& plane, double start) {
+  const Vec3& n = plane.plane_normal;
+  const Vec3 v = velocity_at(ball, arc, start);
+  double speed = n.dot(v);
+  if (std::abs(speed) <= speed_noise * v.norm()) speed = 0;
+  const double gap = n.dot(center_at(ball, arc, start)) - plane.plane_offset - ball.sphere_radius;
+  return sphere_plane_impact(gap, speed, n.dot(arc.acceleration));
+}
+
 }  // namespace
 
 // ---- records ----
@@ -77,6 +92,7 @@ std::uint32_t Kernel::make_pair(Body& a, Body& b, const Key& from) {
   pair.a = first.id();
   pair.b = second.id();
   pair.from = from;
+  pair.head_start = std::max(first.head_start, second.head_start);
   pair.place_a = static_cast<std::uint32_t>(first.pairs.size());
   pair.place_b = static_cast<std::uint32_t>(second.pairs.size());
   first.pairs.push_back(index);
@@ -133,18 +149,18 @@ void Kernel::reset_pair(std::uint32_t index, const Key& key) {
 
 // ---- pieces ----
 
-Piece Kernel::piece_at(const Pair& pair) const {
+Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   Piece piece;
-  piece.a = graph.last_at_or_before(pair.a, pair.from);
-  piece.b = graph.last_at_or_before(pair.b, pair.from);
-  if (!piece.a) piece.a = graph.head(pair.a);
-  if (!piece.b) piece.b = graph.head(pair.b);
+  piece.a = graph.last_at_or_before(a, from);
+  piece.b = graph.last_at_or_before(b, from);
+  if (!piece.a) piece.a = graph.head(a);
+  if (!piece.b) piece.b = graph.head(b);
   piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
   piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
   return piece;
 }
 
-Key Kernel::impact_key(const Pair& pair, const Piece& piece, double impact_time) const {
+Key Kernel::impact_key(const Piece& piece, double impact_time) const {
   // the last states at or before the impact, records and slot changes included
   std::uint32_t microstep = 0;
   for (const State* state : {piece.a, piece.b}) {
@@ -154,7 +170,8 @@ Key Kernel::impact_key(const Pair& pair, const Piece& piece, double impact_time)
       if (s->key.time == impact_time && s->key.kind == KeyKind::edit)
         microstep = std::max(microstep, s->key.microstep);
   }
-  return {impact_time, microstep + 1, KeyKind::impact, pair_id(pair.a, pair.b)};
+  return {impact_time, microstep + 1, KeyKind::impact,
+          pair_id(piece.a->process, piece.b->process)};
 }
 
 bool Kernel::approaching_at(const Piece& piece, double when) const {
@@ -186,53 +203,35 @@ bool Kernel::predicted_exactly(const Piece& piece, const Body& a, const Body& b)
 // Time of the first impact on the piece's arcs as if uncut; `never` if there is none.
 double Kernel::exact_impact(const Piece& piece, const Body& a, const Body& b) const {
   const double start = piece.start_time();
-  const auto speed_at = [&](const Body& body, const State& arc) -> Vec3 {
-    if (!body.dynamic()) return Vec3::Zero();
-    return arc.v + (start - arc.arc_time) * arc.acceleration;
-  };
-  const Vec3 va = speed_at(a, *piece.a), vb = speed_at(b, *piece.b);
-  const Vec3 xa = center_at(a, *piece.a, start), xb = center_at(b, *piece.b, start);
+  if (a.is_fixed_plane) return start + ball_meets_plane(b, *piece.b, a, start);
+  if (b.is_fixed_plane) return start + ball_meets_plane(a, *piece.a, b, start);
 
-  double after;
-  if (a.sphere_radius >= 0 && b.sphere_radius >= 0) {
-    const Vec3 r = xb - xa, u = vb - va;
-    // what an impact left behind is no approach
-    const double noise = speed_noise * (va.norm() + vb.norm());
-    if (r.dot(u) > -noise * r.norm()) return never;
-    after = sphere_sphere_impact(r, u, a.sphere_radius + b.sphere_radius);
-  } else {
-    const Body& plane = a.is_fixed_plane ? a : b;
-    const Body& ball = a.is_fixed_plane ? b : a;
-    const Vec3& n = plane.plane_normal;
-    const Vec3& x = a.is_fixed_plane ? xb : xa;
-    const Vec3& v = a.is_fixed_plane ? vb : va;
-    const double pull = n.dot((a.is_fixed_plane ? *piece.b : *piece.a).acceleration);
-    double speed = n.dot(v);
-    if (std::abs(speed) <= speed_noise * v.norm()) speed = 0;
-    after = sphere_plane_impact(n.dot(x) - plane.plane_offset - ball.sphere_radius, speed, pull);
-  }
-  return start + after;
+  const Vec3 va = velocity_at(a, *piece.a, start), vb = velocity_at(b, *piece.b, start);
+  const Vec3 r = center_at(b, *piece.b, start) - center_at(a, *piece.a, start), u = vb - va;
+  if (r.dot(u) >= 0) return never;
+  // what an impact left behind is no approach
+  const double noise = speed_noise * (va.norm() + vb.norm());
+  if (r.dot(u) > -noise * r.norm()) return never;
+  return start + sphere_sphere_impact(r, u, a.sphere_radius + b.sphere_radius);
 }
 
 // Follows the pieces from `from` as long as they are exact.
 std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, const Key& from,
                                               bool& all_exact) const {
-  Pair probe;
-  probe.a = std::min(a.id(), b.id());
-  probe.b = std::max(a.id(), b.id());
-  probe.from = from;
-  for (;;) {
-    const Piece piece = piece_at(probe);
-    all_exact = !piece.a->error && !piece.b->error &&
-                predicted_exactly(piece, *bodies[probe.a], *bodies[probe.b]);
+  const Body& first = a.id() < b.id() ? a : b;
+  const Body& second = a.id() < b.id() ? b : a;
+  for (Key at = from;;) {
+    const Piece piece = piece_at(first.id(), second.id(), at);
+    all_exact =
+        !piece.a->error && !piece.b->error && predicted_exactly(piece, first, second);
     if (!all_exact) return std::nullopt;
-    const double impact_time = exact_impact(piece, *bodies[probe.a], *bodies[probe.b]);
+    const double impact_time = exact_impact(piece, first, second);
     if (impact_time < never) {
-      const Key key = impact_key(probe, piece, impact_time);
+      const Key key = impact_key(piece, impact_time);
       if (key < piece.end) return key;
     }
     if (piece.end == last_key) return std::nullopt;
-    probe.from = piece.end;
+    at = piece.end;
   }
 }
 
@@ -241,7 +240,7 @@ bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
   ++counters.predictions;
   const double impact_time = exact_impact(piece, *bodies[pair.a], *bodies[pair.b]);
   if (impact_time < never) {
-    const Key key = impact_key(pair, piece, impact_time);
+    const Key key = impact_key(piece, impact_time);
     if (key < piece.end) {
       set_pending(index, key);
       return true;
@@ -263,12 +262,12 @@ bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
 bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
   const double start = piece.start_time();
   ++counters.checks;
-  const double clear = certificate(pair, piece, start);
+  const double clear = certificate(pair, piece, start, 0);
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
   const Separation s = separation_at(piece, start);
   if (s.distance > 0 || !approaching_at(piece, start)) return false;
-  pair.impact = impact_key(pair, piece, start);
+  pair.impact = impact_key(piece, start);
   return true;
 }
 
@@ -278,7 +277,7 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   const Body& b = *bodies[pair.b];
   const double slack = depth_slack * std::min(a.least_width, b.least_width);
   ++counters.checks;
-  const double clear = certificate(pair, piece, when);
+  const double clear = certificate(pair, piece, when, slack);
   pair.next_check = std::max(grid_floor(clear), when + check_grid);
   if (clear > when) return false;
 
@@ -297,7 +296,7 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   }
   if (!approaching_at(piece, impact_time)) return false;
   counters.max_penetration = std::max(counters.max_penetration, -separation_at(piece, impact_time).distance);
-  pair.impact = impact_key(pair, piece, impact_time);
+  pair.impact = impact_key(piece, impact_time);
   return true;
 }
 
@@ -350,7 +349,7 @@ void Kernel::pursue(std::uint32_t index) {
                          : queue.event(pairs[index].event).key.time;
   for (;;) {
     Pair& pair = pairs[index];
-    const Piece piece = piece_at(pair);
+    const Piece piece = piece_at(pair.a, pair.b, pair.from);
     if (piece.a->error || piece.b->error) {
       pair.parked = true;
       queue.withdraw(pair.event);

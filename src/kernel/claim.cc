@@ -19,6 +19,9 @@ namespace {
 // Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
 constexpr double box_inflation = 1e-9;
 
+// The most that windows grow in empty space.
+constexpr double most_growth = 1e6;
+
 // The longest window, s: a body that hardly moves need not claim again for long.
 constexpr double longest_window = 8;
 
@@ -26,7 +29,7 @@ constexpr double longest_window = 8;
 bool plane_overlaps(const Body& plane, const Aabb& box) {
   const Vec3& n = plane.plane_normal;
   double lowest = 0;
-  for (int i = 0; i < 3; ++i) lowest += n[i] * (n[i] > 0 ? box.lo[i] : box.hi[i]);
+  for (int i = 0; i < 3; ++i) lowest += std::min(n[i] * box.lo[i], n[i] * box.hi[i]);
   return lowest <= plane.plane_offset;
 }
 
@@ -56,7 +59,8 @@ double Kernel::window_end(const Body& body) const {
   const double start = body.claim.time;
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
-  const double distance = options.window_cells * std::max(cell_, 2 * body.radius);
+  const double distance =
+      options.window_cells * std::max(cell_, 2 * body.radius) * body.window_growth;
   double speed = 0, pull = 0;
   if (body.dynamic()) {
     speed = (tail.v + (start - tail.arc_time) * tail.acceleration).norm();
@@ -100,14 +104,14 @@ void Kernel::claim_window(Body& body) {
   const double end = body.fixed() ? never : window_end(body);
   body.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
-    if (body.unbounded) {
-      if (!body.placed) unbounded.push_back(body.id());
-    } else {
-      grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end));
-    }
+    if (!body.unbounded) grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end));
     body.placed = true;
     drop_parted_pairs(body);
+    // alone: reach farther next time
+    const std::uint64_t candidates = counters.candidates;
     find_partners(body, before);
+    body.window_growth =
+        counters.candidates == candidates ? std::min(2 * body.window_growth, most_growth) : 1;
   }
   schedule_advance(body);
 }
@@ -141,12 +145,18 @@ void Kernel::find_partners(Body& body, const Key& claimed_before) {
     Body& other = *bodies[id];
     if (body.dynamic() || other.dynamic()) meet(body, other, claimed_before);
   };
-  if (!body.unbounded) grid.overlapping(body.id(), consider);
-  for (const BodyId id : unbounded)
-    if (id != body.id() && boxes_overlap(body, *bodies[id])) consider(id);
-  if (body.unbounded)
+  if (body.unbounded) {
     for (const auto& other : bodies)
-      if (other->placed && !other->unbounded && boxes_overlap(body, *other)) consider(other->id());
+      if (other->placed && other->id() != body.id() && boxes_overlap(body, *other))
+        consider(other->id());
+    return;
+  }
+  grid.overlapping(body.id(), consider);
+  const Aabb& box = grid.box(body.id());
+  for (const BodyId id : unbounded) {
+    const Body& other = *bodies[id];
+    if (other.placed && (!other.is_fixed_plane || plane_overlaps(other, box))) consider(id);
+  }
 }
 
 void Kernel::meet(Body& body, Body& other, const Key& claimed_before) {

@@ -40,14 +40,12 @@ std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point
   return h.value();
 }
 
+// Claims, callbacks and known impacts are events at their own time; a pair that is followed on the
+// grid is safe only up to its last check, before its event.
 double Kernel::compute_gvt() const {
-  double least = never;
-  for (const auto& body : bodies)
-    if (!body->fixed() && !graph.tail(body->id())->error) least = std::min(least, body->claim.time);
+  double least = queue.least_time();
   for (const Pair& pair : pairs)
     if (pair.live && !pair.parked) least = std::min(least, pair.safe_time());
-  for (const CallbackRecord& callback : callbacks)
-    if (!callback.parked) least = std::min(least, callback.next.time);
   return least;
 }
 
@@ -79,9 +77,9 @@ void Kernel::commit(double limit, bool inclusive) {
 // A stopped process whose error GVT passes: commit up to it, then raise.
 void Kernel::raise_error_before(double& limit, bool& inclusive) {
   const State* first = nullptr;
-  for (const auto& body : bodies) {
-    const State* tail = graph.tail(body->id());
-    if (!tail->error) continue;
+  for (const std::uint32_t process : graph.busy()) {
+    const State* tail = graph.tail(process);
+    if (!tail || !tail->error) continue;
     if (tail->key.time < limit || (inclusive && tail->key.time == limit))
       if (!first || tail->key < first->key) first = tail;
   }
@@ -95,36 +93,35 @@ void Kernel::commit_states(double limit, bool inclusive) {
   const auto passed = [&](const State* s) {
     return s->key.time < limit || (inclusive && s->key.time == limit);
   };
-  std::vector<std::pair<Key, std::shared_ptr<const Collision>>> collisions;
-  for (const auto& body : bodies) {
+  const std::size_t delivered_before = undelivered_.size();
+  for (const std::uint32_t process : graph.busy()) {
     // back from the tail to the last committed one, then forward
-    State* state = graph.tail(body->id());
-    while (state->prev && !state->prev->committed) state = state->prev;
-    if (state->committed) continue;
-    for (; state && passed(state) && !state->error; state = state->next) {
-      state->committed = true;
-      counters.kinematic_work += state->kinematic_work;
-      // each ring is counted by its member with the least id
-      bool first = true;
-      for (const State* r = state->ring; r != state; r = r->ring)
-        first = first && state->process < r->process;
-      if (first && state->key.kind == KeyKind::impact) ++counters.collisions;
-      if (first && state->key.kind == KeyKind::callback && state->changed)
-        ++counters.callback_changes;
-      if (state->key.kind == KeyKind::callback)
-        callbacks[state->key.id].committed_next = state->next_callback;
-      if (state->collision) collisions.push_back({state->key, state->collision});
-      if (options.hash && state->changed) {
-        const ArcPoint point = evaluate(*body, *state, state->key.time);
-        hash_sum_ += state_hash(*body, state->key, point, *state);
-        ++hash_count_;
-      }
-    }
+    State* state = graph.tail(process);
+    while (state && state->prev && !state->prev->committed) state = state->prev;
+    if (!state || state->committed) continue;
+    for (; state && passed(state) && !state->error; state = state->next) commit_state(*state);
   }
-  if (collision_observers.empty()) return;
-  std::sort(collisions.begin(), collisions.end(),
-            [](const auto& x, const auto& y) { return x.first < y.first; });
-  for (auto& [key, collision] : collisions) undelivered_.push_back(std::move(collision));
+  std::sort(undelivered_.begin() + static_cast<std::ptrdiff_t>(delivered_before),
+            undelivered_.end(), [](const auto& x, const auto& y) { return x->key < y->key; });
+}
+
+void Kernel::commit_state(State& state) {
+  state.committed = true;
+  counters.kinematic_work += state.kinematic_work;
+  // each ring is counted by its member with the least id
+  bool first = true;
+  for (const State* r = state.ring; r != &state; r = r->ring)
+    first = first && state.process < r->process;
+  if (first && state.key.kind == KeyKind::impact) ++counters.collisions;
+  if (first && state.key.kind == KeyKind::callback && state.changed) ++counters.callback_changes;
+  if (state.key.kind == KeyKind::callback)
+    callbacks[state.key.id].committed_next = state.next_callback;
+  if (state.collision && !collision_observers.empty()) undelivered_.push_back(state.collision);
+  if (options.hash && state.changed) {
+    const Body& body = *bodies[state.process];
+    hash_sum_ += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
+    ++hash_count_;
+  }
 }
 
 // Collisions and frames in time order; a collision at a frame's time comes first.  What an observer's
@@ -172,13 +169,13 @@ void Kernel::deliver_frame(SinkRecord& record) {
 // Keeps the last state at or before the limit, and what frames that are still due will read.
 void Kernel::free_states(double limit) {
   for (const SinkRecord& sink : sinks) limit = std::min(limit, sink.next_time());
-  for (const auto& body : bodies) {
-    if (!graph.head(body->id())->next) continue;
-    State* keep = graph.last_at_or_before_time(body->id(), limit);
+  for (const std::uint32_t process : graph.busy()) {
+    State* keep = graph.last_at_or_before_time(process, limit);
     // ties: an edit at the limit may follow the first of several states there
     while (keep && !keep->committed) keep = keep->prev;
     if (keep) graph.free_before(keep, release());
   }
+  graph.tidy_busy();
 }
 
 std::string Kernel::history_hash() const {

@@ -1,5 +1,5 @@
 // The event queue: an indexed 4-ary heap, so that an event can be moved or withdrawn in place and
-// the top is never stale.
+// the top is never stale.  The heap holds the priorities themselves: only ties look at the events.
 //
 // Order: by priority (the time of the key; a head start earlier under the adversary scheduler), then
 // by key.  Invariant (validate): parents are not later than children; handles point back.
@@ -31,9 +31,12 @@ class EventQueue {
 
   bool empty() const { return heap_.empty(); }
   std::size_t size() const { return heap_.size(); }
-  const Event& top() const { return events_[heap_[0]]; }
+  const Event& top() const { return events_[heap_[0].handle]; }
   const Event& event(Handle handle) const { return events_[handle]; }
-  const std::vector<Handle>& handles() const { return heap_; }
+  // The least time of all events' keys; never before the priority of the top.  `never` if empty.
+  double least_time() const;
+  // All that are scheduled, in no order: for validators.
+  std::vector<Handle> handles() const;
 
   // Inserts the event, or moves the one that `handle` names; updates the handle.
   void schedule(Handle& handle, const Event& event);
@@ -43,14 +46,24 @@ class EventQueue {
   bool validate() const;
 
  private:
-  bool before(Handle a, Handle b) const;
-  void up(std::size_t at);
-  void down(std::size_t at);
-  void put(std::size_t at, Handle handle);
+  struct Slot {
+    double priority;
+    Handle handle;
+  };
+  bool before(const Slot& a, const Slot& b) const {
+    if (a.priority != b.priority) return a.priority < b.priority;
+    return events_[a.handle].key < events_[b.handle].key;
+  }
+  // Puts the slot where it belongs, from place `at` on, which is free.
+  void settle(std::size_t at, const Slot& slot);
+  void put(std::size_t at, const Slot& slot) {
+    heap_[at] = slot;
+    place_[slot.handle] = static_cast<std::uint32_t>(at);
+  }
 
   std::vector<Event> events_;        // by handle
   std::vector<std::uint32_t> place_; // handle -> index in heap_
-  std::vector<Handle> heap_;
+  std::vector<Slot> heap_;
   std::vector<Handle> unused_;
 };
 

@@ -23,6 +23,8 @@ constexpr double touch_per_accuracy = 0.1;
 // Soft impacts (kernel.md): where gravity is 0 this stands in for it, m/s^2.
 constexpr double standard_gravity = 9.81;
 constexpr std::uint32_t soft_run = 8;
+// The interval of a quick run where the pair is not pressed together, share of that where it is.
+constexpr double free_run_share = 1e-2;
 
 // A residual approach below this share of the first one is rounding.
 constexpr double residual_approach = 1e-12;
@@ -207,10 +209,13 @@ void Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   const double fusion_speed =
       std::max(1e-9, contact.fusion_speed.value_or(default_fusion_speed(gravity, size)));
   const double d0 = 2.5e-4 * size;
-  const double tau = std::min(fusion_speed / gravity, pi * std::sqrt(d0 / gravity));
   const Vec3 pull = b.data.acceleration - a.data.acceleration;
   const Vec3 axis = contact_points_.empty() ? r.normal : contact_points_.front().normal;
   const bool pressed = pull.dot(axis) < 0;
+  // what nothing presses together may knock about in a corner for a while; a true collapse goes on to
+  // ever shorter intervals
+  const double tau = std::min(fusion_speed / gravity, pi * std::sqrt(d0 / gravity)) *
+                     (pressed ? 1 : free_run_share);
   bool run_a = true, run_b = true;
   if (body_a.dynamic()) {
     a.data.impacts = continued(a.data.impacts, key.time, tau);
@@ -270,10 +275,9 @@ void Kernel::run_collision_callbacks(const Collision& collision, Draft& a, Draft
 }
 
 void Kernel::process_impact(std::uint32_t index) {
-  const Pair pair = pairs[index];
-  const Key key = pair.impact;
-  Body& body_a = *bodies[pair.a];
-  Body& body_b = *bodies[pair.b];
+  const Key key = pairs[index].impact;
+  Body& body_a = *bodies[pairs[index].a];
+  Body& body_b = *bodies[pairs[index].b];
 
   // only after the receivers' claims have reached its time
   if (!ready(body_a, key) || !ready(body_b, key)) {
@@ -283,6 +287,7 @@ void Kernel::process_impact(std::uint32_t index) {
   }
 
   std::vector<Draft> drafts;
+  drafts.reserve(2);
   drafts.push_back(draft_for(body_a, key, body_a.dynamic()));
   drafts.push_back(draft_for(body_b, key, body_b.dynamic()));
   std::shared_ptr<Collision> collision;

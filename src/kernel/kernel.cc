@@ -74,10 +74,11 @@ void Kernel::process_top() {
   if (options.check) validate_all();
 }
 
-// GVT by scan costs bodies + pairs; often enough to keep queues short, rarely enough to be cheap.
+// GVT and commit cost busy processes + pairs; often enough to keep queues and boxes short, rarely enough
+// to be cheap.
 bool Kernel::gvt_is_due() const {
   if (options.gvt_interval > 0) return events_since_gvt_ >= options.gvt_interval;
-  const std::size_t scanned = bodies.size() + counters.live_pairs + callbacks.size();
+  const std::size_t scanned = graph.busy().size() + counters.live_pairs;
   return events_since_gvt_ >= static_cast<long>(std::max<std::size_t>(64, scanned / 4));
 }
 
@@ -103,7 +104,7 @@ RunStatus Kernel::advance(double until, double slice) {
   while (!finished()) {
     process_top();
     if (gvt_is_due()) update_gvt();
-    if (slice < never && (++events & 63) == 0 && wall_seconds() > slice_end)
+    if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end)
       return RunStatus::slice_over;
   }
   update_gvt();

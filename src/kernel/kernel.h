@@ -38,6 +38,9 @@ namespace tw {
 // Checks of pairs that are not predicted exactly happen at multiples of this, s (2^-20).
 inline constexpr double check_grid = 0x1p-20;
 
+// A body faster than this has run away, m/s: its windows would shrink to the spacing of doubles.
+inline constexpr double speed_limit = 1e12;
+
 inline constexpr std::uint32_t no_pair = 0xffffffffu;
 
 struct CallbackRecord {
@@ -116,7 +119,7 @@ class Kernel {
   StateGraph graph;
   EventQueue queue;
   SpatialHash grid;
-  std::vector<BodyId> unbounded;     // bodies without a box: every claim tests them
+  std::vector<BodyId> unbounded;     // bodies that no box holds: every claim tests them
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> unused_pairs;
   std::vector<CallbackRecord> callbacks;
@@ -137,6 +140,7 @@ class Kernel {
   void begin_run();
   void require_no_overlap(const Body& a, const Body& b) const;
   void check_overlaps(Body& body);
+  void update_contact_classes() const;
   Key edit_key(BodyId id);
   void resolve_shape(Body& body, const BodyDef& def);
   void make_birth(Body& body, const BodyDef& def);
@@ -168,10 +172,10 @@ class Kernel {
   std::uint32_t find_pair(const Body& a, const Body& b) const;
   std::uint32_t make_pair(Body& a, Body& b, const Key& from);
   void drop_pair(std::uint32_t index);
-  Piece piece_at(const Pair& pair) const;
+  Piece piece_at(BodyId a, BodyId b, const Key& from) const;
   bool predicted_exactly(const Piece& piece, const Body& a, const Body& b) const;
   double exact_impact(const Piece& piece, const Body& a, const Body& b) const;
-  Key impact_key(const Pair& pair, const Piece& piece, double impact_time) const;
+  Key impact_key(const Piece& piece, double impact_time) const;
   std::optional<Key> first_exact_impact(const Body& a, const Body& b, const Key& from,
                                         bool& all_exact) const;
   void pursue(std::uint32_t index);
@@ -187,7 +191,8 @@ class Kernel {
 
   // ---- certificate.cc ----
   // Until when the pair is surely apart on the piece's arcs; -infinity: perhaps not at `when`.
-  double certificate(Pair& pair, const Piece& piece, double when);
+  // Overlaps up to `allowance` (m) count as apart.
+  double certificate(Pair& pair, const Piece& piece, double when, double allowance);
 
   // ---- impact.cc ----
   void process_impact(std::uint32_t index);
@@ -217,6 +222,7 @@ class Kernel {
   void update_gvt();
   void commit(double limit, bool inclusive);
   void commit_states(double limit, bool inclusive);
+  void commit_state(State& state);
   void deliver();
   void deliver_frame(SinkRecord& sink);
   void free_states(double limit);
@@ -235,7 +241,9 @@ class Kernel {
   std::uint64_t edits_ = 0;
   unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
   Random adversary_{0};
-  mutable std::unordered_map<std::uint64_t, ContactParameters> contact_cache_;
+  mutable std::unordered_map<std::uint64_t, ContactParameters> contact_cache_;  // by contact classes
+  mutable std::vector<BodyId> contact_classes_;         // of each body: the first body of its class
+  mutable std::unordered_map<std::string, BodyId> contact_class_of_material_;
   mutable unsigned contact_cache_version_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after
   std::vector<ContactPoint> contact_points_;

@@ -38,17 +38,22 @@ Draft Kernel::draft_for(const Body& body, const Key& key, bool new_arc) const {
   return draft;
 }
 
-// A motion that is not finite becomes a speculative error of its body.
+// A motion that is not finite, or runs away, becomes a speculative error of its body.
 void Kernel::check_finite(Draft& draft) const {
   const StateData& d = draft.data;
   if (!draft.body->dynamic() || d.error) return;
-  if (is_finite(d.x) && is_finite(d.q) && is_finite(d.v) && is_finite(d.L)) return;
-  draft.data.error = std::make_exception_ptr(
-      UserError("the motion of " + draft.body->info.name + " is no longer finite at " +
-                    show(draft.data.arc_time) + " s; expected finite positions and velocities",
-                draft.body->info.place));
+  const bool finite = is_finite(d.x) && is_finite(d.q) && is_finite(d.v) && is_finite(d.L);
+  if (finite && d.v.norm() <= speed_limit) return;
+  const std::string name = draft.body->info.name, when = show(d.arc_time);
+  const std::string message =
+      finite ? "the speed of " + name + " at " + when + " s is " + show(d.v.norm()) +
+                   " m/s; expected at most " + show(speed_limit)
+             : "the motion of " + name + " is no longer finite at " + when +
+                   " s; expected finite positions and velocities";
+  draft.data.error = std::make_exception_ptr(UserError(message, draft.body->info.place));
 }
 
+// The drafts give their slots, collisions and errors away.
 void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
   std::vector<State*> ring;
   for (Draft& draft : drafts) {
@@ -58,7 +63,7 @@ void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
     // the process stops here: its arcs end
     if (draft.data.error) draft.data.arc_key = key;
     State* state = graph.append(draft.body->id(), key);
-    static_cast<StateData&>(*state) = draft.data;
+    static_cast<StateData&>(*state) = std::move(draft.data);
     ring.push_back(state);
     if (state->starts_arc() && draft.body->dynamic()) ++counters.integrations;
   }

@@ -46,6 +46,9 @@ void Kernel::validate_body_def(const BodyDef& def, const std::string& name) cons
   require_finite(def.position, "position", name);
   require_finite(def.velocity, "velocity", name);
   require_finite(def.angular_velocity, "angular-velocity", name);
+  TW_REQUIRE(def.velocity.norm() <= speed_limit, "the speed of " + name + " is " +
+                                                     show(def.velocity.norm()) +
+                                                     " m/s; expected at most " + show(speed_limit));
   TW_REQUIRE(is_finite(def.orientation) && def.orientation.squaredNorm() > 0,
              "orientation of " + name + " is zero or not finite; expected a quaternion #(w x y z)");
   TW_REQUIRE(!(def.fixed && def.motion),
@@ -129,6 +132,7 @@ BodyId Kernel::add_body(const BodyDef& def) {
   make_birth(*body, def);
   newborn_.push_back(id);
   names[name] = id;
+  if (body->unbounded) unbounded.push_back(id);
   bodies.push_back(std::move(body));
   return id;
 }
@@ -145,7 +149,8 @@ void Kernel::require_no_overlap(const Body& a, const Body& b) const {
                   a.id() > b.id() ? a.info.place : b.info.place);
 }
 
-// The body's box at the present time against all others.
+// The body's box at the present time against all others that have one: a newborn body later in line
+// looks back.
 void Kernel::check_overlaps(Body& body) {
   if (!body.shape_P) return;
   if (!body.unbounded) {
@@ -153,9 +158,13 @@ void Kernel::check_overlaps(Body& body) {
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
     grid.place(body.id(), box);
     grid.overlapping(body.id(), [&](BodyId other) { require_no_overlap(*bodies[other], body); });
+    for (const BodyId other : unbounded)
+      if (boxes_overlap(body, *bodies[other])) require_no_overlap(*bodies[other], body);
+    return;
   }
   for (const auto& other : bodies)
-    if (other->shape_P && other->id() != body.id() && (other->unbounded || body.unbounded))
+    if (other->id() != body.id() && (other->unbounded || grid.contains(other->id())) &&
+        boxes_overlap(body, *other))
       require_no_overlap(*other, body);
 }
 
@@ -169,12 +178,28 @@ void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
   if (begun) restart_future();
 }
 
-const ContactParameters& Kernel::contact_parameters(BodyId a, BodyId b) const {
+// Bodies that no rule names differ by their material alone: one class for each material, one for each
+// body that is named.  Few classes, so what is looked up for all pairs stays small.
+void Kernel::update_contact_classes() const {
   if (contact_cache_version_ != contacts.version()) {
     contact_cache_.clear();
+    contact_classes_.clear();
+    contact_class_of_material_.clear();
     contact_cache_version_ = contacts.version();
   }
-  const std::uint64_t id = pair_id(a, b);
+  while (contact_classes_.size() < bodies.size()) {
+    const BodyId id = static_cast<BodyId>(contact_classes_.size());
+    const ContactBody& body = bodies[id]->contact;
+    BodyId first = id;
+    if (!contacts.names_body(id))
+      first = contact_class_of_material_.emplace(body.material, id).first->second;
+    contact_classes_.push_back(first);
+  }
+}
+
+const ContactParameters& Kernel::contact_parameters(BodyId a, BodyId b) const {
+  update_contact_classes();
+  const std::uint64_t id = pair_id(contact_classes_[a], contact_classes_[b]);
   const auto known = contact_cache_.find(id);
   if (known != contact_cache_.end()) return known->second;
   const ContactParameters found = contacts.look_up(bodies[a]->contact, bodies[b]->contact);
@@ -329,6 +354,9 @@ void Kernel::begin_run() {
       for (const auto& body : bodies)
         if (options.adversary->some_bodies && adversary_.real() < options.adversary->body_share)
           body->head_start = options.adversary->head_start * adversary_.real();
+      for (CallbackRecord& callback : callbacks)
+        for (const BodyId id : callback.def.targets)
+          callback.head_start = std::max(callback.head_start, bodies[id]->head_start);
     }
     begun = true;
     for (const BodyId id : newborn_) claim_window(*bodies[id]);

@@ -44,7 +44,17 @@ State* StateGraph::append(std::uint32_t process, const Key& key) {
   state->prev = queue.tail;
   (queue.tail ? queue.tail->next : queue.head) = state;
   queue.tail = state;
+  if (!queue.busy) busy_.push_back(process);
+  queue.busy = true;
   return state;
+}
+
+void StateGraph::tidy_busy() {
+  std::erase_if(busy_, [&](std::uint32_t process) {
+    Queue& queue = queues_[process];
+    queue.busy = queue.tail && (queue.head != queue.tail || !queue.tail->committed);
+    return !queue.busy;
+  });
 }
 
 void StateGraph::link_ring(std::span<State* const> states) {
@@ -82,6 +92,7 @@ std::size_t StateGraph::rollback(std::uint32_t process, const Key& key,
     std::uint32_t process;
     Key key;
   };
+  if (!queues_[process].tail || queues_[process].tail->key < key) return 0;
   std::vector<Work> work{{process, key}};
   std::size_t removed = 0;
 
@@ -147,7 +158,10 @@ std::string StateGraph::validate() const {
   std::size_t found = 0;
   for (std::uint32_t p = 0; p < queues_.size(); ++p) {
     const State* before = nullptr;
-    for (const State* s = queues_[p].head; s; before = s, s = s->next, ++found) {
+    const Queue& queue = queues_[p];
+    if (queue.tail && !queue.busy && (queue.head != queue.tail || !queue.tail->committed))
+      return "not listed as busy: body " + std::to_string(p);
+    for (const State* s = queue.head; s; before = s, s = s->next, ++found) {
       const std::string where = "body " + std::to_string(p) + ", " + show(s->key);
       if (s->process != p) return "state in a foreign queue: " + where;
       if (s->prev != before) return "broken link: " + where;
@@ -162,7 +176,7 @@ std::string StateGraph::validate() const {
         r = r->ring;
       } while (r != s);
     }
-    if (queues_[p].tail != before) return "wrong tail: body " + std::to_string(p);
+    if (queue.tail != before) return "wrong tail: body " + std::to_string(p);
   }
   if (found != live_) return "states outside of all queues";
   return "";

@@ -60,6 +60,11 @@ class StateGraph {
   // Removes every state of the queue, committed ones too: for restoring a checkpoint.
   void clear(std::uint32_t process);
 
+  // The processes that have more than one state or one that is not committed, each once, in no order:
+  // whom commit must look at.  May name others too, until the next tidy_busy().
+  const std::vector<std::uint32_t>& busy() const { return busy_; }
+  void tidy_busy();
+
   std::size_t state_count() const { return live_; }
   std::size_t peak_state_count() const { return peak_; }
 
@@ -70,12 +75,14 @@ class StateGraph {
   struct Queue {
     State* head = nullptr;
     State* tail = nullptr;
+    bool busy = false;             // stands in busy_
   };
   State* allocate();
   void release(State* state);
   void unlink_ring(State* state);
 
   std::vector<Queue> queues_;
+  std::vector<std::uint32_t> busy_;
   std::deque<State> pool_;         // addresses stay
   std::vector<State*> unused_;
   std::size_t live_ = 0, peak_ = 0;
