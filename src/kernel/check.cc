@@ -300,6 +300,12 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   return true;
 }
 
+// After a free check at `checked`: no root is left before the bracket that the next check would open.
+void Kernel::raise_safe_time(Pair& pair, const Piece& piece, double checked) const {
+  const double safe = std::max(checked, pair.next_check - check_grid);
+  if (pair.from.time < safe && safe < piece.end.time) pair.from = {safe, 0, KeyKind::birth, 0};
+}
+
 // Follows a piece on the grid; true when the pair waits for an event, false: on to the next piece.
 bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double until) {
   Pair& pair = pairs[index];
@@ -311,6 +317,7 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
         set_pending(index, pair.impact);
         return true;
       }
+      raise_safe_time(pair, piece, piece.start_time());
     } else {
       pair.next_check = grid_ceil(pair.from.time);
       if (pair.next_check <= piece.start_time()) pair.next_check = grid_after(piece.start_time());
@@ -319,9 +326,12 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
 
   // grid points up to the first at or after the piece's end
   const double last = grid_ceil(piece.end.time);
-  while (pair.next_check <= last) {
+  while (pair.next_check <= last && pair.next_check < never) {
     const double when = pair.next_check;
     if (when > until && piece.end.time > until) {
+      // a root could lie in the step before the next check, not earlier
+      const double safe = std::min(when - check_grid, piece.end.time);
+      if (safe > pair.from.time) pair.from = {safe, 0, KeyKind::birth, 0};
       schedule_pair(index, std::min(when, piece.end.time));
       return true;
     }
@@ -329,7 +339,7 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
       set_pending(index, pair.impact);
       return true;
     }
-    if (when < piece.end.time) pair.from = {when, 0, KeyKind::birth, 0};
+    raise_safe_time(pair, piece, when);
   }
   if (piece.end == last_key) {
     // apart for ever: wait until the arcs change or the boxes part

@@ -183,6 +183,7 @@ class Kernel {
   bool pursue_on_grid(std::uint32_t index, const Piece& piece, double until);
   bool check_common_start(Pair& pair, const Piece& piece);
   bool check_grid_point(Pair& pair, const Piece& piece, double when);
+  void raise_safe_time(Pair& pair, const Piece& piece, double checked) const;
   void set_pending(std::uint32_t index, const Key& key);
   void schedule_pair(std::uint32_t index, double when);
   void reset_pair(std::uint32_t index, const Key& key);

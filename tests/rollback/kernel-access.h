@@ -1,0 +1,39 @@
+// Access to the kernel's inside for its own tests.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "kernel/kernel.h"
+
+namespace tw {
+
+// The friend that kernel.h names.
+class KernelTest {
+ public:
+  explicit KernelTest(World& world) : kernel_(world.kernel()) {}
+
+  // What a run does before its first event.
+  void begin() { kernel_.begin_run(); }
+  // Claims the body's next window.
+  void claim(BodyId id) { kernel_.claim_window(*kernel_.bodies[id]); }
+  double claimed_time(BodyId id) const { return kernel_.bodies[id]->claim.time; }
+  // Claims and events up to the body's claimed time being at least `time`.
+  void claim_up_to(BodyId id, double time) {
+    while (claimed_time(id) < time) claim(id);
+  }
+  // The record of the pair; null if it is not active.
+  const Pair* pair(BodyId a, BodyId b) const {
+    const std::uint32_t index = kernel_.find_pair(*kernel_.bodies[a], *kernel_.bodies[b]);
+    return index == no_pair ? nullptr : &kernel_.pairs[index];
+  }
+  // Processes the pair's pending impact now, whatever else is due.
+  void process_impact(BodyId a, BodyId b) {
+    kernel_.process_impact(kernel_.find_pair(*kernel_.bodies[a], *kernel_.bodies[b]));
+  }
+  void process_callback(std::uint32_t number) { kernel_.process_callback(number); }
+  std::size_t undelivered() const { return kernel_.undelivered_.size(); }
+
+ private:
+  Kernel& kernel_;
+};
+
+}  // namespace tw
