@@ -12,9 +12,14 @@ namespace tw::test {
 namespace {
 
 std::vector<Scene> scenes() {
-  return {gas_scene(100),         lattice_scene(4, 1, 4), lattice_scene(4, 1.1, 4),
-          cradle_scene(40),       floor_scene(1.5),       mixture_scene(20, 4, 0.3, 1),
-          paddle_scene(1.5),      callback_on_pairs_scene(3, 1.1, 2),
+  return {gas_scene(100),
+          lattice_scene(4, 1, 4),
+          lattice_scene(4, 1.1, 4),
+          cradle_scene(40),
+          floor_scene(1.5),
+          mixture_scene(20, 4, 0.3, 1),
+          paddle_scene(1.5),
+          callback_on_pairs_scene(3, 1.1, 2),
           callback_without_period_scene(3, 1, 2)};
 }
 

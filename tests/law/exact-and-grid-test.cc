@@ -1,7 +1,7 @@
 // The exact quadratics against the grid of checks with root finding: the same impacts.
 //
-// A ball with a smaller one inside is the same solid for collisions, but it is no single sphere: its
-// pairs take the certified path.
+// A ball with a smaller one inside is the same solid for collisions, but it is no single sphere:
+// its pairs take the certified path.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>

@@ -174,5 +174,21 @@ TEST(SoftImpacts, fast_elastic_sequences_are_not_soft) {
   EXPECT_EQ(run_to(cradle, 100).message, "");
 }
 
+// Balls knock about in corners and between neighbours: quick runs of impacts that nothing holds
+// together.
+TEST(SoftImpacts, dense_elastic_gas_is_not_soft) {
+  World world;
+  world.set_gravity(Vec3::Zero());
+  set_contact_for_all(world, 1, 0);
+  add_walls(world, 0, 3);
+  Random random(3);
+  for (int k = 0; k < 64; ++k)
+    add_ball(world, 0.25, 0.75 * Vec3(k % 4, k / 4 % 4, k / 16) + Vec3::Constant(0.375),
+             random_vector(random, 4));
+  const Ending ending = run_to(world, long_tests() ? 200 : 20);
+  EXPECT_EQ(ending.message, "");
+  EXPECT_GT(ending.collisions, 5000);
+}
+
 }  // namespace
 }  // namespace tw::test

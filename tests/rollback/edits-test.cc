@@ -66,9 +66,7 @@ TEST(Edits, new_body) {
 }
 
 TEST(Edits, new_wall) {
-  expect_one_history([](World& world) {
-    add_wall(world, Vec3(1, 1, 1), -0.2);
-  });
+  expect_one_history([](World& world) { add_wall(world, Vec3(1, 1, 1), -0.2); });
 }
 
 TEST(Edits, restitution) {

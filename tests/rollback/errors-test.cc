@@ -204,7 +204,9 @@ TEST(Errors, callbacks_may_not_change_the_world) {
       [&] { world.edit(ball, [](StateView&) {}); },
       [&] { world.set_gravity(Vec3::Zero()); },
       [&] { set_contact_for_all(world, 1, 0); },
-      [&] { add_ball(world, 0.25, {9, 0, 0}, Vec3::Zero()); },
+      [&] {
+        add_ball(world, 0.25, {9, 0, 0}, Vec3::Zero());
+      },
       [&] { world.add_collision_observer([](const Collision&) {}); },
   };
   std::size_t refused = 0;

@@ -9,9 +9,9 @@
 namespace tw::test {
 namespace {
 
-// Figure 5 of the paper: a has claimed 3 s of its way along y.  b comes along x and has claimed less.
-// When a claim of b makes the boxes overlap, the check starts at b's claimed time before that claim -
-// the lesser of the two, in a's past - and finds the impact there.
+// Figure 5 of the paper: a has claimed 3 s of its way along y.  b comes along x and has claimed
+// less. When a claim of b makes the boxes overlap, the check starts at b's claimed time before that
+// claim - the lesser of the two, in a's past - and finds the impact there.
 class Figure5 : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {

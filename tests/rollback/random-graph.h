@@ -1,8 +1,8 @@
 // Random state graphs, and a brute-force search for what a rollback must remove.
 //
-// The oracle: states are nodes; from each an edge leads to the next one of its queue and to the others
-// of its ring.  Rolling process p back to key K removes what is reachable from p's first state with
-// key >= K, and nothing else.
+// The oracle: states are nodes; from each an edge leads to the next one of its queue and to the
+// others of its ring.  Rolling process p back to key K removes what is reachable from p's first
+// state with key >= K, and nothing else.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -28,10 +28,13 @@ inline std::set<StateName> names_in(const StateGraph& graph) {
   return names;
 }
 
-inline Key impact_at(double time) { return {time, 1, KeyKind::impact, 0}; }
+inline Key impact_at(double time) {
+  return {time, 1, KeyKind::impact, 0};
+}
 
 // Appends the states of one discontinuity to the queues of `processes`, and closes the ring.
-inline std::vector<State*> append_ring(StateGraph& graph, const std::vector<std::uint32_t>& processes,
+inline std::vector<State*> append_ring(StateGraph& graph,
+                                       const std::vector<std::uint32_t>& processes,
                                        const Key& key) {
   std::vector<State*> ring;
   for (const std::uint32_t p : processes) ring.push_back(graph.append(p, key));
@@ -79,9 +82,7 @@ inline std::set<StateName> reachable(const StateGraph& graph, std::uint32_t proc
 inline std::set<StateName> removed_by_rollback(StateGraph& graph, std::uint32_t process,
                                                const Key& key, std::vector<Touched>& touched) {
   std::set<StateName> removed;
-  graph.rollback(process, key, touched, [&](State& s) {
-    removed.insert({s.process, s.key.time});
-  });
+  graph.rollback(process, key, touched, [&](State& s) { removed.insert({s.process, s.key.time}); });
   return removed;
 }
 

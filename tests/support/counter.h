@@ -1,7 +1,7 @@
 // A counter slot, and callbacks that use it: what a user's scene would do, in C++.
 //
-// The counter decides what a callback does to the motion, so a count that is not rolled back shows in
-// the history's hash.
+// The counter decides what a callback does to the motion, so a count that is not rolled back shows
+// in the history's hash.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -23,7 +23,9 @@ class Counter : public Slots {
   long count_;
 };
 
-inline SlotsPtr make_counter(long count = 0) { return std::make_shared<Counter>(count); }
+inline SlotsPtr make_counter(long count = 0) {
+  return std::make_shared<Counter>(count);
+}
 
 inline long counter_of(const SlotsPtr& slots) {
   return slots ? static_cast<const Counter&>(*slots).count() : 0;
@@ -84,6 +86,8 @@ inline void add_collision_callback(World& world, FunctionCollisionCallback::Func
 }
 
 // Cyclic permutation of the components: keeps the speed, and exact times where they were exact.
-inline Vec3 permuted(const Vec3& v) { return {v.y(), v.z(), v.x()}; }
+inline Vec3 permuted(const Vec3& v) {
+  return {v.y(), v.z(), v.x()};
+}
 
 }  // namespace tw::test

@@ -144,8 +144,10 @@ inline Scene paddle_scene(double duration) {
     world.add_body(paddle);
     BodyDef divider;
     divider.shape = make_box({0.1, 5.9, 2.9});
-    divider.motion = make_keyframes({{0, {1.2, 3, 1.5}, {}}, {0.5, {1.2, 3, 1.5}, {}},
-                                     {1.5, {0.9, 3, 1.5}, {}}, {2.5, {0.9, 3, 3.5}, {}}},
+    divider.motion = make_keyframes({{0, {1.2, 3, 1.5}, {}},
+                                     {0.5, {1.2, 3, 1.5}, {}},
+                                     {1.5, {0.9, 3, 1.5}, {}},
+                                     {2.5, {0.9, 3, 3.5}, {}}},
                                     false);
     world.add_body(divider);
     Random random(21);

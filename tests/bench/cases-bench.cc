@@ -1,0 +1,70 @@
+// Brick, bounce, billiard and two gases: error against the exact results and CPU time.  Prints the
+// Markdown table of doc/performance.md.  Reads tests/data, or the folder that TW_TEST_DATA names.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "../support/case-file.h"
+#include "bench-tools.h"
+
+namespace tw::bench {
+namespace {
+
+using Exact = std::vector<std::vector<double>>;
+// m or rad: what the world's present state is off by.
+using ErrorOf = std::function<double(const World&, const Exact&)>;
+
+// The angle between attitudes: 2 |vec(q q_exact*)|.
+double attitude_error(const World& world, const Exact& exact) {
+  const auto& e = exact.at(0);
+  const Quat q(e[3], e[4], e[5], e[6]);
+  return 2 * (world.state(0).orientation * q.conjugate()).vec().norm();
+}
+
+double height_error(const World& world, const Exact& exact) {
+  return std::abs(world.state(1).position.z() - exact.at(0)[0]);
+}
+
+double worst_position(const World& world, const Exact& exact) {
+  double worst = 0;
+  for (const auto& row : exact) {
+    const Vec3 x = world.state(static_cast<BodyId>(row[0])).position;
+    worst = std::max(worst, (x - Vec3(row[1], row[2], row[3])).norm());
+  }
+  return worst;
+}
+
+void print_case(const std::string& name, const std::string& unit, const ErrorOf& error_of) {
+  constexpr int runs = 50;
+  const test::Case c = test::read_case(name);
+  const Exact exact = test::read_rows(name + ".exact.txt");
+  RunCost best{never, never};
+  double error = 0, collisions = 0;
+  for (int k = 0; k < runs; ++k) {
+    World world;
+    test::fill(world, c);
+    const RunCost cost = run(world, c.duration);
+    best.start = std::min(best.start, cost.start);
+    best.loop = std::min(best.loop, cost.loop);
+    error = error_of(world, exact);
+    collisions = statistic(world, "collisions");
+  }
+  std::printf("| %s, %g s | %.0f | %.3g | %.3g | %.1e %s |\n", name.c_str(), c.duration, collisions,
+              1e3 * best.start, 1e3 * best.loop, error, unit.c_str());
+}
+
+}  // namespace
+}  // namespace tw::bench
+
+int main() {
+  using namespace tw::bench;
+  std::puts("| case | collisions | start, ms | loop, ms | error |\n"
+            "| --- | --- | --- | --- | --- |");
+  print_case("brick", "rad", attitude_error);
+  print_case("bounce", "m", height_error);
+  print_case("billiard", "m", worst_position);
+  print_case("gas-100", "m", worst_position);
+  print_case("gas-200", "m", worst_position);
+  return 0;
+}

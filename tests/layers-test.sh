@@ -1,0 +1,51 @@
+#!/bin/sh
+# A folder under src/ includes only itself and folders listed above it; main.cc may include any.
+# Above the binding nobody knows Guile; outside the drawing nobody knows OpenGL.
+# SPDX-License-Identifier: LGPL-3.0-or-later
+cd "${TW_SRCDIR:-.}" || exit 99
+layers='base math geometry collision dynamics integrate kernel record render script'
+failures=0
+
+complain() {
+  echo "$1"
+  failures=$((failures + 1))
+}
+
+# each folder of src/ has its place in the list, and each of the list exists
+for folder in src/*/; do
+  name=$(basename "$folder")
+  case " $layers " in
+    *" $name "*) ;;
+    *) complain "src/$name is not in the list of layers" ;;
+  esac
+done
+
+# "FILE:LINE:#include "FOLDER/..." with a folder further down the list, or a file that isn't there
+above=''
+checked=0
+for layer in $layers; do
+  above="$above $layer"
+  [ -d "src/$layer" ] || complain "src/$layer is missing"
+  includes=$(grep -rnE '^ *# *include *"' "src/$layer" --include='*.h' --include='*.cc')
+  while IFS= read -r include; do
+    [ -n "$include" ] || continue
+    checked=$((checked + 1))
+    header=${include#*\"}
+    header=${header%%\"*}
+    case " $above " in
+      *" ${header%%/*} "*) ;;
+      *) complain "$include: src/$layer may not include ${header%%/*}/" ;;
+    esac
+    [ -e "src/$header" ] || complain "$include: there is no src/$header"
+  done <<END
+$includes
+END
+done
+
+guile=$(grep -rlE '# *include *<(libguile|gc/)' src | grep -vE '^src/(script/|main\.cc$)')
+[ -z "$guile" ] || complain "Guile outside src/script: $guile"
+opengl=$(grep -rlE '# *include *<(GL|EGL|png)' src | grep -v '^src/render/')
+[ -z "$opengl" ] || complain "OpenGL or libpng outside src/render: $opengl"
+
+echo "$checked includes checked, $failures wrong"
+[ "$checked" -gt 0 ] && [ "$failures" = 0 ]
