@@ -7,21 +7,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
+#include "base/cpu-clock.h"
 #include "base/hash.h"
 #include "kernel/kernel.h"
 
 namespace tw {
-namespace {
-
-double thread_cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
                          const StateData& data) {

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/cpu-clock.h"
 #include "base/error.h"
-#include "render/cpu-clock.h"
 #include "render/floating-point-guard.h"
 #include "render/png.h"
 #include "render/whole-file.h"

@@ -3,8 +3,8 @@
 #include "script/callbacks.h"
 
 #include <cmath>
-#include <ctime>
 
+#include "base/cpu-clock.h"
 #include "script/frame-view.h"
 #include "script/primitive.h"
 #include "script/sides.h"
@@ -55,12 +55,6 @@ std::string target_names(const World& world, std::span<StateView* const> targets
   for (const StateView* view : targets)
     text += (text.empty() ? "" : ", ") + world.body(view->body()).name;
   return text;
-}
-
-double thread_cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 // Adds the time of a call to the world's statistics.  Reading the clock costs as much as a small

@@ -1,4 +1,4 @@
-// CPU time of drawing, in all the threads that it takes.
+// CPU time of threads.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 

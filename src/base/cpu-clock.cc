@@ -1,6 +1,6 @@
 // CPU time of threads, from the clock and from /proc/self/task.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "render/cpu-clock.h"
+#include "base/cpu-clock.h"
 
 #include <ctime>
 #include <filesystem>
