@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "base/cpu-clock.h"
 
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,10 @@ double named_threads_cpu_seconds(const char* prefix) {
     nanoseconds += ran;
   }
   return 1e-9 * nanoseconds;
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace tw

@@ -36,7 +36,7 @@ struct Body {
   bool is_fixed_plane = false;
 
   // ---- the process ----
-  double window_growth = 1;        // doubles with every window in which nobody was near
+  int lonely_claims = 0;            // windows in a row in which nobody was near
   Key claim;                       // every key below it has been looked at with its box in place
   std::vector<std::uint32_t> pairs;      // active pair records
   std::vector<std::uint32_t> callbacks;  // that receive its states

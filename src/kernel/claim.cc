@@ -19,8 +19,10 @@ namespace {
 // Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
 constexpr double box_inflation = 1e-9;
 
-// The most that windows grow in empty space.
-constexpr double most_growth = 1e6;
+// A body that claims and finds nobody several times in a row claims longer windows, each twice the one
+// before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
+constexpr int patience = 3;
+constexpr int most_doublings = 20;
 
 // The longest window, s: a body that hardly moves need not claim again for long.
 constexpr double longest_window = 8;
@@ -59,8 +61,8 @@ double Kernel::window_end(const Body& body) const {
   const double start = body.claim.time;
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
-  const double distance =
-      options.window_cells * std::max(cell_, 2 * body.radius) * body.window_growth;
+  const double growth = std::ldexp(1.0, std::max(0, body.lonely_claims - patience));
+  const double distance = options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
   if (body.dynamic()) {
     speed = (tail.v + (start - tail.arc_time) * tail.acceleration).norm();
@@ -107,11 +109,10 @@ void Kernel::claim_window(Body& body) {
     if (!body.unbounded) grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end));
     body.placed = true;
     drop_parted_pairs(body);
-    // alone: reach farther next time
     const std::uint64_t candidates = counters.candidates;
     find_partners(body, before);
-    body.window_growth =
-        counters.candidates == candidates ? std::min(2 * body.window_growth, most_growth) : 1;
+    const bool alone = counters.candidates == candidates;
+    body.lonely_claims = alone ? std::min(body.lonely_claims + 1, patience + most_doublings) : 0;
   }
   schedule_advance(body);
 }

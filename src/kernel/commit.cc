@@ -59,7 +59,10 @@ void Kernel::commit(double limit, bool inclusive) {
   gvt = limit;
   delivered_to_ = limit;
   delivered_inclusive_ = inclusive;
-  deliver();
+  if (error_)
+    deliver(never);
+  else if (delivery_is_worth_it())
+    deliver(slice_end_);
   free_states(limit);
   time = limit;
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
@@ -115,9 +118,19 @@ void Kernel::commit_state(State& state) {
   }
 }
 
+// Writing frames drives the stepping loop's data out of the processor's caches, so they go in batches: at
+// the latest when the next slice begins or the run ends.
+bool Kernel::delivery_is_worth_it() const {
+  constexpr std::size_t batch = 512;
+  if (undelivered_.size() >= 8 * batch) return true;
+  return std::any_of(sinks.begin(), sinks.end(), [&](const SinkRecord& s) {
+    return (delivered_to_ - s.next_time()) * s.fps >= batch;
+  });
+}
+
 // Collisions and frames in time order; a collision at a frame's time comes first.  What an observer's
 // error keeps from being delivered is delivered by the next commit.
-void Kernel::deliver() {
+bool Kernel::deliver(double wall_end) {
   const double cpu = thread_cpu_seconds();
   struct AddTime {
     Kernel& kernel;
@@ -125,7 +138,7 @@ void Kernel::deliver() {
     ~AddTime() { kernel.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
   } add_time{*this, cpu};
 
-  for (;;) {
+  while (wall_end == never || wall_seconds() < wall_end) {
     SinkRecord* sink = nullptr;
     for (SinkRecord& s : sinks)
       if (!sink || s.next_time() < sink->next_time()) sink = &s;
@@ -138,9 +151,10 @@ void Kernel::deliver() {
       for (const CollisionObserver& observer : collision_observers) observer(*collision);
       continue;
     }
-    if (!frame_due) return;
+    if (!frame_due) return true;
     deliver_frame(*sink);
   }
+  return false;
 }
 
 void Kernel::deliver_frame(SinkRecord& record) {

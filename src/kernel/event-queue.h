@@ -32,6 +32,7 @@ class EventQueue {
   bool empty() const { return heap_.empty(); }
   std::size_t size() const { return heap_.size(); }
   const Event& top() const { return events_[heap_[0].handle]; }
+  double top_priority() const { return heap_[0].priority; }
   const Event& event(Handle handle) const { return events_[handle]; }
   // The least time of all events' keys; never before the priority of the top.  `never` if empty.
   double least_time() const;

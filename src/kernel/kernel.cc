@@ -7,17 +7,12 @@
 #include "kernel/kernel.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/cpu-clock.h"
 
 namespace tw {
 namespace {
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Marks the kernel as running, and adds up its CPU time, delivery to sinks excluded.
 class RunGuard {
@@ -79,7 +74,7 @@ bool Kernel::gvt_is_due() const {
 
 // Everything up to the end is final when nothing that could still change it is left.
 bool Kernel::finished() {
-  if (queue.empty() || queue.top().priority > until_) {
+  if (queue.empty() || queue.top_priority() > until_) {
     if (compute_gvt() > until_) return true;
   }
   return queue.empty();
@@ -94,17 +89,18 @@ RunStatus Kernel::advance(double until, double slice) {
   until_ = until;
   begin_run();
 
-  const double slice_end = slice < never ? wall_seconds() + slice : never;
+  slice_end_ = slice < never ? wall_seconds() + slice : never;
+  if (!deliver(slice_end_)) return RunStatus::slice_over;
   long events = 0;
   while (!finished()) {
     process_top();
     if (gvt_is_due()) update_gvt();
-    if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end)
+    if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end_)
       return RunStatus::slice_over;
   }
   update_gvt();
   time = until;
-  return RunStatus::finished;
+  return deliver(slice_end_) ? RunStatus::finished : RunStatus::slice_over;
 }
 
 bool Kernel::step(double until) {
@@ -115,6 +111,7 @@ bool Kernel::step(double until) {
   if (finished()) return false;
   process_top();
   update_gvt();
+  deliver(never);
   return true;
 }
 

@@ -224,7 +224,9 @@ class Kernel {
   void commit(double limit, bool inclusive);
   void commit_states(double limit, bool inclusive);
   void commit_state(State& state);
-  void deliver();
+  bool delivery_is_worth_it() const;
+  // Until nothing is due (true) or the wall clock passes `wall_end`.
+  bool deliver(double wall_end);
   void deliver_frame(SinkRecord& sink);
   void free_states(double limit);
   void raise_error_before(double& limit, bool& inclusive);
@@ -232,6 +234,7 @@ class Kernel {
   double cell_ = 1;                  // typical spacing, m
   bool contacts_may_disable_ = false;  // somebody called disable-collisions!
   long events_since_gvt_ = 0;
+  double slice_end_ = never;         // wall clock, s
   double until_ = 0;                 // end of the present run
   std::vector<BodyId> newborn_;
   std::deque<std::shared_ptr<const Collision>> undelivered_;  // committed, in time order

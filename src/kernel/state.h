@@ -28,18 +28,10 @@ struct ImpactRun {
   double last_time = -never;
 };
 
-// All of a state but its place in the graph.
+// All of a state but its place in the graph.  What every prediction reads stands last, beside the keys
+// and links of State: a few cache lines instead of all.
 struct StateData {
-  // the arc
-  Key arc_key;                  // key of the discontinuity that started the arc
-  double arc_time = 0;          // origin of the arc, s
-  Vec3 x = Vec3::Zero();        // at arc_time, and so on
-  Quat q = Quat::Identity();
-  Vec3 v = Vec3::Zero();
-  Vec3 L = Vec3::Zero();
-  Vec3 force = Vec3::Zero();         // applied, constant along the arc
-  Vec3 acceleration = Vec3::Zero();  // gravity + force/mass
-  mutable FreeRotation rotation;     // made from q and L when first needed
+  mutable FreeRotation rotation;     // of the arc, made from q and L when first needed
   mutable bool rotation_ready = false;
 
   // what is copied from state to state
@@ -52,7 +44,17 @@ struct StateData {
   double next_callback = never;      // callbacks without a period: their next time
   std::shared_ptr<const Collision> collision;  // on the ring's first state
   double kinematic_work = 0;         // J, done by kinematic bodies in this impact (first state)
-  std::exception_ptr error;          // speculative: raised when GVT passes it; stops the process
+
+  // the arc
+  Vec3 L = Vec3::Zero();             // at arc_time, and so on
+  Quat q = Quat::Identity();
+  Vec3 force = Vec3::Zero();         // applied, constant along the arc
+  Vec3 acceleration = Vec3::Zero();  // gravity + force/mass
+  Vec3 v = Vec3::Zero();
+  Vec3 x = Vec3::Zero();
+  double arc_time = 0;          // origin of the arc, s
+  Key arc_key;                  // key of the discontinuity that started the arc
+  std::exception_ptr error;     // speculative: raised when GVT passes it; stops the process
 };
 
 struct State : StateData {
