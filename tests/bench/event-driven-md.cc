@@ -125,17 +125,9 @@ void EventDrivenMd::cross(std::int32_t i) {
   find_crossing(s);
 
   // the layer of nine cells that came into reach
-  const int layer = s.cell[axis] + step;
-  if (layer >= 0 && layer < cells_) {
-    std::array<int, 3> lo, hi;
-    for (std::size_t k = 0; k < 3; ++k) {
-      lo[k] = k == axis ? layer : std::max(0, s.cell[k] - 1);
-      hi[k] = k == axis ? layer : std::min(cells_ - 1, s.cell[k] + 1);
-    }
-    for (int x = lo[0]; x <= hi[0]; ++x)
-      for (int y = lo[1]; y <= hi[1]; ++y)
-        for (int z = lo[2]; z <= hi[2]; ++z) look_in(i, x, y, z, when);
-  }
+  Range range = reach(s);
+  range.lo[axis] = range.hi[axis] = s.cell[axis] + step;
+  if (range.lo[axis] >= 0 && range.hi[axis] < cells_) look_in(i, range, when);
   schedule(i);
 }
 
@@ -173,7 +165,7 @@ void EventDrivenMd::meet(std::int32_t i, std::int32_t j, double when) {
 }
 
 // Impacts with the spheres of one cell that come before what either has in view.
-void EventDrivenMd::look_in(std::int32_t i, int x, int y, int z, double now) {
+void EventDrivenMd::look_in_cell(std::int32_t i, int x, int y, int z, double now) {
   const Sphere& a = sphere(i);
   for (std::int32_t j = list_of(x, y, z); j != nobody; j = sphere(j).next) {
     if (j == i) continue;
@@ -192,19 +184,26 @@ void EventDrivenMd::look_in(std::int32_t i, int x, int y, int z, double now) {
   }
 }
 
-void EventDrivenMd::look_around(std::int32_t i, double now) {
-  const auto cell = sphere(i).cell;
-  const auto lo = [&](std::size_t k) { return std::max(0, cell[k] - 1); };
-  const auto hi = [&](std::size_t k) { return std::min(cells_ - 1, cell[k] + 1); };
-  for (int x = lo(0); x <= hi(0); ++x)
-    for (int y = lo(1); y <= hi(1); ++y)
-      for (int z = lo(2); z <= hi(2); ++z) look_in(i, x, y, z, now);
+// The cells about the sphere's own, without what lies outside of the cube.
+EventDrivenMd::Range EventDrivenMd::reach(const Sphere& s) const {
+  Range range;
+  for (std::size_t k = 0; k < 3; ++k) {
+    range.lo[k] = std::max(0, s.cell[k] - 1);
+    range.hi[k] = std::min(cells_ - 1, s.cell[k] + 1);
+  }
+  return range;
+}
+
+void EventDrivenMd::look_in(std::int32_t i, const Range& range, double now) {
+  for (int x = range.lo[0]; x <= range.hi[0]; ++x)
+    for (int y = range.lo[1]; y <= range.hi[1]; ++y)
+      for (int z = range.lo[2]; z <= range.hi[2]; ++z) look_in_cell(i, x, y, z, now);
 }
 
 void EventDrivenMd::look_anew(std::int32_t i, double now) {
   part(i);
   find_wall(sphere(i), now);
-  look_around(i, now);
+  look_in(i, reach(sphere(i)), now);
   schedule(i);
 }
 

@@ -56,6 +56,9 @@ class EventDrivenMd {
     std::array<std::int16_t, 3> cell{};
     std::int8_t crossing_axis = 0, crossing_step = 0;
   };
+  struct Range {
+    std::array<int, 3> lo, hi;        // of cells, both ends included
+  };
   struct Slot {
     double time;
     std::int32_t sphere;
@@ -69,8 +72,9 @@ class EventDrivenMd {
 
   void find_crossing(Sphere& s);
   void find_wall(Sphere& s, double now);
-  void look_in(std::int32_t i, int x, int y, int z, double now);
-  void look_around(std::int32_t i, double now);
+  Range reach(const Sphere& s) const;
+  void look_in_cell(std::int32_t i, int x, int y, int z, double now);
+  void look_in(std::int32_t i, const Range& range, double now);
   void look_anew(std::int32_t i, double now);
   void part(std::int32_t i);
   void meet(std::int32_t i, std::int32_t j, double when);
