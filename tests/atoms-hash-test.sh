@@ -2,11 +2,10 @@
 # The schedule never changes the answer: one hash of scenes/atoms.scm over everything that may not
 # matter: output, frame rate, validators, pieces, GVT, windows, undoing, and adversary schedulers.
 #
-# TW_SECONDS of atoms under TW_SEEDS adversary seeds (each of two kinds); `make check-long` asks for
-# 10 s and 50 seeds.  The divider moves within the run.
+# 2 s of atoms and 4 adversary seeds of two kinds; `make check-long`: 10 s and 50 seeds.  The divider moves
+# within the run.
 # SPDX-License-Identifier: LGPL-3.0-or-later
-seconds=${TW_SECONDS:-2}
-seeds=${TW_SEEDS:-4}
+if [ -n "$TW_LONG_TESTS" ]; then seconds=10 seeds=50; else seconds=2 seeds=4; fi
 scene=$TW_SRCDIR/scenes/atoms.scm
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -47,7 +46,7 @@ same "GVT every 10,000 events" --gvt-interval=10000
 same "small windows" --window=0.1
 same "large windows" --window=3
 same "undo and redo" --undo-redo
-if [ -n "$TW_DRAWING" ]; then
+if "$TIMEWARP" --version | grep -q '^drawing: OSMesa'; then
   same "drawn" --frames="$folder/frames" --fps=5 --size=160x90 --quality=draft
 fi
 

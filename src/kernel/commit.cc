@@ -129,7 +129,7 @@ bool Kernel::delivery_is_worth_it() const {
 }
 
 // Collisions and frames in time order; a collision at a frame's time comes first.  What an observer's
-// error keeps from being delivered is delivered by the next commit.
+// error keeps from being delivered is delivered by the next call, and a call delivers one thing at least.
 bool Kernel::deliver(double wall_end) {
   const double cpu = thread_cpu_seconds();
   struct AddTime {
@@ -138,7 +138,7 @@ bool Kernel::deliver(double wall_end) {
     ~AddTime() { kernel.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
   } add_time{*this, cpu};
 
-  while (wall_end == never || wall_seconds() < wall_end) {
+  do {
     SinkRecord* sink = nullptr;
     for (SinkRecord& s : sinks)
       if (!sink || s.next_time() < sink->next_time()) sink = &s;
@@ -153,7 +153,7 @@ bool Kernel::deliver(double wall_end) {
     }
     if (!frame_due) return true;
     deliver_frame(*sink);
-  }
+  } while (wall_end == never || wall_seconds() < wall_end);
   return false;
 }
 
