@@ -12,7 +12,8 @@ fi
 report=$(mktemp)
 trap 'rm -f "$report"' EXIT
 output=$(GUILE_JIT_THRESHOLD=-1 valgrind --log-file="$report" --undef-value-errors=no --leak-check=full \
-  --show-leak-kinds=definite --errors-for-leak-kinds=definite --error-exitcode=9 \
+  --suppressions="$TW_SRCDIR/tests/guile.supp" --show-leak-kinds=definite \
+  --errors-for-leak-kinds=definite --error-exitcode=9 \
   "$TIMEWARP" -q -l "$TW_SRCDIR/tests/scheme/failing-callbacks.scm" -c '(exit 0)')
 status=$?
 

@@ -1,6 +1,6 @@
 // The main loop: least key first, GVT every so often, until everything up to the end is committed.
 //
-// Policy `timewarp`.  The adversary scheduler gives events or bodies a random head start: they are
+// What comes next is the policy's choice (policy.h).  The adversary scheduler gives events or bodies a random head start: they are
 // taken out of order, which makes rollbacks common; the committed history must not change.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -46,8 +46,7 @@ Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject,
   return {priority, key, kind, subject};
 }
 
-void Kernel::process_top() {
-  const Event event = queue.top();
+void Kernel::process(Event event) {
   switch (event.kind) {
     case EventKind::advance: claim_window(*bodies[event.subject]); break;
     case EventKind::callback: process_callback(event.subject); break;
@@ -93,7 +92,7 @@ RunStatus Kernel::advance(double until, double slice) {
   if (!deliver(slice_end_)) return RunStatus::slice_over;
   long events = 0;
   while (!finished()) {
-    process_top();
+    policy->go_forward(*this);
     if (gvt_is_due()) update_gvt();
     if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end_)
       return RunStatus::slice_over;
@@ -109,7 +108,7 @@ bool Kernel::step(double until) {
   until_ = until;
   begin_run();
   if (finished()) return false;
-  process_top();
+  policy->go_forward(*this);
   update_gvt();
   deliver(never);
   return true;

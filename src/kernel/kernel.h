@@ -30,6 +30,7 @@
 #include "kernel/counters.h"
 #include "kernel/event-queue.h"
 #include "kernel/pair.h"
+#include "kernel/policy.h"
 #include "kernel/state-graph.h"
 #include "kernel/world.h"
 
@@ -91,6 +92,7 @@ class Kernel {
   // ---- kernel.cc ----
   RunStatus advance(double until, double slice);
   bool step(double until);
+  void process(Event event);         // for policies
 
   // ---- reading ----
   ArcPoint point_at(BodyId id, double when) const;
@@ -114,6 +116,7 @@ class Kernel {
 
   // ---- data ----
   WorldOptions options;
+  std::unique_ptr<Policy> policy = make_policy("timewarp");
   std::vector<std::unique_ptr<Body>> bodies;
   std::unordered_map<std::string, BodyId> names;
   StateGraph graph;
@@ -150,7 +153,6 @@ class Kernel {
   void update_cell();
 
   // ---- kernel.cc ----
-  void process_top();
   Event make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start);
   bool gvt_is_due() const;
   bool finished();

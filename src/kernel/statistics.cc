@@ -92,7 +92,7 @@ StatisticsTable Kernel::statistics() const {
       {"kinematic_work", counters.kinematic_work},
       {"energy_start", counters.energy_known ? counters.energy_start : total_energy(time)},
       {"energy_end", total_energy(time)},
-      {"policy", std::string("timewarp")},
+      {"policy", std::string(policy->name())},
       {"accuracy", options.accuracy},
       {"seed", static_cast<std::int64_t>(options.seed)},
   };

@@ -50,8 +50,8 @@ void World::set_adversary(std::optional<AdversaryOptions> adversary) {
 }
 
 void World::set_policy(const std::string& policy) {
-  TW_REQUIRE(policy == "timewarp",
-             "policy is " + policy + "; expected timewarp, the only one in this version");
+  kernel_->require_before_first_run("the policy was set");
+  kernel_->policy = make_policy(policy);
 }
 
 BodyId World::add_body(const BodyDef& def) { return kernel_->add_body(def); }

@@ -1,0 +1,25 @@
+// Policies: timewarp, the only one so far.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/policy.h"
+
+#include "base/error.h"
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+class Timewarp : public Policy {
+ public:
+  const char* name() const override { return "timewarp"; }
+  void go_forward(Kernel& kernel) override { kernel.process(kernel.queue.top()); }
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_policy(const std::string& name) {
+  TW_REQUIRE(name == "timewarp",
+             "policy is " + name + "; expected timewarp, the only one in this version");
+  return std::make_unique<Timewarp>();
+}
+
+}  // namespace tw
