@@ -33,9 +33,7 @@ B; each is a body, a material, or #t for all.  It may run again after a rollback
         (place (caller-place)))
     (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))
     (match kind
-      ('collision (%observe-collisions! world procedure place))
-      ;; bodies fuse and part once there are contact groups
-      ((or 'fusion 'fission) #t)
+      ((or 'collision 'fusion 'fission) (%observe-collisions! world kind procedure place))
       ('frame
        (at-first-run! world (lambda ()
                               (%observe-frames! world procedure (world-fps world) place))))

@@ -62,7 +62,8 @@
   (filter-map (lambda (pair) (and (eq? (car pair) key) (cdr pair))) options))
 
 (define override-keys
-  '(accuracy seed fps size quality hash check undo-redo gvt-interval window adversary))
+  '(accuracy seed fps size quality hash check undo-redo gvt-interval window
+    group-check-rate adversary))
 
 (define (take-overrides! options)
   (set-overrides! (filter (lambda (pair) (memq (car pair) override-keys)) options))

@@ -3,8 +3,10 @@
 (define-module (timewarp shapes)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
-  #:export (sphere box convex half-space union placed rotation
-            shape-volume shape-inertia shape-centroid shape?))
+  #:use-module (timewarp worlds)
+  #:use-module (timewarp vectors)
+  #:export (sphere box cylinder convex half-space union placed rock rotation
+            shape-volume shape-inertia shape-centroid shape-radius shape?))
 
 (define (sphere radius)
   "Return a sphere of RADIUS metres about the origin."
@@ -13,6 +15,10 @@
 (define (box x y z)
   "Return a box with full edges X, Y, Z in metres, centred at the origin."
   (%box x y z))
+
+(define (cylinder radius length)
+  "Return a cylinder of RADIUS and LENGTH metres about the z axis, centred at the origin."
+  (%cylinder radius length))
 
 (define (convex points)
   "Return the convex hull of POINTS, a list or vector of #(x y z) in metres.  The origin is that of
@@ -33,6 +39,65 @@ count the overlap twice."
   "Return SHAPE moved within the body's frame: turned by orientation, then shifted by position."
   (%placed shape position orientation))
 
+;; ---- rocks ----
+
+(define (uniform from to state)
+  (+ from (* (- to from) (random:uniform state))))
+
+;; A point on the unit sphere: z and the azimuth are uniform (Archimedes).
+(define (random-direction state)
+  (let* ((z (uniform -1 1 state))
+         (azimuth (uniform 0 (* 4 (acos 0)) state))
+         (r (sqrt (- 1 (* z z)))))
+    (vector (* r (cos azimuth)) (* r (sin azimuth)) z)))
+
+;; COUNT directions well apart: each is the one of a dozen that is farthest from those before it
+;; (D. Mitchell, Spectrally optimal sampling, 1991, "best candidate").
+(define (spread-directions count state)
+  (define (nearest candidate others)
+    (apply min 4 (map (lambda (other) (norm (v- candidate other))) others)))
+  (let loop ((chosen '()))
+    (if (= (length chosen) count)
+        chosen
+        (let search ((tries 12) (best #f) (best-distance -1))
+          (if (zero? tries)
+              (loop (cons best chosen))
+              (let* ((candidate (random-direction state))
+                     (distance (nearest candidate chosen)))
+                (if (> distance best-distance)
+                    (search (1- tries) candidate distance)
+                    (search (1- tries) best best-distance))))))))
+
+(define-keyword-procedure (rock #:key size vertices random-state)
+  "Return an irregular boulder: the convex hull of up to `vertices' (16) points near an ellipsoid.  It
+has the volume of a ball whose diameter is `size' metres (1), and its centroid at the origin.  It is a
+function of these and of `random-state', by default (scene-random-state), which is the same each time:
+draw rocks that differ from one random state."
+  (let ((size (or size 1)) (count (or vertices 16)) (state (or random-state (scene-random-state))))
+    (unless (and (real? size) (< 0 size +inf.0))
+      (bad-value "size" size "a positive number of metres"))
+    (unless (and (exact-integer? count) (<= 4 count 200))
+      (bad-value "vertices" count "an integer from 4 to 200"))
+    (unless (random-state? state)
+      (bad-value "random-state" state "a Guile random state"))
+    (let* ((b (uniform 0.72 1 state))
+           (c (uniform 0.6 0.9 state))
+           (points (map-in-order
+                    (lambda (direction)
+                      (let ((r (uniform 0.84 1 state)))
+                        (vector (* r (vector-ref direction 0))
+                                (* r b (vector-ref direction 1))
+                                (* r c (vector-ref direction 2)))))
+                    (spread-directions count state)))
+           (raw (%convex points))
+           (center (%shape-centroid raw))
+           ;; pi/6 size^3 is the volume of the ball
+           (scale (* size (expt (/ (* 1/3 (acos 0)) (%shape-volume raw)) 1/3))))
+      (%convex (map (lambda (p) (v* scale (v- p center))) points)))))
+
+(define (random-state? object)
+  (false-if-exception (copy-random-state object)))
+
 (define (rotation axis angle)
   "Return the quaternion #(w x y z) that rotates by ANGLE radians about AXIS."
   (%rotation axis angle))
@@ -48,6 +113,10 @@ count the overlap twice."
 (define (shape-centroid shape)
   "Return the centroid of SHAPE in its own frame."
   (%shape-centroid shape))
+
+(define (shape-radius shape)
+  "Return the radius of the smallest ball about the origin of SHAPE's frame that holds it."
+  (%shape-radius shape))
 
 (define (shape? object)
   "Return #t if OBJECT is a shape."

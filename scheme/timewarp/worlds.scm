@@ -36,7 +36,7 @@
   (set! overrides alist))
 
 ;; Settings of the kernel that the command line can override.
-(define kernel-settings '(accuracy seed hash check undo-redo gvt-interval window))
+(define kernel-settings '(accuracy seed hash check undo-redo gvt-interval window group-check-rate))
 
 (define (make-world)
   "Return a new, empty world."
@@ -93,7 +93,8 @@ options take precedence."
     (when (and accuracy (not (override 'accuracy))) (%set-world! world 'accuracy accuracy))
     (when (and seed (not (override 'seed))) (%set-world! world 'seed seed))
     (when policy (%set-world! world 'policy (policy->string policy)))
-    (when group-check-rate (not-there-yet "#:group-check-rate" "contact groups"))))
+    (when (and group-check-rate (not (override 'group-check-rate)))
+      (%set-world! world 'group-check-rate group-check-rate))))
 
 (define (world-duration world)
   "Return the duration of the scene in WORLD, s."

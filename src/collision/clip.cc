@@ -58,10 +58,8 @@ void clip_face(const Polyhedron& reference, int face_number, const Polyhedron& o
   // the sides of the reference face, inward normals square to its plane
   const double size = reference.radius() + other.radius();
   for (int i = 0; i < face.count && !polygon.empty(); ++i) {
-    const Vec3& tail = reference.vertex(reference.corner(face.first + i));
-    const Vec3& head = reference.vertex(reference.corner(face.first + (i + 1) % face.count));
-    const Vec3 inward = face.normal.cross(head - tail).normalized();
-    clip_by_plane(polygon, inward, inward.dot(tail), on_plane * size);
+    const Polyhedron::Side& side = reference.side(face.first + i);
+    clip_by_plane(polygon, side.inward, side.offset, on_plane * size);
   }
 
   out.clear();

@@ -16,7 +16,8 @@ double sphere_sphere_impact(const Vec3& r, const Vec3& u, double radius_sum) {
   if (!(b < 0)) return never_touch;
   const double c = r.squaredNorm() - radius_sum * radius_sum;
   if (c <= 0) return 0;
-  const double disc = b * b - u.squaredNorm() * c;
+  // b^2 - |u|^2 c, written so that it keeps its digits from any distance
+  const double disc = u.squaredNorm() * (radius_sum * radius_sum) - r.cross(u).squaredNorm();
   if (!(disc > 0)) return never_touch;
   // the smaller root, without cancellation
   return c / (-b + std::sqrt(disc));

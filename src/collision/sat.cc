@@ -64,8 +64,8 @@ void try_faces(const Polyhedron& p, const Polyhedron& q, const Frame& q_in_p, Ax
   const Vec3 center = q_in_p * q.center();
   int first = 0;
   search.start = 0;
-  p.face_separation(center, first);
-  try_face(p, first, q, q_in_p, kind, search);
+  const double height = p.face_separation(center, first);
+  if (height - q.inner_radius() >= search.chosen) try_face(p, first, q, q_in_p, kind, search);
   const int count = static_cast<int>(p.faces().size());
   for (int f = 0; f < count; ++f) {
     const Polyhedron::Face& face = p.face(f);
@@ -152,17 +152,22 @@ void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, do
 
 }  // namespace
 
-LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap) {
+LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap,
+                     const LeastAxis* known) {
   Search search;
   const double size = a.radius() + b.radius();
   search.margin = tie * size;
+  if (known != nullptr) {
+    search.best = *known;
+    search.chosen = search.greatest = known->distance;
+  }
   try_faces(a, b, b_in_a, AxisKind::face_a, search);
   // A seen from B's frame; a face of B points from B to A
   const Mat3 back = b_in_a.R.transpose();
   const Frame a_in_b(back, -(back * b_in_a.p));
+  const double before = search.chosen;
   try_faces(b, a, a_in_b, AxisKind::face_b, search);
-  if (search.best.kind == AxisKind::face_b)
-    search.best.normal = -(b_in_a.R * search.best.normal);
+  if (search.chosen != before) search.best.normal = -(b_in_a.R * search.best.normal);
   // moving B by at most -s along the answer makes the two edges meet
   try_edges(a, b, b_in_a, std::max(gap, -search.chosen) + slack * size, search);
   search.best.distance = search.greatest;
@@ -178,8 +183,10 @@ void nearest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3
   const double ur = u.dot(r);
   const double vr = v.dot(r);
   const double det = uu * vv - uv * uv;
-  // minimise |r + s u - t v|^2, clamping s, then t, then s again
-  double s = det > 0 ? std::clamp((uv * vr - vv * ur) / det, 0.0, 1.0) : 0.0;
+  // minimise |r + s u - t v|^2, clamping s, then t, then s again; lines that are parallel up to rounding
+  // leave s free
+  constexpr double rounding = 1e-15;
+  double s = det > rounding * uu * vv ? std::clamp((uv * vr - vv * ur) / det, 0.0, 1.0) : 0.0;
   double t = (uv * s + vr) / vv;
   if (t < 0 || t > 1) {
     t = std::clamp(t, 0.0, 1.0);

@@ -34,8 +34,10 @@ struct LeastAxis {
 };
 
 // `b_in_a` maps B's frame to A's.  `gap` is the distance where it is known to be positive: edges
-// farther apart than that cannot matter; 0 for overlap.
-LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap);
+// farther apart than that cannot matter; 0 for overlap.  `known`, if any, is an axis to begin with: the
+// better it is, the less is left to search; it stays at ties.
+LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap,
+                     const LeastAxis* known = nullptr);
 
 // Nearest points of the lines through two segments p + s u and q + t v, s and t within 0..1.
 // Parallel lines: some pair of nearest points.

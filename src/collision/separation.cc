@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "collision/clip.h"
+#include "collision/cylinder-point.h"
 #include "collision/gjk.h"
 #include "collision/part-pairs.h"
+#include "collision/round-distance.h"
 
 namespace tw {
 
@@ -209,6 +211,49 @@ Separation half_spaces(const ConvexPart& a, const Frame& frame_a, const ConvexPa
   return result;
 }
 
+Separation half_space_cylinder(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                               const Frame& frame_b, SimplexCache*) {
+  const Plane plane(a, frame_a);
+  const SupportCore core(b, frame_b * b.placement);
+  Separation result;
+  result.normal = plane.normal;
+  result.point_b = core.support(-plane.normal);
+  result.distance = plane.height(result.point_b);
+  result.point_a = result.point_b - result.distance * plane.normal;
+  return result;
+}
+
+Separation cylinder_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                           const Frame& frame_b, SimplexCache*) {
+  const Frame world_a = frame_a * a.placement;
+  const Vec3 center = frame_b * b.placement.p;
+  const NearestOnCylinder near =
+      nearest_on_cylinder(a.radius, a.half_length, world_a.to_local(center));
+  Separation result;
+  result.distance = near.distance - b.radius;
+  result.normal = world_a.R * near.normal;
+  result.point_a = world_a * near.point;
+  result.point_b = center - b.radius * result.normal;
+  return result;
+}
+
+// A cylinder and a cylinder or a polyhedron, in the frame of A's core.
+Separation round_cores(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                       const Frame& frame_b, SimplexCache*) {
+  const Frame world_a = frame_a * a.placement;
+  const Frame world_b = frame_b * b.placement;
+  const Mat3 back = world_a.R.transpose();
+  const RoundDistance core =
+      round_distance(SupportCore(a, Frame()),
+                     SupportCore(b, Frame(back * world_b.R, back * (world_b.p - world_a.p))));
+  Separation result;
+  result.distance = core.distance;
+  result.normal = world_a.R * core.normal;
+  result.point_a = world_a * core.point_a;
+  result.point_b = world_a * core.point_b;
+  return result;
+}
+
 // The other order of a pair.
 template <Query query>
 Separation swapped(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
@@ -219,11 +264,12 @@ Separation swapped(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
   return result;
 }
 
-// The table of pairs of kinds; rows and columns: sphere, polyhedron, half-space.
-constexpr Query queries[3][3] = {
-    {spheres, swapped<polyhedron_sphere>, swapped<half_space_sphere>},
-    {polyhedron_sphere, polyhedra, swapped<half_space_polyhedron>},
-    {half_space_sphere, half_space_polyhedron, half_spaces},
+// The table of pairs of kinds; rows and columns: sphere, polyhedron, half-space, cylinder.
+constexpr Query queries[4][4] = {
+    {spheres, swapped<polyhedron_sphere>, swapped<half_space_sphere>, swapped<cylinder_sphere>},
+    {polyhedron_sphere, polyhedra, swapped<half_space_polyhedron>, round_cores},
+    {half_space_sphere, half_space_polyhedron, half_spaces, half_space_cylinder},
+    {cylinder_sphere, round_cores, swapped<half_space_cylinder>, round_cores},
 };
 
 // A lower bound of the distance of two parts by their bounding balls, lowered by what rounding can

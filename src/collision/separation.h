@@ -37,7 +37,7 @@ extern thread_local unsigned long long distance_queries;
 // One pair of parts, each with its *body's* frame.  The distance is exact to about 1e-15 of the
 // size whether separate, touching or penetrating.  While parts are separate the normal is along
 // the witness points; at touch or in penetration it is the axis of least penetration, exact too.
-// `cache` may be null (cold).
+// `cache` may be null (cold).  Cylinders against polyhedra and cylinders: see round-distance.h.
 Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                            const Frame& frame_b, SimplexCache* cache);
 

@@ -4,7 +4,7 @@
 
 #include "collision/clip.h"
 #include "collision/gjk.h"
-#include "collision/part-pairs.h"
+#include "collision/manifold-parts.h"
 
 namespace tw {
 
@@ -92,6 +92,20 @@ void half_space_points(const ConvexPart& half_space, const Frame& frame_h,
     out.push_back({p.point - 0.5 * p.gap * normal, sign * normal, p.gap, pair});
 }
 
+// The manifold of a cylinder, midway between the surfaces.
+void cylinder_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                     const Frame& frame_b, double tolerance, int pair,
+                     std::vector<ContactPoint>& out) {
+  thread_local std::vector<ManifoldPoint> points;
+  points.clear();
+  ++distance_queries;
+  cylinder_manifold(a, frame_a, b, frame_b, tolerance, pair, points);
+  for (const ManifoldPoint& p : points) {
+    const Vec3 surface = p.core_point - (p.radius + 0.5 * p.gap) * p.normal;
+    out.push_back({surface, p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, pair});
+  }
+}
+
 void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                  const Frame& frame_b, double tolerance, int pair,
                  std::vector<ContactPoint>& out) {
@@ -105,19 +119,13 @@ void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
     return half_space_points(a, frame_a, b, frame_b, tolerance, 1, pair, out);
   if (b.kind == PartKind::half_space && a.kind == PartKind::polyhedron)
     return half_space_points(b, frame_b, a, frame_a, tolerance, -1, pair, out);
+  const bool spheres = a.kind == PartKind::sphere || b.kind == PartKind::sphere;
+  if (!spheres && (a.kind == PartKind::cylinder || b.kind == PartKind::cylinder))
+    return cylinder_points(a, frame_a, b, frame_b, tolerance, pair, out);
   // spheres touch in one point
   const Separation s = part_separation(a, frame_a, b, frame_b, nullptr);
   if (s.distance <= tolerance)
     out.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, pair});
-}
-
-// Whether the bounding balls prove a gap above the tolerance.
-bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-               const Frame& frame_b, double tolerance) {
-  if (a.kind == PartKind::half_space || b.kind == PartKind::half_space) return false;
-  const double reach = (a.bound_radius + b.bound_radius) * (1 + 1e-12) + tolerance;
-  const double apart = (frame_b * b.bound_center - frame_a * a.bound_center).norm();
-  return apart > reach;
 }
 
 }  // namespace

@@ -32,6 +32,15 @@ MassProperties box_mass(const Vec3& edges) {
   return mass;
 }
 
+MassProperties cylinder_mass(double radius, double length) {
+  MassProperties mass;
+  mass.volume = pi * radius * radius * length;
+  // I_x = V (3 r^2 + l^2) / 12, I_z = V r^2 / 2
+  const double across = mass.volume * (3 * radius * radius + length * length) / 12.0;
+  mass.inertia = Vec3(across, across, 0.5 * mass.volume * radius * radius).asDiagonal();
+  return mass;
+}
+
 MassProperties polyhedron_mass(const Polyhedron& polyhedron) {
   // tetrahedra from the polyhedron's middle to a fan of triangles on each face
   const Vec3& origin = polyhedron.center();

@@ -17,6 +17,8 @@ namespace tw {
 
 MassProperties sphere_mass(double radius);
 MassProperties box_mass(const Vec3& edges);
+// About the z axis.
+MassProperties cylinder_mass(double radius, double length);
 MassProperties polyhedron_mass(const Polyhedron& polyhedron);
 // The sum of several solids in one frame; an overlap counts twice.  Of nothing: all zero.
 MassProperties summed_mass(const std::vector<MassProperties>& solids);

@@ -31,9 +31,9 @@ Vec3 newell_normal(const std::vector<Vec3>& vertices, const std::vector<int>& po
 }
 
 // Fills compressed rows: `row_of(k)` is the row of item k, `value_of(k)` its value.
-template <class RowOf, class ValueOf>
+template <class Value, class RowOf, class ValueOf>
 void fill_rows(std::size_t rows, std::size_t items, RowOf row_of, ValueOf value_of,
-               std::vector<int>& first, std::vector<int>& values) {
+               std::vector<int>& first, std::vector<Value>& values) {
   first.assign(rows + 1, 0);
   for (std::size_t k = 0; k < items; ++k) ++first[static_cast<std::size_t>(row_of(k)) + 1];
   for (std::size_t r = 0; r < rows; ++r) first[r + 1] += first[r];
@@ -43,15 +43,57 @@ void fill_rows(std::size_t rows, std::size_t items, RowOf row_of, ValueOf value_
     values[static_cast<std::size_t>(next[static_cast<std::size_t>(row_of(k))]++)] = value_of(k);
 }
 
+// Numbers of items in groups of four: all first numbers, all second ones and so on; padded with the last.
+template <class NumberOf>
+std::vector<double> in_lanes(std::size_t items, int numbers, NumberOf number_of) {
+  std::vector<double> lanes;
+  for (std::size_t first = 0; first < items; first += 4)
+    for (int k = 0; k < numbers; ++k)
+      for (std::size_t lane = 0; lane < 4; ++lane)
+        lanes.push_back(number_of(std::min(first + lane, items - 1), k));
+  return lanes;
+}
+
+using Lanes = double __attribute__((vector_size(32)));
+using Numbers = long long __attribute__((vector_size(32)));
+
+Lanes load(const double* data) {
+  Lanes lanes;
+  std::memcpy(&lanes, data, sizeof lanes);
+  return lanes;
+}
+
+// The greatest of many numbers seen four at a time, and the least item that has it.
+struct Greatest {
+  Lanes best = {-1e300, -1e300, -1e300, -1e300};
+  Numbers best_group = {0, 0, 0, 0};
+
+  void see(long long group, const Lanes& values) {
+    const Numbers better = values > best;
+    best = better ? values : best;
+    const Numbers here = {group, group, group, group};
+    best_group = better ? here : best_group;
+  }
+  double value(std::size_t items, int& item) const {
+    long long lane = 0;
+    for (long long k = 1; k < 4; ++k)
+      if (best[k] > best[lane] || (best[k] == best[lane] && best_group[k] < best_group[lane]))
+        lane = k;
+    item = static_cast<int>(std::min(4 * best_group[lane] + lane, static_cast<long long>(items) - 1));
+    return best[lane];
+  }
+};
+
 }  // namespace
 
 Polyhedron::Polyhedron(std::vector<Vec3> vertices, const std::vector<std::vector<int>>& faces)
     : vertices_(std::move(vertices)) {
   set_faces(faces);
+  set_sides();
   set_edges();
-  set_neighbours();
-  set_bounds();
+  set_links();
   set_lanes();
+  set_bounds();
   validate();
 }
 
@@ -70,10 +112,11 @@ Polyhedron Polyhedron::box(const Vec3& half_edges) {
     face.offset = half_edges[f / 2];
   }
   box.is_box_ = true;
+  box.set_sides();
   box.set_edges();
-  box.set_neighbours();
-  box.set_bounds();
+  box.set_links();
   box.set_lanes();
+  box.set_bounds();
   box.validate();
   return box;
 }
@@ -88,12 +131,23 @@ void Polyhedron::set_faces(const std::vector<std::vector<int>>& faces) {
     const Vec3 area = newell_normal(vertices_, polygon);
     TW_REQUIRE(area.norm() > 0, "a face of a polyhedron has no area");
     face.normal = area.normalized();
+    face.area = 0.5 * area.norm();
     // the plane passes through the outermost corner: no corner is outside
     face.offset = face.normal.dot(vertex(polygon[0]));
     for (int corner_vertex : polygon)
       face.offset = std::max(face.offset, face.normal.dot(vertex(corner_vertex)));
     faces_.push_back(face);
   }
+}
+
+void Polyhedron::set_sides() {
+  for (const Face& face : faces_)
+    for (int i = 0; i < face.count; ++i) {
+      const Vec3& tail = vertex(corner(face.first + i));
+      const Vec3& head = vertex(corner(face.first + (i + 1) % face.count));
+      const Vec3 inward = face.normal.cross(head - tail).normalized();
+      sides_.push_back({inward, inward.dot(tail), 0});
+    }
 }
 
 void Polyhedron::set_edges() {
@@ -111,15 +165,24 @@ void Polyhedron::set_edges() {
     TW_REQUIRE(other != face_of_side.end(), "the faces of a polyhedron leave a hole");
     if (side.first < side.second) edges_.push_back({side.first, side.second, face, other->second});
   }
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    for (int f : {edges_[e].left, edges_[e].right}) {
+      const Face& polygon = face(f);
+      const int start = f == edges_[e].left ? edges_[e].tail : edges_[e].head;
+      for (int i = polygon.first; i < polygon.first + polygon.count; ++i)
+        if (corner(i) == start) sides_[static_cast<std::size_t>(i)].edge = static_cast<int>(e);
+    }
 }
 
-void Polyhedron::set_neighbours() {
+void Polyhedron::set_links() {
   // items 2e and 2e+1 are the two directions of edge e
   fill_rows(
       vertices_.size(), 2 * edges_.size(),
       [this](std::size_t k) { return k % 2 == 0 ? edges_[k / 2].tail : edges_[k / 2].head; },
-      [this](std::size_t k) { return k % 2 == 0 ? edges_[k / 2].head : edges_[k / 2].tail; },
-      first_neighbour_, neighbours_);
+      [this](std::size_t k) {
+        return Link{k % 2 == 0 ? edges_[k / 2].head : edges_[k / 2].tail, static_cast<int>(k / 2)};
+      },
+      first_link_, links_);
   std::vector<int> face_of_corner;
   for (std::size_t f = 0; f < faces_.size(); ++f)
     face_of_corner.insert(face_of_corner.end(), static_cast<std::size_t>(faces_[f].count),
@@ -145,12 +208,11 @@ void Polyhedron::set_bounds() {
 
 void Polyhedron::set_lanes() {
   scans_ = vertices_.size() <= scan_limit;
-  if (!scans_) return;
-  const std::size_t groups = (vertices_.size() + 3) / 4;
-  for (std::size_t g = 0; g < groups; ++g)
-    for (int axis = 0; axis < 3; ++axis)
-      for (std::size_t lane = 0; lane < 4; ++lane)
-        lanes_.push_back(vertices_[std::min(4 * g + lane, vertices_.size() - 1)][axis]);
+  if (scans_)
+    lanes_ = in_lanes(vertices_.size(), 3, [this](std::size_t i, int k) { return vertices_[i][k]; });
+  plane_lanes_ = in_lanes(faces_.size(), 4, [this](std::size_t i, int k) {
+    return k < 3 ? faces_[i].normal[k] : faces_[i].offset;
+  });
 }
 
 void Polyhedron::validate() const {
@@ -164,33 +226,17 @@ void Polyhedron::validate() const {
 }
 
 int Polyhedron::scan(const Vec3& direction) const {
-  using Lanes = double __attribute__((vector_size(32)));
-  using Numbers = long long __attribute__((vector_size(32)));
   const double dx = direction.x();
   const double dy = direction.y();
   const double dz = direction.z();
-  Lanes best = {-1e300, -1e300, -1e300, -1e300};
-  Numbers best_group = {0, 0, 0, 0};
+  Greatest greatest;
   const double* data = lanes_.data();
   const long long groups = static_cast<long long>(lanes_.size() / 12);
-  for (long long g = 0; g < groups; ++g, data += 12) {
-    Lanes x, y, z;
-    std::memcpy(&x, data, sizeof x);
-    std::memcpy(&y, data + 4, sizeof y);
-    std::memcpy(&z, data + 8, sizeof z);
-    const Lanes value = dx * x + dy * y + dz * z;
-    const Numbers better = value > best;
-    best = better ? value : best;
-    const Numbers group = {g, g, g, g};
-    best_group = better ? group : best_group;
-  }
-  // the least number among the best
-  long long lane = 0;
-  for (long long k = 1; k < 4; ++k)
-    if (best[k] > best[lane] || (best[k] == best[lane] && best_group[k] < best_group[lane]))
-      lane = k;
-  const long long last = static_cast<long long>(vertices_.size()) - 1;
-  return static_cast<int>(std::min(4 * best_group[lane] + lane, last));
+  for (long long g = 0; g < groups; ++g, data += 12)
+    greatest.see(g, dx * load(data) + dy * load(data + 4) + dz * load(data + 8));
+  int item = 0;
+  greatest.value(vertices_.size(), item);
+  return item;
 }
 
 int Polyhedron::climb(const Vec3& direction, int start) const {
@@ -199,9 +245,8 @@ int Polyhedron::climb(const Vec3& direction, int start) const {
   double height = direction.dot(vertex(here));
   for (bool moved = true; moved;) {
     moved = false;
-    const int end = first_neighbour_[static_cast<std::size_t>(here) + 1];
-    for (int k = first_neighbour_[static_cast<std::size_t>(here)]; k < end; ++k) {
-      const int next = neighbours_[static_cast<std::size_t>(k)];
+    for (const Link& link : links(here)) {
+      const int next = link.vertex;
       const double next_height = direction.dot(vertex(next));
       if (next_height > height) {
         height = next_height;
@@ -214,15 +259,15 @@ int Polyhedron::climb(const Vec3& direction, int start) const {
 }
 
 double Polyhedron::face_separation(const Vec3& point, int& best_face) const {
-  double best = -1e300;
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const double value = faces_[f].normal.dot(point) - faces_[f].offset;
-    if (value > best) {
-      best = value;
-      best_face = static_cast<int>(f);
-    }
-  }
-  return best;
+  const double x = point.x();
+  const double y = point.y();
+  const double z = point.z();
+  Greatest greatest;
+  const double* data = plane_lanes_.data();
+  const long long groups = static_cast<long long>(plane_lanes_.size() / 16);
+  for (long long g = 0; g < groups; ++g, data += 16)
+    greatest.see(g, load(data) * x + load(data + 4) * y + load(data + 8) * z - load(data + 12));
+  return greatest.value(faces_.size(), best_face);
 }
 
 int Polyhedron::face_at_vertex(int vertex, const Vec3& direction) const {

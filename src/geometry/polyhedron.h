@@ -12,6 +12,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "math/aabb.h"
@@ -27,6 +28,19 @@ class Polyhedron {
     double offset = 0;
     int first = 0;  // its corners are corner(first) .. corner(first + count - 1)
     int count = 0;
+    double area = 0;
+  };
+  // The side of a face from one of its corners to the next: in the face's plane, the face lies where
+  // inward.x >= offset.
+  struct Side {
+    Vec3 inward = Vec3::UnitX();
+    double offset = 0;
+    int edge = 0;
+  };
+  // A neighbour of a vertex and the edge to it.
+  struct Link {
+    int vertex = 0;
+    int edge = 0;
   };
   // An edge runs from tail to head with the face `left` on its left seen from outside, so that
   // head - tail points along normal(left) x normal(right).
@@ -49,6 +63,13 @@ class Polyhedron {
   const Face& face(int i) const { return faces_[static_cast<std::size_t>(i)]; }
   const std::vector<Edge>& edges() const { return edges_; }
   int corner(int i) const { return corners_[static_cast<std::size_t>(i)]; }
+  // The side that begins at corner(i).
+  const Side& side(int i) const { return sides_[static_cast<std::size_t>(i)]; }
+  // The neighbours of a vertex.
+  std::span<const Link> links(int vertex) const {
+    const auto v = static_cast<std::size_t>(vertex);
+    return {links_.data() + first_link_[v], links_.data() + first_link_[v + 1]};
+  }
   bool is_box() const { return is_box_; }
 
   // A point inside (the middle of the bounding box where that is inside, else the mean of the
@@ -80,8 +101,9 @@ class Polyhedron {
  private:
   Polyhedron() = default;
   void set_faces(const std::vector<std::vector<int>>& faces);
+  void set_sides();
   void set_edges();
-  void set_neighbours();
+  void set_links();
   void set_bounds();
   void set_lanes();
   void validate() const;
@@ -91,12 +113,16 @@ class Polyhedron {
   std::vector<Vec3> vertices_;
   std::vector<Face> faces_;
   std::vector<int> corners_;
+  std::vector<Side> sides_;
   std::vector<Edge> edges_;
-  // compressed rows: the neighbours and the faces of vertex i start at first_..._[i]
-  std::vector<int> first_neighbour_, neighbours_;
+  // compressed rows: the links and the faces of vertex i start at first_..._[i]
+  std::vector<int> first_link_;
+  std::vector<Link> links_;
   std::vector<int> first_vertex_face_, vertex_faces_;
   // x, y, z of four vertices after each other, padded with the last vertex: what `scan` reads
   std::vector<double> lanes_;
+  // x, y, z, offset of four face planes, padded with the last
+  std::vector<double> plane_lanes_;
   Vec3 center_ = Vec3::Zero();
   double radius_ = 0;
   double inner_radius_ = 0;

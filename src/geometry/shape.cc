@@ -47,10 +47,24 @@ Aabb half_space_bounds(const ConvexPart& part, const Frame& frame) {
   return box;
 }
 
+// A cylinder reaches h |a_i| + r sqrt(1 - a_i^2) along axis i, a its own axis.
+Aabb cylinder_bounds(const ConvexPart& part, const Frame& frame) {
+  const Frame world = frame * part.placement;
+  Vec3 reach;
+  for (int i = 0; i < 3; ++i)
+    reach[i] = part.half_length * std::abs(world.R(i, 2)) +
+               part.radius * std::hypot(world.R(i, 0), world.R(i, 1));
+  Aabb box;
+  box.add(world.p - reach);
+  box.add(world.p + reach);
+  return box;
+}
+
 Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
   switch (part.kind) {
     case PartKind::half_space: return half_space_bounds(part, frame);
     case PartKind::polyhedron: return polyhedron_bounds(part, frame);
+    case PartKind::cylinder: return cylinder_bounds(part, frame);
     case PartKind::sphere: break;
   }
   Aabb box;
@@ -62,6 +76,12 @@ Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
 double radius_about_origin_of(const ConvexPart& part) {
   if (part.kind == PartKind::half_space) return infinity;
   if (part.kind == PartKind::sphere) return part.placement.p.norm() + part.radius;
+  if (part.kind == PartKind::cylinder) {
+    // the farthest point of the rims
+    const double along = part.placement.p.dot(part.placement.R.col(2));
+    const double across = (part.placement.p - along * part.placement.R.col(2)).norm();
+    return std::hypot(std::abs(along) + part.half_length, across + part.radius);
+  }
   double radius = 0;
   for (const Vec3& v : part.core->vertices())
     radius = std::max(radius, (part.placement * v).norm());
@@ -130,6 +150,17 @@ ShapePtr make_box(const Vec3& edges) {
   part.is_box = true;
   part.half_edges = 0.5 * edges;
   return finish_shape({part}, "box", box_mass(edges));
+}
+
+ShapePtr make_cylinder(double radius, double length) {
+  require_length("the radius of a cylinder", radius);
+  require_length("the length of a cylinder", length);
+  ConvexPart part;
+  part.kind = PartKind::cylinder;
+  part.radius = radius;
+  part.half_length = 0.5 * length;
+  part.bound_radius = std::hypot(radius, part.half_length);
+  return finish_shape({part}, "cylinder", cylinder_mass(radius, length));
 }
 
 ShapePtr make_hull(const std::vector<Vec3>& points) {

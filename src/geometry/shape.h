@@ -1,10 +1,10 @@
 // Shapes: immutable unions of placed convex parts.
 //
 // Every shape is a list of convex parts in the body's frame.  A part is a *core* with a radius: a
-// sphere is a point with a radius, a box or hull is a polyhedron with radius 0; a half-space is a
-// part of its own.  Later shapes (capsule: a segment with a radius; cylinder, cone, ellipsoid:
-// support mappings) become further kinds here and one row each in the table of pairs in
-// collision/separation.cc.
+// sphere is a point with a radius, a box or hull is a polyhedron with radius 0; half-spaces and
+// cylinders are parts of their own.  Later shapes (capsule: a segment with a radius; cone, ellipsoid:
+// support mappings) become further kinds here and one row each in the tables of pairs in
+// collision/separation.cc and collision/manifold.cc.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
 // flat, and say which value.
@@ -25,13 +25,14 @@ class Polyhedron;
 class Shape;
 using ShapePtr = std::shared_ptr<const Shape>;
 
-enum class PartKind { sphere, polyhedron, half_space };
+enum class PartKind { sphere, polyhedron, half_space, cylinder };
 
 // One convex part, placed in the frame of the shape.
 struct ConvexPart {
   PartKind kind = PartKind::sphere;
   Frame placement;                           // part frame in the shape's frame
-  double radius = 0;                         // sphere: its radius; otherwise 0
+  double radius = 0;                         // sphere, cylinder: its radius; otherwise 0
+  double half_length = 0;                    // cylinder: along z of the part's frame, to either side
   std::shared_ptr<const Polyhedron> core;    // polyhedron only, in the part's frame
   Vec3 normal = Vec3::UnitZ();               // half-space: outward unit normal, shape's frame
   double offset = 0;                         // half-space: solid where normal.x <= offset
@@ -59,11 +60,12 @@ class Shape {
   // Least width of the bounding box, m: the `size` of contact parameters.  Infinite if unbounded.
   double least_width() const { return least_width_; }
   // The smallest ball around the frame's origin that holds the shape (bound by the parts'
-  // farthest points, exact for spheres and polyhedra), m.
+  // farthest points, exact for spheres, cylinders and polyhedra), m.
   double radius_about_origin() const { return radius_about_origin_; }
-  // The shape's bounds when its frame is placed at `frame`, m.  Exact for spheres, boxes and hulls.
+  // The shape's bounds when its frame is placed at `frame`, m.  Exact for spheres, cylinders,
+  // boxes and hulls.
   Aabb bounds(const Frame& frame) const;
-  // One word for messages: "sphere", "box", "hull", "half-space", "union".
+  // One word for messages: "sphere", "box", "hull", "cylinder", "half-space", "union".
   const std::string& kind_name() const { return kind_name_; }
   // True for a single sphere centred anywhere.
   bool is_sphere() const { return parts_.size() == 1 && parts_[0].kind == PartKind::sphere; }
@@ -85,6 +87,8 @@ class Shape {
 ShapePtr make_sphere(double radius);
 // Full edges, centred at the origin.
 ShapePtr make_box(const Vec3& edges);
+// About the z axis, from -length/2 to length/2.
+ShapePtr make_cylinder(double radius, double length);
 // The convex hull of the points (Qhull).  The frame is the points' own: the centroid need not be
 // at the origin.
 ShapePtr make_hull(const std::vector<Vec3>& points);

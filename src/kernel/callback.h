@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "kernel/key.h"
@@ -29,8 +30,12 @@ struct BodyState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
-// A committed or just computed collision, as callbacks and observers see it.
+enum class CollisionKind : unsigned char { collision, fusion, fission };
+
+// A committed or just computed collision, as callbacks and observers see it; observers also see the
+// fusions of two processes at a contact and the fissions, one for each contact that broke.
 struct Collision {
+  CollisionKind kind = CollisionKind::collision;
   Key key;
   BodyId body1 = 0, body2 = 0;  // body1 < body2
   double time = 0;
@@ -88,6 +93,9 @@ class CollisionCallback {
 };
 
 using CollisionObserver = std::function<void(const Collision&)>;
+
+// What one discontinuity tells observers.
+using Told = std::vector<Collision>;
 
 // One moving body in a frame.
 struct BodyPose {

@@ -72,8 +72,15 @@ void Kernel::process_callback(std::uint32_t number) {
     }
   for (const BodyId id : callback.def.targets) {
     Body& body = *bodies[id];
-    while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error)
+    while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error) {
+      const State& tail = *graph.tail(id);
+      if (body.claim.time >= natural_end(tail)) {
+        // first the group check that stands before the call
+        process_group_check(tail.group->leader());
+        return;
+      }
       claim_window(body);
+    }
   }
   if (!(callback.next == key)) return;
 
@@ -115,6 +122,8 @@ void Kernel::process_callback(std::uint32_t number) {
     data.next_callback = next;
   }
   for (Draft& draft : drafts) draft.data.changed = any_changed;
+  if (std::none_of(drafts.begin(), drafts.end(), [](const Draft& d) { return d.data.error != nullptr; }))
+    regroup_changed(key, drafts);
 
   // the next call, then the states (a rollback through them rewinds it again)
   callback.next = callback.def.period
@@ -122,81 +131,6 @@ void Kernel::process_callback(std::uint32_t number) {
                       : Key{next, 0, KeyKind::callback, number};
   schedule_callback(number);
   enter_discontinuity(key, drafts);
-}
-
-// ---- what a callback sees ----
-
-void DraftView::require_dynamic(const char* what) const {
-  TW_REQUIRE(draft_.body->dynamic(), std::string(what) + " of " + draft_.body->info.name +
-                                         " cannot be changed; expected a dynamic body (this one is " +
-                                         (draft_.body->fixed() ? "fixed)" : "kinematic)"));
-}
-
-double DraftView::kinetic_energy() const {
-  return tw::kinetic_energy(*draft_.body, draft_.point);
-}
-
-// The first change of the motion starts a new arc here.
-void DraftView::start_arc() {
-  StateData& d = draft_.data;
-  if (d.arc_key == key_) return;
-  d.arc_key = key_;
-  d.arc_time = key_.time;
-  d.x = draft_.point.x;
-  d.q = draft_.point.q;
-  d.v = draft_.point.v;
-  d.rotation_ready = false;
-}
-
-void DraftView::set_velocity(const Vec3& v) {
-  require_dynamic("velocity");
-  TW_REQUIRE(is_finite(v), "velocity of " + draft_.body->info.name + " is not finite");
-  start_arc();
-  draft_.data.v = draft_.point.v = state_.velocity = v;
-}
-
-void DraftView::set_angular_velocity(const Vec3& w) {
-  require_dynamic("angular-velocity");
-  TW_REQUIRE(is_finite(w), "angular-velocity of " + draft_.body->info.name + " is not finite");
-  start_arc();
-  draft_.point.w = state_.angular_velocity = w;
-  draft_.data.L = angular_momentum(*draft_.body, draft_.data.q, w);
-}
-
-void DraftView::set_applied_force(const Vec3& force) {
-  require_dynamic("applied-force");
-  TW_REQUIRE(is_finite(force), "applied-force of " + draft_.body->info.name + " is not finite");
-  if (force == draft_.data.force) return;
-  start_arc();
-  draft_.data.force = force;
-  draft_.data.acceleration = gravity_ + force / draft_.body->mass;
-}
-
-void DraftView::set_slots(SlotsPtr slots) { draft_.data.slots = std::move(slots); }
-
-void DraftView::set_pose(const Vec3& position, const Quat& orientation) {
-  TW_ASSERT(may_place_, "set_pose is for edits");
-  require_dynamic("position");
-  TW_REQUIRE(is_finite(position), "position of " + draft_.body->info.name + " is not finite");
-  TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,
-             "orientation of " + draft_.body->info.name + " is zero or not finite");
-  start_arc();
-  const Quat q = orientation.normalized();
-  const Vec3 w = draft_.point.w;
-  draft_.data.q = draft_.point.q = q * draft_.body->X_BP.q;
-  draft_.data.x = draft_.point.x = position + q * draft_.body->X_BP.p;
-  draft_.data.L = angular_momentum(*draft_.body, draft_.data.q, w);
-  state_ = body_state(*draft_.body, draft_.point);
-}
-
-double DraftView::draw_random() {
-  TW_REQUIRE(draft_.enters || draft_.data.slots || draft_.body->dynamic(),
-             "random-real! of " + draft_.body->info.name +
-                 ": a fixed body without slots keeps no state; expected one with #:slots");
-  Random random(draft_.data.random);
-  const double x = random.real();
-  draft_.data.random += 0x9e3779b97f4a7c15ull;
-  return x;
 }
 
 }  // namespace tw

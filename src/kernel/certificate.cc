@@ -8,7 +8,7 @@
 // with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
 // torque-free rotation.  So the time until the plane may be reached is the least root of quadratics:
 // close to the true impact time, and never after it.  Kinematic bodies are bounded by their speed,
-// over a horizon.
+// over a horizon.  Members of groups are bounded by the derivatives of their dense output, over one step.
 //
 // With an allowance the plane gives way by half of it to either side: bodies that slide past each other
 // at touch are then apart for as long as they do.
@@ -22,48 +22,16 @@
 
 #include "geometry/polyhedron.h"
 #include "kernel/kernel.h"
+#include "kernel/turning-plane.h"
 
 namespace tw {
 namespace {
 
-// How far ahead the speed of a kinematic body is bounded, s.
-constexpr double kinematic_horizon = 0.5;
-
 // Bounding balls this many radii apart need no distance query.
 constexpr double far_in_radii = 0.25;
 
-// One body of the pair at the certificate's time.
-struct Side {
-  const Body* body;
-  Frame frame;
-  ArcPoint point;
-  double turn_bound = 0;       // W, rad/s
-  double speed_bound = 0;      // kinematic: the origin's
-  Vec3 acceleration = Vec3::Zero();
-
-  Side(const Body& b, const State& arc, double when) : body(&b), point(evaluate(b, arc, when)) {
-    frame = Frame(point.q.toRotationMatrix(), point.x);
-    if (b.fixed()) return;
-    turn_bound = angular_speed_bound(b, arc, when, when + kinematic_horizon);
-    if (b.dynamic())
-      acceleration = arc.acceleration;
-    else
-      speed_bound = b.motion->speed_bound(when, when + kinematic_horizon);
-  }
-  Vec3 velocity_at(const Vec3& world_point) const {
-    return point.v + point.w.cross(world_point - point.x);
-  }
-};
-
-// Least s > 0 with gap + speed s + pull s^2/2 = 0; gap > 0.  Each branch without cancellation: just
-// after an impact the gap is rounding and the speed is not.
-double first_zero(double gap, double speed, double pull) {
-  const double disc = speed * speed - 2 * pull * gap;
-  if (disc < 0) return never;
-  const double root = std::sqrt(disc);
-  if (speed > 0) return pull < 0 ? (speed + root) / -pull : never;
-  return root - speed > 0 ? 2 * gap / (root - speed) : never;
-}
+// A certificate shorter than this is worth a second look, s.
+constexpr double soon = 1e-4;
 
 // The plane: at height c along n, moving with u and alpha.
 struct Plane {
@@ -73,7 +41,7 @@ struct Plane {
 };
 
 // When a core point (offset r from the centre, world) with a radius may reach the plane, n towards it.
-double reach(const Side& side, const Vec3& n, double c, double u, double alpha, const Vec3& r,
+double reach(const Mover& side, const Vec3& n, double c, double u, double alpha, const Vec3& r,
              double radius) {
   const double gap = c - n.dot(side.point.x + r) - radius;
   if (!(gap > 0)) return 0;
@@ -83,12 +51,24 @@ double reach(const Side& side, const Vec3& n, double c, double u, double alpha, 
     return first_zero(gap, u - bound, alpha);
   }
   const double speed = n.dot(side.point.v + side.point.w.cross(r));
-  const double bend = (1 + side.body->turn_excess) * side.turn_bound * side.turn_bound * arm;
-  return first_zero(gap, u - speed, alpha - n.dot(side.acceleration) - bend);
+  const double push = n.dot(side.acceleration) + n.cwiseAbs().dot(side.spread) + side.bend * arm;
+  return first_zero(gap, u - speed, alpha - push);
+}
+
+// The least over the points of a part of a kinematic body: by its bounds.
+double kinematic_reach(const Mover& side, const ConvexPart& part, const Vec3& n, double c, double u,
+                       double alpha) {
+  if (part.kind == PartKind::cylinder)
+    return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
+  double least = never;
+  for (const Vec3& vertex : part.core->vertices())
+    least = std::min(least, reach(side, n, c, u, alpha,
+                                  side.frame.R * (part.placement * vertex), 0));
+  return least;
 }
 
 // The least over the core points of a part; `sign` +1: the part lies below the plane, -1 above.
-double part_reach(const Side& side, const ConvexPart& part, const Plane& plane, double sign,
+double part_reach(const Mover& side, const ConvexPart& part, const Plane& plane, double sign,
                   bool as_ball) {
   const Vec3 n = sign * plane.n;
   const double c = sign * plane.c + plane.allowance;
@@ -100,15 +80,38 @@ double part_reach(const Side& side, const ConvexPart& part, const Plane& plane, 
   }
   if (as_ball || part.kind == PartKind::sphere)
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
+  if (!side.body->dynamic() && !side.body->fixed()) return kinematic_reach(side, part, n, c, u, alpha);
+
+  // heights and speeds of points are linear in them: in the part's frame,
+  // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w
+  const Frame frame(side.frame.R * part.placement.R, side.frame.R * part.placement.p);
+  const Vec3 m = n.cross(side.point.w);
+  const Vec3 n_P = frame.R.transpose() * n, m_P = frame.R.transpose() * m;
+  const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
+  const double pull =
+      alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) - side.bend * side.body->radius;
+  if (part.kind == PartKind::cylinder) {
+    // the highest point and the fastest, which need not be the same one
+    const auto most = [&](const Vec3& along) {
+      return part.half_length * std::abs(along.z()) + part.radius * std::hypot(along.x(), along.y());
+    };
+    const double gap = c - height - most(n_P);
+    return gap > 0 ? first_zero(gap, u - speed - most(m_P), pull) : 0;
+  }
   double least = never;
-  for (const Vec3& vertex : part.core->vertices())
-    least = std::min(least, reach(side, n, c, u, alpha,
-                                  side.frame.R * (part.placement * vertex), 0));
+  for (const Vec3& vertex : part.core->vertices()) {
+    const double gap = c - height - n_P.dot(vertex);
+    if (!(gap > 0)) return 0;
+    const double rate = u - speed - m_P.dot(vertex);
+    // a concave height that is positive at both ends is so between
+    if (pull <= 0 && gap + least * (rate + 0.5 * pull * least) > 0) continue;
+    least = std::min(least, first_zero(gap, rate, pull));
+  }
   return least;
 }
 
 // Seconds until the two parts may meet, given n from a to b and the witness points.
-double time_apart(const Side& a, const ConvexPart& part_a, const Side& b, const ConvexPart& part_b,
+double time_apart(const Mover& a, const ConvexPart& part_a, const Mover& b, const ConvexPart& part_b,
                   const Vec3& n, const Vec3& point_a, const Vec3& point_b, double allowance,
                   bool as_balls) {
   Plane plane;
@@ -125,12 +128,13 @@ double time_apart(const Side& a, const ConvexPart& part_a, const Side& b, const 
 }  // namespace
 
 double Kernel::certificate(Pair& pair, const Piece& piece, double when, double allowance) {
-  const Side a(*bodies[pair.a], *piece.a, when), b(*bodies[pair.b], *piece.b, when);
+  const Mover a(*bodies[pair.a], *piece.a, when), b(*bodies[pair.b], *piece.b, when);
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
   double least = never;
   if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
     least = kinematic_horizon;
+  least = std::min(least, std::min(a.horizon, b.horizon) - when);
 
   for (std::size_t i = 0; i < parts_a.size(); ++i)
     for (std::size_t j = 0; j < parts_b.size(); ++j) {
@@ -156,8 +160,11 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
       SimplexCache& cache = pair.caches[i * parts_b.size() + j];
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
       if (!(s.distance > -allowance)) return -never;
-      least = std::min(least, time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, allowance,
-                                         false));
+      double apart = time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, allowance, false);
+      // where edges and faces turn past each other, a plane that turns with them lasts longer
+      if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
+        apart = std::max(apart, turning_time_apart(a, pa, b, pb, s, allowance));
+      least = std::min(least, apart);
     }
   ++counters.certificates;
   return when + least;

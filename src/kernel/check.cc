@@ -40,6 +40,8 @@ const State* next_arc(const State* state) {
   return state;
 }
 
+bool moves_in_group(const State& state) { return state.group && !state.group->at_rest; }
+
 Key key_or_last(const State* state) { return state ? state->key : last_key; }
 
 // A bound on how fast any point of the body moves, m/s.
@@ -137,12 +139,18 @@ void Kernel::set_pending(std::uint32_t index, const Key& key) {
 void Kernel::reset_pair(std::uint32_t index, const Key& key) {
   Pair& pair = pairs[index];
   if (pair.pending && pair.impact < key) return;
+  pair.clear_at = key.time < pair.clear_from ? -never : std::min(pair.clear_at, key.time);
   if (pair.pending || key < pair.from || pair.parked) {
     pair.from = pair.pending ? key : std::min(pair.from, key);
     pair.started = false;
   }
   pair.pending = false;
   pair.parked = false;
+  if (moves_in_group(*graph.tail(pair.a)) || moves_in_group(*graph.tail(pair.b))) {
+    // the next claim asks again
+    queue.withdraw(pair.event);
+    return;
+  }
   const double when = pair.started ? std::min(key.time, pair.next_check) : pair.from.time;
   schedule_pair(index, std::max(pair.from.time, when));
 }
@@ -157,7 +165,43 @@ Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   if (!piece.b) piece.b = graph.head(b);
   piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
   piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
+  const double natural = std::min(natural_end(*piece.a), natural_end(*piece.b));
+  if (natural < piece.end.time) {
+    piece.end = {natural, 0, KeyKind::birth, 0};
+    piece.ends_naturally = true;
+  }
   return piece;
+}
+
+bool Kernel::linked(const Piece& piece) const {
+  const Group* a = piece.a->group.get();
+  const Group* b = piece.b->group.get();
+  if (!a && !b) return false;
+  if (a && b) return a == b && a->link(pair_id(piece.a->process, piece.b->process));
+  const State* other = a ? piece.b : piece.a;
+  if (bodies[other->process]->dynamic()) return false;
+  return (a ? a : b)->link(pair_id(piece.a->process, piece.b->process));
+}
+
+// Whether the two are in contact from `from` on as far as is known.
+bool Kernel::linked_from(BodyId a, BodyId b, const Key& from) const {
+  for (Key at = from;;) {
+    const Piece piece = piece_at(a, b, at);
+    if (!linked(piece)) return false;
+    if (piece.ends_naturally || piece.end == last_key) return true;
+    at = piece.end;
+  }
+}
+
+// On to what follows the piece; false if that is not known yet.
+bool Kernel::next_piece(Pair& pair, const Piece& piece) {
+  pair.from = piece.end;
+  if (piece.end == last_key || piece.ends_naturally) {
+    queue.withdraw(pair.event);
+    return false;
+  }
+  pair.started = false;
+  return true;
 }
 
 Key Kernel::impact_key(const Piece& piece, double impact_time) const {
@@ -174,13 +218,26 @@ Key Kernel::impact_key(const Piece& piece, double impact_time) const {
           pair_id(piece.a->process, piece.b->process)};
 }
 
-bool Kernel::approaching_at(const Piece& piece, double when) const {
+// How fast the nearest points close, m/s; 0 where that is rounding.
+double Kernel::closing_at(const Piece& piece, double when, const Separation& s) const {
   const Body& a = *bodies[piece.a->process];
   const Body& b = *bodies[piece.b->process];
   const ArcPoint pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
-  const Separation s = separation_at(piece, when);
   const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
-  return (ub - ua).dot(s.normal) < -speed_noise * (point_speed(a, pa) + point_speed(b, pb));
+  const double closing = -(ub - ua).dot(s.normal);
+  return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
+}
+
+bool Kernel::approaching_at(const Piece& piece, double when) const {
+  return closing_at(piece, when, separation_at(piece, when)) > 0;
+}
+
+// Whether the free accelerations press the two together; what a group or the ground carries has none.
+bool Kernel::pressed_at(const Piece& piece, const Vec3& normal) const {
+  const auto pull = [&](const State& s) {
+    return bodies[s.process]->dynamic() && !s.group ? s.acceleration : Vec3(Vec3::Zero());
+  };
+  return (pull(*piece.b) - pull(*piece.a)).dot(normal) < 0;
 }
 
 Separation Kernel::separation_at(const Piece& piece, double when) const {
@@ -193,6 +250,7 @@ Separation Kernel::separation_at(const Piece& piece, double when) const {
 // ---- exact pairs ----
 
 bool Kernel::predicted_exactly(const Piece& piece, const Body& a, const Body& b) const {
+  if (piece.a->group || piece.b->group) return false;
   if (a.sphere_radius >= 0 && b.sphere_radius >= 0) {
     if (a.info.kind == BodyKind::kinematic || b.info.kind == BodyKind::kinematic) return false;
     return piece.a->acceleration == piece.b->acceleration;
@@ -266,7 +324,9 @@ bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
   const Separation s = separation_at(piece, start);
-  if (s.distance > 0 || !approaching_at(piece, start)) return false;
+  if (s.distance > 0) return false;
+  const double closing = closing_at(piece, start, s);
+  if (closing < 0 || (closing == 0 && !pressed_at(piece, s.normal))) return false;
   pair.impact = impact_key(piece, start);
   return true;
 }
@@ -312,7 +372,8 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
   if (!pair.started || pair.checked_start != piece.start) {
     pair.started = true;
     pair.checked_start = piece.start;
-    if (pair.from <= piece.start) {
+    // an impact at the common start that was rolled back is found again from its own key on
+    if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
       if (check_common_start(pair, piece) && pair.impact < piece.end) {
         set_pending(index, pair.impact);
         return true;
@@ -332,7 +393,10 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
       // a root could lie in the step before the next check, not earlier
       const double safe = std::min(when - check_grid, piece.end.time);
       if (safe > pair.from.time) pair.from = {safe, 0, KeyKind::birth, 0};
-      schedule_pair(index, std::min(when, piece.end.time));
+      if (moves_in_group(*piece.a) || moves_in_group(*piece.b))
+        queue.withdraw(pair.event);
+      else
+        schedule_pair(index, std::min(when, piece.end.time));
       return true;
     }
     if (check_grid_point(pair, piece, when) && pair.impact < piece.end) {
@@ -341,15 +405,8 @@ bool Kernel::pursue_on_grid(std::uint32_t index, const Piece& piece, double unti
     }
     raise_safe_time(pair, piece, when);
   }
-  if (piece.end == last_key) {
-    // apart for ever: wait until the arcs change or the boxes part
-    pair.from = last_key;
-    queue.withdraw(pair.event);
-    return true;
-  }
-  pair.from = piece.end;
-  pair.started = false;
-  return false;
+  // apart for ever: wait until the arcs change or the boxes part
+  return !next_piece(pair, piece);
 }
 
 // Moves the safe time up as far as the event's time, over as many pieces as it takes.
@@ -365,8 +422,34 @@ void Kernel::pursue(std::uint32_t index) {
       queue.withdraw(pair.event);
       return;
     }
+    if (linked(piece)) {
+      if (!next_piece(pair, piece)) return;
+      continue;
+    }
+    // arcs of moving groups are known as far as both have claimed
+    double until = now;
+    if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
+      until = std::min(bodies[pair.a]->claim.time, bodies[pair.b]->claim.time);
+      if (!(pair.from.time < until)) {
+        queue.withdraw(pair.event);
+        return;
+      }
+    }
+    if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
+      const double to = std::min(until, piece.end.time);
+      if (apart_throughout(pair, piece, to)) {
+        if (to == piece.end.time) {
+          if (!next_piece(pair, piece)) return;
+          continue;
+        }
+        pair.from = {to, 0, KeyKind::birth, 0};
+        pair.started = false;
+        queue.withdraw(pair.event);
+        return;
+      }
+    }
     const bool exact = predicted_exactly(piece, *bodies[pair.a], *bodies[pair.b]);
-    if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, now)) return;
+    if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, until)) return;
   }
 }
 

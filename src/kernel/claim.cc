@@ -38,7 +38,8 @@ bool plane_overlaps(const Body& plane, const Aabb& box) {
 }  // namespace
 
 void Kernel::schedule_advance(Body& body) {
-  if (body.fixed() || body.claim.time == never) {
+  // a member waits for the group check where its arc ends
+  if (body.fixed() || body.claim.time >= natural_end(*graph.tail(body.id()))) {
     queue.withdraw(body.advance);
     return;
   }
@@ -53,12 +54,15 @@ bool Kernel::ready(const Body& body, const Key& key) const {
 
 // Claims windows until `key` lies before the claim.
 void Kernel::make_ready(Body& body, const Key& key) {
-  while (!ready(body, key) && !graph.tail(body.id())->error) claim_window(body);
+  while (!ready(body, key) && !graph.tail(body.id())->error &&
+         body.claim.time < natural_end(*graph.tail(body.id())))
+    claim_window(body);
 }
 
 double Kernel::window_end(const Body& body) const {
   const State& tail = *graph.tail(body.id());
   const double start = body.claim.time;
+  if (tail.group) return tail.group->end();
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, body.lonely_claims - patience));
@@ -90,15 +94,21 @@ Aabb Kernel::claimed_box(const Body& body, double end) const {
     const double to = state->next ? std::min(state->next->key.time, end) : end;
     if (to >= from) box.add(swept_bounds(body, *state, from, to));
   }
+  if (const State& tail = *graph.tail(body.id()); tail.group && !tail.group->at_rest)
+    box.grow(link_margin * body.least_width);
   box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
 }
 
 void Kernel::claim_window(Body& body) {
   ++counters.claims;
+  if (const auto& group = graph.tail(body.id())->group; group && !group->end_tested) {
+    test_group_end(*group);
+    schedule_group_check(*bodies[group->leader()]);
+  }
   const Key before = body.claim;
-  if (graph.tail(body.id())->error) {
-    // a stopped process moves no further
+  if (graph.tail(body.id())->error || body.claim.time >= natural_end(*graph.tail(body.id()))) {
+    // a stopped process moves no further, a member of a group not past the next check
     queue.withdraw(body.advance);
     return;
   }
@@ -162,8 +172,14 @@ void Kernel::find_partners(Body& body, const Key& claimed_before) {
 
 void Kernel::meet(Body& body, Body& other, const Key& claimed_before) {
   if (contacts_may_disable_ && !may_collide(body, other)) return;
-  if (find_pair(body, other) != no_pair) return;
+  if (const std::uint32_t known = find_pair(body, other); known != no_pair) {
+    const Pair& pair = pairs[known];
+    const bool waits = pair.event == EventQueue::none && !pair.pending && !pair.parked;
+    if (waits && pair.from != last_key) pursue(known);
+    return;
+  }
   const Key from = std::min(claimed_before, other.claim);
+  if (linked_from(std::min(body.id(), other.id()), std::max(body.id(), other.id()), from)) return;
 
   // an exact pair gets a record only when it will meet
   bool all_exact = true;

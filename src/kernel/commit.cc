@@ -110,7 +110,12 @@ void Kernel::commit_state(State& state) {
   if (first && state.key.kind == KeyKind::callback && state.changed) ++counters.callback_changes;
   if (state.key.kind == KeyKind::callback)
     callbacks[state.key.id].committed_next = state.next_callback;
-  if (state.collision && !collision_observers.empty()) undelivered_.push_back(state.collision);
+  counters.fusions += state.tally.fusions;
+  counters.collisions -= state.tally.fusions;  // their keys are those of impacts
+  counters.fissions += state.tally.fissions;
+  counters.contact_changes += state.tally.contact_changes;
+  if (state.told && !observers.empty())
+    for (const Collision& told : *state.told) undelivered_.emplace_back(state.told, &told);
   if (options.hash && state.changed) {
     const Body& body = *bodies[state.process];
     hash_sum_ += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
@@ -121,8 +126,10 @@ void Kernel::commit_state(State& state) {
 // Writing frames drives the stepping loop's data out of the processor's caches, so they go in batches: at
 // the latest when the next slice begins or the run ends.
 bool Kernel::delivery_is_worth_it() const {
-  constexpr std::size_t batch = 512;
+  constexpr std::size_t batch = 512, most_waiting_states = 20000;
   if (undelivered_.size() >= 8 * batch) return true;
+  // states wait for their frames: memory
+  if (graph.state_count() >= most_waiting_states) return true;
   return std::any_of(sinks.begin(), sinks.end(), [&](const SinkRecord& s) {
     return (delivered_to_ - s.next_time()) * s.fps >= batch;
   });
@@ -148,7 +155,8 @@ bool Kernel::deliver(double wall_end) {
         (!frame_due || undelivered_.front()->time <= sink->next_time())) {
       const std::shared_ptr<const Collision> collision = undelivered_.front();
       undelivered_.pop_front();
-      for (const CollisionObserver& observer : collision_observers) observer(*collision);
+      for (const ObserverRecord& record : observers)
+        if (record.kind == collision->kind) record.observer(*collision);
       continue;
     }
     if (!frame_due) return true;

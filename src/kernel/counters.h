@@ -22,7 +22,15 @@ struct Counters {
   std::uint64_t integrations = 0;
   double integration_length = 0;      // s, of arcs that have ended
 
+  // steps of groups, rolled back ones too
+  std::uint64_t implicit_steps = 0, rejected_steps = 0, factorizations = 0, force_evaluations = 0;
+
+  // groups, as made
+  std::uint64_t groups = 0, group_checks = 0, manifolds = 0, early_ends = 0;
+  std::uint64_t largest_group_bodies = 0, largest_group_contacts = 0;
+
   // committed
+  std::uint64_t fusions = 0, fissions = 0, contact_changes = 0, rests = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
   double kinematic_work = 0;          // J, by kinematic bodies on dynamic ones
   double max_penetration = 0;         // m, deepest overlap seen at an impact

@@ -14,8 +14,9 @@
 
 namespace tw {
 
-// What an event is for; `subject` numbers a body, a pair record or a callback.
-enum class EventKind : std::uint8_t { advance, pair, callback };
+// What an event is for; `subject` numbers a body (of a group check: the group's leader), a pair record
+// or a callback.
+enum class EventKind : std::uint8_t { advance, pair, callback, group_check };
 
 struct Event {
   double priority = 0;

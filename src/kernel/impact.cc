@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/impact-law.h"
 #include "kernel/kernel.h"
+#include "kernel/resolution.h"
 
 namespace tw {
 namespace {
@@ -20,41 +20,12 @@ constexpr std::uint32_t most_microsteps = 100000;
 // Points this close take part in an impact, share of the smaller size: a tenth of the accuracy.
 constexpr double touch_per_accuracy = 0.1;
 
-// Soft impacts (kernel.md): where gravity is 0 this stands in for it, m/s^2.
-constexpr double standard_gravity = 9.81;
 constexpr std::uint32_t soft_run = 8;
 // The interval of a quick run where the pair is not pressed together, share of that where it is.
 constexpr double free_run_share = 1e-2;
 
 // A residual approach below this share of the first one is rounding.
 constexpr double residual_approach = 1e-12;
-
-// One body during the resolution of an impact.
-struct Resolved {
-  const Body& body;
-  const ArcPoint& point;
-  Vec3 v, w;
-  Mat3 inverse_inertia = Mat3::Zero();
-  double inverse_mass = 0;
-  bool moves;
-
-  Resolved(const Body& b, const ArcPoint& p)
-      : body(b), point(p), v(p.v), w(p.w), moves(b.dynamic()) {
-    if (!moves) return;
-    inverse_mass = 1 / b.mass;
-    inverse_inertia = inverse_inertia_world(b, p.q);
-  }
-  Vec3 velocity_at(const Vec3& where) const { return v + w.cross(where - point.x); }
-  Mat3 compliance(const Vec3& where) const {
-    if (!moves) return Mat3::Zero();
-    return contact_compliance(inverse_mass, inverse_inertia, where - point.x);
-  }
-  void apply(const Vec3& impulse, const Vec3& where) {
-    if (!moves) return;
-    v += inverse_mass * impulse;
-    w += inverse_inertia * (where - point.x).cross(impulse);
-  }
-};
 
 // The impact of one pair of bodies while impulses are applied.
 struct Resolution {
@@ -139,10 +110,6 @@ ContactPoint sphere_contact(const Body& a, const ArcPoint& pa, const Body& b, co
 
 bool simple(const Body& body) { return body.sphere_radius >= 0 || body.is_fixed_plane; }
 
-double default_fusion_speed(double gravity, double size) {
-  return std::max(1e-4, 0.07 * std::sqrt(gravity * size));
-}
-
 // The run of impacts after one more at `now`; impacts at one instant count once.
 ImpactRun continued(const ImpactRun& run, double now, double tau) {
   if (now == run.last_time) return run;
@@ -150,112 +117,131 @@ ImpactRun continued(const ImpactRun& run, double now, double tau) {
   return {0, now};
 }
 
-std::string soft_message(const Body& a, const Body& b, double when, double speed,
-                         double fusion_speed) {
-  return "soft impact of " + a.info.name + " and " + b.info.name + " at " + show(when) +
-         " s: they meet at " + show(speed) + " m/s, under the pair's fusion speed of " +
-         show(fusion_speed) +
-         " m/s or in a quick run of impacts, and would stay in contact; expected bodies that fly "
-         "and bounce, since contact groups are not part of this version (stop earlier with "
-         "--until, or lower #:fusion-speed in set-contact-parameters!)";
-}
-
 }  // namespace
 
 bool Kernel::wants_collision(const Body& a, const Body& b) const {
-  if (!collision_observers.empty()) return true;
+  if (observed(CollisionKind::collision)) return true;
   for (const CollisionCallbackDef& def : collision_callbacks)
     if (match_specificity(def.a, def.b, a.contact, b.contact)) return true;
   return false;
 }
 
-// Fills the drafts with the motion after the impact.
-void Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
-                            std::shared_ptr<Collision>& collision) {
+// Where the two touch.
+void Kernel::find_impact_points(const Draft& a, const Draft& b) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
-  const ContactParameters& contact = contact_parameters(body_a.id(), body_b.id());
-  const double size = std::min(body_a.least_width, body_b.least_width);
-
-  // where they touch
   contact_points_.clear();
   if (simple(body_a) && simple(body_b)) {
     contact_points_.push_back(sphere_contact(body_a, a.point, body_b, b.point));
-  } else {
-    const Frame fa(a.point.q.toRotationMatrix(), a.point.x);
-    const Frame fb(b.point.q.toRotationMatrix(), b.point.x);
-    touching_points(*body_a.shape_P, fa, *body_b.shape_P, fb,
-                    touch_per_accuracy * options.accuracy * size, contact_points_);
-    if (contact_points_.empty()) {
-      const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
-      contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
-    }
+    return;
+  }
+  const double size = std::min(body_a.least_width, body_b.least_width);
+  const Frame fa(a.point.q.toRotationMatrix(), a.point.x);
+  const Frame fb(b.point.q.toRotationMatrix(), b.point.x);
+  touching_points(*body_a.shape_P, fa, *body_b.shape_P, fb,
+                  touch_per_accuracy * options.accuracy * size, contact_points_);
+  if (!contact_points_.empty()) return;
+  const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
+  contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
+}
+
+// Drops the points at seams that neighbours of a fixed body bury; true if none is left.
+bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
+  const Draft* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
+  if (!fixed || fixed->body->unbounded) return false;
+  const Draft& mover = fixed == &a ? b : a;
+  find_fixed_around(*mover.body);
+  const auto& parts = fixed->body->shape_P->parts();
+  if (ground_.size() < 2 && parts.size() < 2) return false;
+  const std::vector<SeamNeighbour> others = around(*fixed->body);
+  const Frame frame(fixed->point.q.toRotationMatrix(), fixed->point.x);
+  const double size = std::min(a.body->least_width, b.body->least_width);
+  const std::size_t parts_b = b.body->shape_P->parts().size();
+  std::erase_if(contact_points_, [&](const ContactPoint& c) {
+    const auto pair = static_cast<std::size_t>(c.pair);
+    const std::size_t number = fixed == &a ? pair / parts_b : pair % parts_b;
+    std::vector<SeamNeighbour> neighbours = others;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (i != number) neighbours.push_back({&parts[i], frame});
+    const Vec3 outward = fixed == &a ? c.normal : Vec3(-c.normal);
+    const Vec3 on_fixed = c.point - 0.5 * c.gap * outward;
+    return buried_edge(parts[number], frame, on_fixed, outward, neighbours, size);
+  });
+  return contact_points_.empty();
+}
+
+// Slow and pressed together, or a quick run of impacts: counts this one.  `fastest`: approach, m/s.
+bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
+  const double gravity = gravity_magnitude();
+  const double slow = fusion_speed(*a.body, *b.body);
+  const double size = std::min(a.body->least_width, b.body->least_width);
+  const double d0 = 2.5e-4 * size;
+
+  // what a group carries does not fall away from what comes to lie on it
+  const auto pull = [](const Draft& d) {
+    return d.body->dynamic() ? d.data.acceleration : Vec3(Vec3::Zero());
+  };
+  const bool pressed = a.data.group || b.data.group ||
+                       (pull(b) - pull(a)).dot(contact_points_.front().normal) < 0;
+
+  // what nothing presses together may knock about in a corner for a while; a true collapse goes on to
+  // ever shorter intervals
+  const double tau = std::min(slow / gravity, pi * std::sqrt(d0 / gravity)) *
+                     (pressed ? 1 : free_run_share);
+  bool quick = true;
+  for (Draft* draft : {&a, &b}) {
+    if (!draft->body->dynamic()) continue;
+    draft->data.impacts = continued(draft->data.impacts, key.time, tau);
+    quick = quick && draft->data.impacts.count >= soft_run;
+  }
+  return (pressed && fastest < slow) || quick;
+}
+
+// Fills the drafts with the motion after the impact; a soft one leaves it as it is.
+bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
+                            std::optional<Collision>& collision) {
+  find_impact_points(a, b);
+  // nothing to hit: the two are followed as a contact while they pass the seam
+  if (drop_ghosts(a, b)) return true;
+  const ContactParameters& contact = contact_parameters(a.body->id(), b.body->id());
+  Resolution r{{*a.body, a.point}, {*b.body, b.point}, contact.restitution, contact.friction};
+  double worst = 0;
+  for (const ContactPoint& c : contact_points_) worst = std::min(worst, r.approach(c));
+  const ContactPoint first = contact_points_.front();
+  const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
+                            double impulse) {
+    collision = Collision{kind,  key,    a.body->id(), b.body->id(), key.time,
+                          point, normal, speed,        impulse};
+  };
+  if (is_soft(key, a, b, -worst)) {
+    if (observed(CollisionKind::fusion))
+      describe(CollisionKind::fusion, first.point, first.normal, -worst, 0);
+    return true;
   }
 
   // impulses
-  Resolution r{{body_a, a.point}, {body_b, b.point}, contact.restitution, contact.friction};
-  double worst = 0;
-  for (const ContactPoint& c : contact_points_) worst = std::min(worst, r.approach(c));
   const double threshold = residual_approach * -worst;
-  bool done = true;
   if (contact_points_.size() > 1) {
     for (const ContactPoint& c : centroids(contact_points_))
       if (r.approach(c) < -threshold) r.impulse_at(c);
   }
-  done = resolve(r, contact_points_, threshold);
-
-  // soft: pressed together and slow, a quick run of impacts, or an approach without end
-  const double gravity = options.gravity.norm() > 0 ? options.gravity.norm() : standard_gravity;
-  const double fusion_speed =
-      std::max(1e-9, contact.fusion_speed.value_or(default_fusion_speed(gravity, size)));
-  const double d0 = 2.5e-4 * size;
-  const Vec3 pull = b.data.acceleration - a.data.acceleration;
-  const Vec3 axis = contact_points_.empty() ? r.normal : contact_points_.front().normal;
-  const bool pressed = pull.dot(axis) < 0;
-  // what nothing presses together may knock about in a corner for a while; a true collapse goes on to
-  // ever shorter intervals
-  const double tau = std::min(fusion_speed / gravity, pi * std::sqrt(d0 / gravity)) *
-                     (pressed ? 1 : free_run_share);
-  bool run_a = true, run_b = true;
-  if (body_a.dynamic()) {
-    a.data.impacts = continued(a.data.impacts, key.time, tau);
-    run_a = a.data.impacts.count >= soft_run;
-  }
-  if (body_b.dynamic()) {
-    b.data.impacts = continued(b.data.impacts, key.time, tau);
-    run_b = b.data.impacts.count >= soft_run;
-  }
-  const bool soft = (pressed && -worst < fusion_speed) || (run_a && run_b) || !done;
-
-  if (soft) {
-    const UserError error(soft_message(body_a, body_b, key.time, -worst, fusion_speed),
-                          body_a.info.place);
-    a.data.error = b.data.error = std::make_exception_ptr(error);
-  } else if (key.microstep > most_microsteps) {
+  const bool done = resolve(r, contact_points_, threshold);
+  if (key.microstep > most_microsteps) {
     const UserError error("more than " + std::to_string(most_microsteps) + " impacts at " +
-                          show(key.time) + " s between " + body_a.info.name + " and " +
-                          body_b.info.name + "; expected them to part");
+                          show(key.time) + " s between " + a.body->info.name + " and " +
+                          b.body->info.name + "; expected them to part");
     a.data.error = b.data.error = std::make_exception_ptr(error);
   }
 
   // new arcs
-  for (Draft* draft : {&a, &b}) {
-    if (!draft->body->dynamic()) continue;
-    const Resolved& after = draft == &a ? r.a : r.b;
-    draft->data.v = draft->point.v = after.v;
-    draft->point.w = after.w;
-    draft->data.L = angular_momentum(*draft->body, draft->point.q, after.w);
-    draft->data.rotation_ready = false;
-  }
+  if (a.body->dynamic()) take_velocities(a, r.a);
+  if (b.body->dynamic()) take_velocities(b, r.b);
   // what is told once stands on the first state that enters the graph
-  StateData& teller = a.enters ? a.data : b.data;
-  teller.kinematic_work = r.kinematic_work;
-  if (wants_collision(body_a, body_b)) {
-    collision = std::make_shared<Collision>();
-    *collision = {key,     body_a.id(), body_b.id(), key.time,        r.point,
-                  r.normal, r.speed,    r.normal_impulse};
-    teller.collision = collision;
-  }
+  (a.enters ? a : b).data.kinematic_work = r.kinematic_work;
+  if (wants_collision(*a.body, *b.body))
+    describe(CollisionKind::collision, r.point, r.normal, r.speed, r.normal_impulse);
+  // what still approaches after so many impulses stays in contact
+  return !done;
 }
 
 // Every callback that matches, in order of registration.
@@ -280,21 +266,25 @@ void Kernel::process_impact(std::uint32_t index) {
   Body& body_b = *bodies[pairs[index].b];
 
   // only after the receivers' claims have reached its time
-  if (!ready(body_a, key) || !ready(body_b, key)) {
-    make_ready(body_a, key);
-    make_ready(body_b, key);
-    return;
-  }
+  bool all_ready = true;
+  for (const BodyId id : {body_a.id(), body_b.id()})
+    for (const BodyId member : fellows(id, key)) {
+      if (ready(*bodies[member], key)) continue;
+      make_ready(*bodies[member], key);
+      all_ready = false;
+    }
+  if (!all_ready) return;
 
   std::vector<Draft> drafts;
-  drafts.reserve(2);
   drafts.push_back(draft_for(body_a, key, body_a.dynamic()));
   drafts.push_back(draft_for(body_b, key, body_b.dynamic()));
-  std::shared_ptr<Collision> collision;
-  compute_impact(key, drafts[0], drafts[1], collision);
+  gather(key, drafts);
+  std::optional<Collision> collision;
+  const bool soft = compute_impact(key, drafts[0], drafts[1], collision);
 
   // callbacks see the drafts; their errors stop the receivers, speculatively
-  if (collision && !drafts[0].data.error && !collision_callbacks.empty()) {
+  if (collision && collision->kind == CollisionKind::collision && !drafts[0].data.error &&
+      !collision_callbacks.empty()) {
     try {
       run_collision_callbacks(*collision, drafts[0], drafts[1]);
     } catch (const Interrupted&) {
@@ -303,7 +293,40 @@ void Kernel::process_impact(std::uint32_t index) {
       drafts[0].data.error = drafts[1].data.error = std::current_exception();
     }
   }
+  if (collision)
+    (drafts[0].enters ? drafts[0] : drafts[1]).data.told =
+        std::make_shared<const Told>(Told{*collision});
+  if (drafts[0].data.error)
+    for (Draft& draft : drafts) draft.data.error = drafts[0].data.error;
+  else
+    regroup_impact(key, drafts, soft);
   enter_discontinuity(key, drafts);
+}
+
+// The members of the body's group just below the key; itself alone if it is isolated.
+std::vector<BodyId> Kernel::fellows(BodyId id, const Key& key) const {
+  const State* state = graph.last_before(id, key);
+  if (state && state->group) return state->group->members;
+  return {id};
+}
+
+// The groups after an impact of the first two drafts.
+void Kernel::regroup_impact(const Key& key, std::vector<Draft>& drafts, bool soft) {
+  if (!soft && !drafts[0].data.group && !drafts[1].data.group) return;
+  Regroup work(key, drafts);
+  collect_old(work);
+  for (const auto& group : work.old) carry(work, *group);
+  if (soft) {
+    std::vector<BodyId> movers;
+    for (const Draft& draft : drafts)
+      if (draft.body->dynamic()) movers.push_back(draft.body->id());
+    find_fixed_around(drafts[0].body->dynamic() ? *drafts[0].body : *drafts[1].body);
+    link(work, side_of(drafts[0]), side_of(drafts[1]), check_interval(work, movers), nullptr, true);
+    work.tally.fusions = 1;
+  } else {
+    pass_on(work);
+  }
+  finish(work);
 }
 
 }  // namespace tw

@@ -50,6 +50,7 @@ void Kernel::process(Event event) {
   switch (event.kind) {
     case EventKind::advance: claim_window(*bodies[event.subject]); break;
     case EventKind::callback: process_callback(event.subject); break;
+    case EventKind::group_check: process_group_check(event.subject); break;
     case EventKind::pair:
       if (pairs[event.subject].pending)
         process_impact(event.subject);
@@ -131,6 +132,10 @@ double Kernel::total_energy(double when) const {
     if (!body->dynamic()) continue;
     const ArcPoint p = point_at(body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
+    // the springs of a group once
+    const State* state = state_at(body->id(), when);
+    if (state->group && state->member == 0)
+      energy += state->group->arc->elastic_energy(state->group->at_rest ? state->group->key.time : when);
   }
   return energy;
 }

@@ -4,10 +4,12 @@
 //   advance    claims the next window of a body: extends its swept box, finds new active pairs
 //   pair       moves the safe time of an active pair up, finds its impact, or carries it out
 //   callback   calls a user's procedure with views of its targets
+//   group check  refreshes the contacts of a group, finds its fissions and whether it has come to rest
 // Redraws and observers need no events: they are served at commit (commit.cc).
 //
 // The subject is spread over files by what it does: claim.cc, check.cc, impact.cc, callbacks.cc,
-// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop).
+// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: regroup.cc, linking.cc,
+// group-check.cc, pass-on.cc.
 //
 // Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT is
 // touched; a committed state is never removed.  Under --check also every validator of validate.cc.
@@ -23,14 +25,18 @@
 #include <vector>
 
 #include "base/random.h"
+#include "collision/manifold.h"
 #include "collision/spatial-hash.h"
 #include "kernel/arc.h"
 #include "kernel/body.h"
 #include "kernel/checkpoint.h"
 #include "kernel/counters.h"
+#include "kernel/draft.h"
 #include "kernel/event-queue.h"
 #include "kernel/pair.h"
 #include "kernel/policy.h"
+#include "kernel/regroup.h"
+#include "kernel/side.h"
 #include "kernel/state-graph.h"
 #include "kernel/world.h"
 
@@ -38,6 +44,10 @@ namespace tw {
 
 // Checks of pairs that are not predicted exactly happen at multiples of this, s (2^-20).
 inline constexpr double check_grid = 0x1p-20;
+
+// Boxes of members of moving groups reach this share of their size farther: a group check finds in them
+// whom a member may touch before the next check.
+inline constexpr double link_margin = 0.1;
 
 // A body faster than this has run away, m/s: its windows would shrink to the spacing of doubles.
 inline constexpr double speed_limit = 1e12;
@@ -61,12 +71,9 @@ struct SinkRecord {
   double next_time() const { return static_cast<double>(next_frame) / fps; }
 };
 
-// A new state of one receiver of a discontinuity, before it enters the graph.
-struct Draft {
-  const Body* body = nullptr;
-  bool enters = true;               // false: a fixed body that keeps no states
-  StateData data;
-  ArcPoint point;                   // at the discontinuity's time
+struct ObserverRecord {
+  CollisionObserver observer;
+  CollisionKind kind = CollisionKind::collision;
 };
 
 class Kernel {
@@ -78,7 +85,7 @@ class Kernel {
   void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
-  void add_collision_observer(CollisionObserver observer);
+  void add_collision_observer(CollisionObserver observer, CollisionKind kind);
   void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
   void remove_frame_sink(const FrameSink* sink);
   void set_gravity(const Vec3& gravity);
@@ -107,6 +114,7 @@ class Kernel {
   std::string validate_state_graph() const;
   std::string validate_event_queue() const;
   std::string validate_pairs() const;
+  std::string validate_residences() const;
   std::string validate_claims() const;
   void validate_all() const;         // aborts with the message
   // A checksum of every queue (states, order): for undo tests.
@@ -127,7 +135,7 @@ class Kernel {
   std::vector<std::uint32_t> unused_pairs;
   std::vector<CallbackRecord> callbacks;
   std::vector<CollisionCallbackDef> collision_callbacks;
-  std::vector<CollisionObserver> collision_observers;
+  std::vector<ObserverRecord> observers;
   std::vector<SinkRecord> sinks;
   ContactTable contacts;
   Counters counters;
@@ -189,25 +197,90 @@ class Kernel {
   void set_pending(std::uint32_t index, const Key& key);
   void schedule_pair(std::uint32_t index, double when);
   void reset_pair(std::uint32_t index, const Key& key);
+  // Whether the pair is in contact within one group on this piece.
+  bool linked(const Piece& piece) const;
+  bool linked_from(BodyId a, BodyId b, const Key& from) const;
+  bool next_piece(Pair& pair, const Piece& piece);
   Separation separation_at(const Piece& piece, double when) const;
+  double closing_at(const Piece& piece, double when, const Separation& s) const;
   bool approaching_at(const Piece& piece, double when) const;
+  bool pressed_at(const Piece& piece, const Vec3& normal) const;
 
   // ---- certificate.cc ----
   // Until when the pair is surely apart on the piece's arcs; -infinity: perhaps not at `when`.
   // Overlaps up to `allowance` (m) count as apart.
   double certificate(Pair& pair, const Piece& piece, double when, double allowance);
 
+  // ---- clearance.cc ----
+  // Whether the pair is surely apart from its safe time to `to`; cheaper than a certificate.
+  bool apart_throughout(Pair& pair, const Piece& piece, double to);
+
   // ---- impact.cc ----
   void process_impact(std::uint32_t index);
-  void compute_impact(const Key& key, Draft& a, Draft& b, std::shared_ptr<Collision>& collision);
+  // True: the impact is soft, and the two stay in contact.
+  bool compute_impact(const Key& key, Draft& a, Draft& b, std::optional<Collision>& collision);
+  std::vector<BodyId> fellows(BodyId id, const Key& key) const;
+  void find_impact_points(const Draft& a, const Draft& b);
+  bool drop_ghosts(const Draft& a, const Draft& b);
+  bool is_soft(const Key& key, Draft& a, Draft& b, double fastest) const;
+  void regroup_impact(const Key& key, std::vector<Draft>& drafts, bool soft);
   void run_collision_callbacks(const Collision& collision, Draft& a, Draft& b);
   bool wants_collision(const Body& a, const Body& b) const;
+  bool observed(CollisionKind kind) const;
 
   // ---- callbacks.cc ----
   void schedule_callback(std::uint32_t number);
   void process_callback(std::uint32_t number);
   void rewind_callback(std::uint32_t number, const Key& key);
   Key first_tick(const CallbackRecord& callback, const Key& key) const;
+
+  // ---- regroup.cc ----
+  // Adds drafts of all bodies that are in a group with one of the drafts whose arcs change.
+  void gather(const Key& key, std::vector<Draft>& drafts) const;
+  void collect_old(Regroup& work) const;
+  void carry(Regroup& work, const Group& group) const;
+  // Cuts the drafts into groups and isolated bodies.
+  void finish(Regroup& work);
+  std::shared_ptr<Group> make_group(Regroup& work, const std::vector<BodyId>& members);
+  void start_arc_of(Group& group, Regroup& work) const;
+  void share_out(Regroup& work) const;
+  void tell(Regroup& work) const;
+  // After a callback or edit changed drafts: their groups go on from there, contacts and all.
+  void regroup_changed(const Key& key, std::vector<Draft>& drafts);
+
+  // ---- linking.cc ----
+  // Links the pair if it touches or may touch before the next check; `must`: in any case.
+  bool link(Regroup& work, const Side& a, const Side& b, double interval, const Group* before,
+            bool must);
+  bool wants_link(const Side& a, const Side& b, bool linked_before, double interval,
+                  const ContactConstants& law) const;
+  LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
+                             const ContactConstants& law) const;
+  void match_stretches(Regroup& work, const LooseLink& link, const Group& before) const;
+  void preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const;
+  void refresh(Regroup& work, const Group& before, double interval);
+  void find_fixed_around(const Body& mover);
+  std::vector<SeamNeighbour> around(const Body& body) const;
+  Side side_of(const Draft& draft) const;
+  Side outside_side(const Body& body, double when) const;
+  double gravity_magnitude() const;
+  double fusion_speed(const Body& a, const Body& b) const;
+
+  // ---- group-check.cc ----
+  Key group_check_key(const Group& group) const;
+  void schedule_group_check(Body& body);
+  void process_group_check(BodyId leader);
+  double check_interval(const Regroup& work, const std::vector<BodyId>& members) const;
+  double next_check_time(double birth, double now, double interval) const;
+  bool comes_to_rest(Regroup& work, Group& after, const Group& before) const;
+  void note_changes(Regroup& work) const;
+  std::string group_failure(const Group& group) const;
+
+  // ---- end-test.cc ----
+  void test_group_end(Group& group);
+
+  // ---- pass-on.cc ----
+  void pass_on(Regroup& work) const;
 
   // ---- rollback.cc ----
   Draft draft_for(const Body& body, const Key& key, bool new_arc) const;
@@ -253,40 +326,12 @@ class Kernel {
   mutable unsigned contact_cache_version_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after
   std::vector<ContactPoint> contact_points_;
+  std::vector<ManifoldPoint> manifold_points_;
+  std::vector<BodyId> candidates_, ground_;
 };
 
 // Hash of a state at one instant, as it enters the history's hash.
 std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
                          const StateData& data);
-
-// What a callback or edit sees: reads the draft's point, writes the draft.
-class DraftView : public StateView {
- public:
-  DraftView(Draft& draft, const Key& key, bool may_place, const Vec3& gravity)
-      : draft_(draft), key_(key), may_place_(may_place), gravity_(gravity),
-        state_(body_state(*draft.body, draft.point)) {}
-
-  BodyId body() const override { return draft_.body->id(); }
-  const BodyState& state() const override { return state_; }
-  double kinetic_energy() const override;
-  const Vec3& applied_force() const override { return draft_.data.force; }
-  const SlotsPtr& slots() const override { return draft_.data.slots; }
-  void set_velocity(const Vec3& v) override;
-  void set_angular_velocity(const Vec3& w) override;
-  void set_applied_force(const Vec3& force) override;
-  void set_slots(SlotsPtr slots) override;
-  void set_pose(const Vec3& position, const Quat& orientation) override;
-  double draw_random() override;
-
- private:
-  void require_dynamic(const char* what) const;
-  void start_arc();
-
-  Draft& draft_;
-  Key key_;
-  bool may_place_;
-  Vec3 gravity_;
-  BodyState state_;
-};
 
 }  // namespace tw

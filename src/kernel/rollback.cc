@@ -23,18 +23,12 @@ Draft Kernel::draft_for(const Body& body, const Key& key, bool new_arc) const {
   draft.data = *state;
   draft.data.changed = true;
   draft.data.next_callback = never;
-  draft.data.collision.reset();
+  draft.data.told.reset();
+  draft.data.tally = {};
   draft.data.kinematic_work = 0;
   draft.data.error = nullptr;
   draft.enters = body.dynamic() || draft.data.slots;
-  if (new_arc) {
-    draft.data.arc_key = key;
-    draft.data.arc_time = key.time;
-    draft.data.x = draft.point.x;
-    draft.data.q = draft.point.q;
-    draft.data.v = draft.point.v;
-    draft.data.rotation_ready = false;
-  }
+  if (new_arc) start_new_arc(draft, key);
   return draft;
 }
 
@@ -65,7 +59,11 @@ void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
     State* state = graph.append(draft.body->id(), key);
     static_cast<StateData&>(*state) = std::move(draft.data);
     ring.push_back(state);
-    if (state->starts_arc() && draft.body->dynamic()) ++counters.integrations;
+    if (!state->starts_arc() || !draft.body->dynamic()) continue;
+    TW_ASSERT(!state->group || state->group->key == key || state->error,
+              "state of " + draft.body->info.name + " at " + show(key) + " in an older group");
+    // those of moving groups are counted by steps, when they are done with
+    if (!state->group || state->group->at_rest) ++counters.integrations;
   }
   graph.link_ring(ring);
 }
@@ -109,6 +107,7 @@ void Kernel::treat(const std::vector<Touched>& touched) {
     if (body.fixed()) continue;
     body.claim = std::min(body.claim, t.least_removed);
     schedule_advance(body);
+    schedule_group_check(body);
   }
   // events: pairs and callbacks
   for (const Touched& t : touched) {
@@ -122,12 +121,34 @@ StateGraph::Farewell Kernel::removal() {
   return [this](State& state) { note_removed(state); };
 }
 
+namespace {
+
+// A stepped arc counts as far as it was computed, and every step as an integration, once a group.
+double count_steps(Counters& counters, const State& state) {
+  const GroupArc& arc = *state.group->arc;
+  if (state.member == 0) {
+    counters.integrations += arc.counts().steps;
+    counters.implicit_steps += arc.counts().steps;
+    counters.rejected_steps += arc.counts().rejected;
+    counters.factorizations += arc.counts().factorizations;
+    counters.force_evaluations += arc.counts().evaluations;
+  }
+  return arc.reached() - arc.start().time;
+}
+
+bool stepped(const State& state) { return state.group && !state.group->at_rest; }
+
+}  // namespace
+
 // A discarded arc counts up to its claimed time.
 void Kernel::note_removed(State& state) {
   const Body& body = *bodies[state.process];
   if (!body.dynamic() || !state.starts_arc()) return;
   const double end = std::min(body.claim.time, state.next ? state.next->key.time : never);
-  const double length = std::max(0.0, end - state.key.time);
+  double length = std::max(0.0, end - state.key.time);
+  // a body at rest claims for ever
+  if (!std::isfinite(length)) length = 0;
+  if (stepped(state)) length = count_steps(counters, state);
   counters.integration_length += length;
   counters.rollback_length += length;
   counters.deepest_rollback = std::max(counters.deepest_rollback, length);
@@ -137,6 +158,10 @@ void Kernel::note_removed(State& state) {
 StateGraph::Farewell Kernel::release() {
   return [this](State& state) {
     if (!bodies[state.process]->dynamic() || !state.starts_arc()) return;
+    if (stepped(state)) {
+      counters.integration_length += count_steps(counters, state);
+      return;
+    }
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
     if (next) counters.integration_length += next->key.time - state.key.time;

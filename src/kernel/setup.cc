@@ -241,10 +241,15 @@ void Kernel::add_collision_callback(const CollisionCallbackDef& def) {
   if (begun) restart_future();
 }
 
-void Kernel::add_collision_observer(CollisionObserver observer) {
+void Kernel::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
   require_between_runs("an observer was added");
-  if (begun && collision_observers.empty()) restart_future();
-  collision_observers.push_back(std::move(observer));
+  if (begun && !observed(kind)) restart_future();
+  observers.push_back({std::move(observer), kind});
+}
+
+bool Kernel::observed(CollisionKind kind) const {
+  return std::any_of(observers.begin(), observers.end(),
+                     [&](const ObserverRecord& record) { return record.kind == kind; });
 }
 
 void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
@@ -264,8 +269,12 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 
 Key Kernel::edit_key(BodyId id) {
   std::uint32_t microstep = 1;
-  for (const State* s = graph.tail(id); s && s->key.time >= time; s = s->prev)
-    if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
+  // after whatever its group has done at this instant
+  std::vector<BodyId> all{id};
+  if (const auto& group = graph.tail(id)->group) all = group->members;
+  for (const BodyId member : all)
+    for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
+      if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
   return {time, microstep, KeyKind::edit, edits_++};
 }
 
@@ -279,6 +288,7 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   const Quat q_before = drafts[0].point.q;
   DraftView view(drafts[0], key, true, options.gravity);
   change(view);
+  regroup_changed(key, drafts);
   enter_discontinuity(key, drafts);
   if (begun && (drafts[0].point.x != x_before || drafts[0].point.q.coeffs() != q_before.coeffs()))
     check_overlaps(body);
@@ -298,6 +308,7 @@ void Kernel::set_gravity(const Vec3& gravity) {
     const Key key = edit_key(body->id());
     std::vector<Draft> drafts{draft_for(*body, key, true)};
     drafts[0].data.acceleration = gravity + drafts[0].data.force / body->mass;
+    regroup_changed(key, drafts);
     enter_discontinuity(key, drafts);
   }
 }

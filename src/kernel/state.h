@@ -1,5 +1,8 @@
 // A state: what a process is at a discontinuity, and the arc that starts there.
 //
+// The state of a contact group stands in the queues of its members, one state each, closed to a ring: so
+// a body's residence is its own last state, and rollback needs no links but rings (doc/architecture.md).
+//
 // The arc is a function of the state alone.  A *record* (a callback that changed no motion) does not
 // start an arc of its own: it carries its predecessor's along, origin and all, so that reading a
 // body never moves a bit of its motion.
@@ -16,6 +19,7 @@
 
 #include "integrate/free-rotation.h"
 #include "kernel/callback.h"
+#include "kernel/group.h"
 #include "kernel/key.h"
 #include "kernel/slots.h"
 #include "math/vec.h"
@@ -42,8 +46,13 @@ struct StateData {
   // what this discontinuity was
   bool changed = true;               // false: a record that changed nothing
   double next_callback = never;      // callbacks without a period: their next time
-  std::shared_ptr<const Collision> collision;  // on the ring's first state
+  std::shared_ptr<const Told> told;  // what observers will hear (on one state of the ring)
   double kinematic_work = 0;         // J, done by kinematic bodies in this impact (first state)
+  GroupTally tally;                  // fusions, fissions, contact changes (on one state of the ring)
+
+  // the contact group that the body is in from here on, and its place there; null: it is isolated
+  std::shared_ptr<Group> group;
+  std::uint32_t member = 0;
 
   // the arc
   Vec3 L = Vec3::Zero();             // at arc_time, and so on

@@ -29,6 +29,7 @@ StatisticsTable Kernel::statistics() const {
   // arcs that still stand count up to the present
   double length = counters.integration_length;
   std::uint64_t kinematic_arcs = 0;
+  std::uint64_t steps = 0, factorizations = 0;  // of groups that still stand
   for (const auto& body : bodies) {
     if (body->info.kind == BodyKind::kinematic) {
       length += time;
@@ -37,6 +38,15 @@ StatisticsTable Kernel::statistics() const {
     if (!body->dynamic()) continue;
     for (const State* s = graph.head(body->id()); s; s = s->next) {
       if (!s->starts_arc() || s->key.time > time) continue;
+      if (s->group && !s->group->at_rest) {
+        const GroupArc& arc = *s->group->arc;
+        length += arc.reached() - arc.start().time;
+        if (s->member == 0) {
+          steps += arc.counts().steps;
+          factorizations += arc.counts().factorizations;
+        }
+        continue;
+      }
       const State* next = s->next;
       while (next && !next->starts_arc()) next = next->next;
       length += std::min(time, next ? next->key.time : time) - s->key.time;
@@ -44,8 +54,9 @@ StatisticsTable Kernel::statistics() const {
   }
 
   const double bodies_moving = static_cast<double>(std::max<std::int64_t>(1, moving));
-  const std::uint64_t integrations = counters.integrations + kinematic_arcs;
-  const std::uint64_t discontinuities = counters.collisions + counters.callback_changes;
+  const std::uint64_t integrations = counters.integrations + kinematic_arcs + steps;
+  const std::uint64_t discontinuities = counters.collisions + counters.fusions + counters.fissions +
+                                        counters.callback_changes;
   const double fps = sinks.empty() ? 30 : sinks.front().fps;
   const double frames = std::max(1.0, time * fps);
 
@@ -56,10 +67,10 @@ StatisticsTable Kernel::statistics() const {
       {"bodies_total", whole(bodies.size())},
       {"discontinuities", whole(discontinuities)},
       {"collisions", whole(counters.collisions)},
-      {"fusions", std::int64_t{0}},
-      {"fissions", std::int64_t{0}},
+      {"fusions", whole(counters.fusions)},
+      {"fissions", whole(counters.fissions)},
       {"callback_changes", whole(counters.callback_changes)},
-      {"contact_changes", std::int64_t{0}},
+      {"contact_changes", whole(counters.contact_changes)},
       {"avg_time_between_discontinuities", ratio(time, static_cast<double>(discontinuities))},
       {"avg_integration_step", ratio(length, static_cast<double>(integrations))},
       {"integrations", whole(integrations)},
@@ -80,11 +91,15 @@ StatisticsTable Kernel::statistics() const {
       {"active_pairs_avg", ratio(counters.pair_sum, static_cast<double>(counters.events))},
       {"distance_queries", static_cast<std::int64_t>(distance_queries - queries_before_)},
       {"callbacks_run", whole(counters.callbacks_run)},
-      {"groups", std::int64_t{0}},
-      {"largest_group_bodies", std::int64_t{0}},
-      {"largest_group_contacts", std::int64_t{0}},
-      {"implicit_steps", std::int64_t{0}},
-      {"factorizations", std::int64_t{0}},
+      {"groups", whole(counters.groups)},
+      {"group_checks", whole(counters.group_checks)},
+      {"largest_group_bodies", whole(counters.largest_group_bodies)},
+      {"largest_group_contacts", whole(counters.largest_group_contacts)},
+      {"early_ends", whole(counters.early_ends)},
+      {"manifolds", whole(counters.manifolds)},
+      {"implicit_steps", whole(counters.implicit_steps + steps)},
+      {"rejected_steps", whole(counters.rejected_steps)},
+      {"factorizations", whole(counters.factorizations + factorizations)},
       {"gvt_computations", whole(counters.gvt_computations)},
       {"peak_states", whole(graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},

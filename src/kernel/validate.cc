@@ -30,6 +30,12 @@ std::string Kernel::validate_event_queue() const {
       case EventKind::advance:
         if (bodies[event.subject]->advance != handle) return "advance event of nobody";
         break;
+      case EventKind::group_check: {
+        const State* tail = graph.tail(event.subject);
+        if (bodies[event.subject]->group_check != handle) return "group check of nobody";
+        if (!tail->group || tail->group->leader() != event.subject) return "group check of a dead group";
+        break;
+      }
       case EventKind::callback:
         if (callbacks[event.subject].event != handle) return "callback event of nobody";
         break;
@@ -68,6 +74,31 @@ std::string Kernel::validate_pairs() const {
   return "";
 }
 
+// Each dynamic body has one residence: the states of a group stand in its members' queues, all of them.
+std::string Kernel::validate_residences() const {
+  for (const auto& body : bodies) {
+    for (const State* s = graph.head(body->id()); s; s = s->next) {
+      if (!s->group || s->error) continue;
+      const std::string where = body->info.name + ", " + show(s->key);
+      const Group& group = *s->group;
+      if (s->member >= group.members.size() || group.members[s->member] != body->id())
+        return "not a member of its group: " + where;
+      if (s->arc_key != group.key) return "arc and group differ in key: " + where;
+      if (!group.at_rest && group.next_check < s->key.time) return "state past a group check: " + where;
+      if (s->committed) continue;
+      for (const BodyId other : group.members) {
+        const State* t = graph.last_at_or_before(other, s->key);
+        if (!t || t->group != s->group) return "a member is elsewhere: " + where;
+      }
+    }
+    const State* tail = graph.tail(body->id());
+    const bool leads = tail->group && !tail->error && tail->group->leader() == body->id();
+    if (leads && !tail->group->at_rest && body->group_check == EventQueue::none)
+      return "a group without a check: " + body->info.name;
+  }
+  return "";
+}
+
 // Boxes hold the bodies from GVT to their claims (sampled), and nobody has states past a claim.
 std::string Kernel::validate_claims() const {
   for (const auto& body : bodies) {
@@ -90,7 +121,7 @@ std::string Kernel::validate_claims() const {
 
 void Kernel::validate_all() const {
   for (const auto& broken : {validate_state_graph(), validate_event_queue(), validate_pairs(),
-                             validate_claims()})
+                             validate_residences(), validate_claims()})
     TW_ASSERT(broken.empty(), broken + " (GVT " + show(gvt) + " s)");
 }
 
@@ -103,6 +134,12 @@ std::uint64_t Kernel::state_checksum(const State& s) const {
   h.add(std::uint64_t{s.impacts.count});
   h.add(s.impacts.last_time);
   for (int i = 0; i < 3; ++i) h.add(s.force[i]);
+  if (s.group && s.member == 0) {
+    h.add(s.group->next_check);
+    h.add(s.group->quiet_since);
+    for (const GroupContact& c : s.group->arc->start().contacts)
+      for (int i = 0; i < 3; ++i) h.add(c.stretch[i]);
+  }
   return h.value();
 }
 

@@ -44,6 +44,13 @@ void World::set_window_cells(double cells) {
   kernel_->options.window_cells = cells;
 }
 
+void World::set_group_check_rate(double rate) {
+  TW_REQUIRE(rate > 0 && std::isfinite(rate),
+             "group-check-rate is " + show(rate) + " Hz; expected a positive number");
+  kernel_->require_before_first_run("group-check-rate was set");
+  kernel_->options.group_check_rate = rate;
+}
+
 void World::set_adversary(std::optional<AdversaryOptions> adversary) {
   kernel_->require_before_first_run("the adversary scheduler was set");
   kernel_->options.adversary = adversary;
@@ -83,8 +90,8 @@ void World::add_collision_callback(const CollisionCallbackDef& def) {
   kernel_->add_collision_callback(def);
 }
 
-void World::add_collision_observer(CollisionObserver observer) {
-  kernel_->add_collision_observer(std::move(observer));
+void World::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
+  kernel_->add_collision_observer(std::move(observer), kind);
 }
 
 void World::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {

@@ -77,6 +77,7 @@ struct WorldOptions {
   bool undo_redo = false;       // test mode: undo every discontinuity and redo it
   long gvt_interval = 0;        // events between computations of GVT; 0: automatic
   double window_cells = 0.7;    // claimed window, in cells of travel
+  double group_check_rate = 480;  // Hz, the finest
   std::optional<AdversaryOptions> adversary;
 };
 
@@ -125,6 +126,7 @@ class World {
   void set_undo_redo(bool on);
   void set_gvt_interval(long events);
   void set_window_cells(double cells);
+  void set_group_check_rate(double rate);   // before the first run
   void set_adversary(std::optional<AdversaryOptions> adversary);  // before the first run
   // "timewarp" is the only policy so far; others raise UserError.
   void set_policy(const std::string& policy);
@@ -142,8 +144,9 @@ class World {
   // Number of the callback, counted from 0 in order of registration.
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
-  // Called at commit, once each, in time order.
-  void add_collision_observer(CollisionObserver observer);
+  // Called at commit, once each, in time order, for what is of this kind.
+  void add_collision_observer(CollisionObserver observer,
+                              CollisionKind kind = CollisionKind::collision);
   // fps > 0.  Several sinks with different rates are served in time order.  Frames before time()
   // are not delivered again.
   void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
@@ -172,7 +175,7 @@ class World {
   std::shared_ptr<const Checkpoint> checkpoint() const;
   void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;
-  double total_energy() const;              // kinetic + gravity, J, dynamic bodies, at time()
+  double total_energy() const;              // kinetic, gravity, contact springs, J, at time()
   Vec3 total_momentum() const;              // linear, kg m/s, dynamic bodies, at time()
   // SHA-256, 64 hexadecimal digits, of the committed history and of every body's state at time().
   // Needs set_hash(true) before the first run.

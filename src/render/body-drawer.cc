@@ -67,26 +67,33 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
 
 void BodyDrawer::add_part(const ConvexPart& part, const DrawBody& body, Part record) {
   if (part.kind == PartKind::half_space) return;
-  const bool smooth = body.smooth.value_or(part.kind == PartKind::sphere);
+  const bool smooth = body.smooth.value_or(part.kind == PartKind::sphere ||
+                                           part.kind == PartKind::cylinder);
   if (part.kind == PartKind::sphere) record.placement.R *= part.radius;
   if (part.kind == PartKind::sphere && smooth) {
     balls_.push_back(record);
     return;
   }
   if (part.is_box) record.placement.R *= part.half_edges.asDiagonal();
+  if (part.kind == PartKind::cylinder)
+    record.placement.R *= Vec3(part.radius, part.radius, part.half_length).asDiagonal();
   group_of(part, smooth).parts.push_back(record);
 }
 
 BodyDrawer::MeshGroup& BodyDrawer::group_of(const ConvexPart& part, bool smooth) {
   static const Polyhedron unit_box = Polyhedron::box(Vec3::Ones());
+  // stands for the mesh of all cylinders
+  static const char unit_cylinder = 0;
   const bool sphere = part.kind == PartKind::sphere;
+  const bool cylinder = part.kind == PartKind::cylinder;
   const Polyhedron* polyhedron = part.is_box ? &unit_box : part.core.get();
-  const MeshKey key(sphere ? nullptr : static_cast<const void*>(polyhedron), smooth);
+  const MeshKey key(cylinder ? static_cast<const void*>(&unit_cylinder) : polyhedron, smooth);
   const auto [found, fresh] = group_index_.emplace(key, groups_.size());
   if (fresh)
-    groups_.push_back(make_group(sphere   ? facet_sphere_mesh()
-                                 : smooth ? smooth_mesh(*polyhedron)
-                                          : facet_mesh(*polyhedron)));
+    groups_.push_back(make_group(sphere     ? facet_sphere_mesh()
+                                 : cylinder ? cylinder_mesh(smooth)
+                                 : smooth   ? smooth_mesh(*polyhedron)
+                                            : facet_mesh(*polyhedron)));
   return groups_[found->second];
 }
 

@@ -1,4 +1,4 @@
-// Meshes of polyhedra and spheres.
+// Meshes of polyhedra, spheres and cylinders.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/mesh.h"
 
@@ -107,6 +107,37 @@ Mesh facet_sphere_mesh() {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Vec3& corner : {a, b, c}) mesh.vertices.push_back({corner.cast<float>(), normal});
     add_fan(mesh, first, 3);
+  }
+  return mesh;
+}
+
+Mesh cylinder_mesh(bool smooth) {
+  constexpr int facets = 48;
+  const auto rim = [](double k) {
+    const double angle = 2 * pi * k / facets;
+    return Vec3(std::cos(angle), std::sin(angle), 0);
+  };
+  Mesh mesh;
+  const auto add_corner = [&mesh](const Vec3& position, const Vec3& normal) {
+    mesh.vertices.push_back({position.cast<float>(), normal.cast<float>()});
+  };
+  for (int k = 0; k < facets; ++k) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Vec3 here = rim(k);
+    const Vec3 next = rim(k + 1);
+    const Vec3 middle = rim(k + 0.5);
+    add_corner(here - Vec3::UnitZ(), smooth ? here : middle);
+    add_corner(next - Vec3::UnitZ(), smooth ? next : middle);
+    add_corner(next + Vec3::UnitZ(), smooth ? next : middle);
+    add_corner(here + Vec3::UnitZ(), smooth ? here : middle);
+    add_fan(mesh, first, 4);
+  }
+  for (double side : {-1.0, 1.0}) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    // counter-clockwise from outside
+    for (int k = 0; k < facets; ++k)
+      add_corner(rim(side * k) + side * Vec3::UnitZ(), side * Vec3::UnitZ());
+    add_fan(mesh, first, facets);
   }
   return mesh;
 }

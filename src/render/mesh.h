@@ -24,5 +24,7 @@ Mesh facet_mesh(const Polyhedron& polyhedron);
 Mesh smooth_mesh(const Polyhedron& polyhedron);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
 Mesh facet_sphere_mesh();
+// A cylinder of radius 1 about z from -1 to 1, with 48 facets or, smooth, a round side.
+Mesh cylinder_mesh(bool smooth);
 
 }  // namespace tw

@@ -206,15 +206,20 @@ TW_PRIMITIVE(add_collision_callback, "%on-collision!",
   return SCM_UNSPECIFIED;
 }
 
-TW_PRIMITIVE(observe_collisions, "%observe-collisions!", (SCM world, SCM procedure, SCM place),
-             "Call a procedure with every committed collision.") {
+TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
+             (SCM world, SCM kind, SCM procedure, SCM place),
+             "Call a procedure with every committed collision, fusion or fission.") {
+  const std::string name = to_symbol_name(kind, "what to observe");
+  const CollisionKind wanted = name == "fusion"    ? CollisionKind::fusion
+                               : name == "fission" ? CollisionKind::fission
+                                                   : CollisionKind::collision;
   const auto hook = std::make_shared<Hook>(make_hook(world, procedure, "observer", place));
   to_world(world).add_collision_observer([hook](const Collision& collision) {
     SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
     call_hook(*hook, arguments, collision.time, [&] {
       return body_names(hook->box->world, {collision.body1, collision.body2});
     });
-  });
+  }, wanted);
   return SCM_UNSPECIFIED;
 }
 

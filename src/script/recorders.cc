@@ -75,10 +75,13 @@ TW_PRIMITIVE(attach_recorder, "%attach-recorder!", (SCM world, SCM object, SCM f
   } else {
     recorder.events->set_names(names_of(w));
     // observers stay with the world: a closed recorder is one that nobody else holds
-    w.add_collision_observer(
-        [writer = std::weak_ptr<EventsWriter>(recorder.events)](const Collision& collision) {
-          if (const auto open = writer.lock()) open->collision(collision);
-        });
+    for (const CollisionKind kind :
+         {CollisionKind::collision, CollisionKind::fusion, CollisionKind::fission})
+      w.add_collision_observer(
+          [writer = std::weak_ptr<EventsWriter>(recorder.events)](const Collision& collision) {
+            if (const auto open = writer.lock()) open->collision(collision);
+          },
+          kind);
   }
   return SCM_UNSPECIFIED;
 }

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "script/scm-motion.h"
 
+#include <cmath>
+#include <vector>
+
 #include "geometry/polyhedron.h"
 #include "script/border.h"
 #include "script/primitive.h"
@@ -34,6 +37,18 @@ double ball_displacement(const Vec3& shift, const Vec3& turn, double radius) {
   const double along = shift.dot(turn) / angle;
   const double across = std::sqrt(std::max(0.0, shift.squaredNorm() - along * along));
   return std::hypot(along, across + 2 * radius * std::sin(0.5 * angle));
+}
+
+// Points around both rims of a cylinder: the farthest of them is never farther than its surface.
+std::vector<Vec3> rim_points(const ConvexPart& part) {
+  constexpr int around = 16;
+  std::vector<Vec3> points;
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2 * pi * i / around;
+    for (const double end : {-part.half_length, part.half_length})
+      points.push_back({part.radius * std::cos(angle), part.radius * std::sin(angle), end});
+  }
+  return points;
 }
 
 }  // namespace
@@ -76,6 +91,8 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
     const Frame fa = a * part.placement, fb = b * part.placement;
     if (part.kind == PartKind::sphere)
       most = std::max(most, ball_displacement(fb.p - fa.p, turn, part.radius));
+    else if (part.kind == PartKind::cylinder)
+      for (const Vec3& rim : rim_points(part)) most = std::max(most, (fb * rim - fa * rim).norm());
     else
       for (const Vec3& vertex : part.core->vertices())
         most = std::max(most, (fb * vertex - fa * vertex).norm());

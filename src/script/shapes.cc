@@ -18,6 +18,10 @@ TW_PRIMITIVE(box, "%box", (SCM x, SCM y, SCM z), "Return a box with full edges x
   return from_shape(make_box({to_real(x, "edge x"), to_real(y, "edge y"), to_real(z, "edge z")}));
 }
 
+TW_PRIMITIVE(cylinder, "%cylinder", (SCM radius, SCM length), "Return a cylinder about z.") {
+  return from_shape(make_cylinder(to_real(radius, "radius"), to_real(length, "length")));
+}
+
 TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.") {
   return from_shape(make_hull(to_points(points, "points")));
 }
@@ -61,6 +65,13 @@ TW_PRIMITIVE(shape_inertia, "%shape-inertia", (SCM shape),
 
 TW_PRIMITIVE(shape_centroid, "%shape-centroid", (SCM shape), "Return the centroid.") {
   return from_vec3(bounded_mass(to_shape(shape, "the shape")).centroid);
+}
+
+TW_PRIMITIVE(shape_radius, "%shape-radius", (SCM shape),
+             "Return the radius of the ball about the frame's origin that holds the shape.") {
+  const ShapePtr value = to_shape(shape, "the shape");
+  bounded_mass(value);
+  return scm_from_double(value->radius_about_origin());
 }
 
 TW_PRIMITIVE(shape_kind, "%shape-kind", (SCM shape), "Return one word that names the shape.") {

@@ -64,6 +64,8 @@ struct WorldSetting {
 // Settings of a world by name, the test modes among them.
 constexpr WorldSetting world_settings[] = {
     {"gravity", [](World& w, SCM v, const char* n) { w.set_gravity(to_vec3(v, n)); }},
+    {"group-check-rate",
+     [](World& w, SCM v, const char* n) { w.set_group_check_rate(to_real(v, n)); }},
     {"accuracy", [](World& w, SCM v, const char* n) { w.set_accuracy(to_real(v, n)); }},
     {"seed", [](World& w, SCM v, const char* n) { w.set_seed(to_seed(v, n)); }},
     {"policy", [](World& w, SCM v, const char* n) { w.set_policy(to_string(v, n)); }},

@@ -47,5 +47,17 @@ TEST(Mesh, a_facet_sphere_is_nearly_a_ball) {
   expect_outward_unit_normals(sphere);
 }
 
+TEST(Mesh, a_cylinder_has_48_facets_and_its_caps_are_flat) {
+  for (bool smooth : {false, true}) {
+    const Mesh cylinder = cylinder_mesh(smooth);
+    // two triangles a facet, 46 a cap
+    EXPECT_EQ(cylinder.indices.size(), 3u * (2 * 48 + 2 * 46));
+    EXPECT_NEAR(volume(cylinder), 2 * 24 * std::sin(2 * pi / 48), 1e-5);
+    expect_outward_unit_normals(cylinder);
+    for (const Mesh::Vertex& vertex : cylinder.vertices)
+      EXPECT_TRUE(vertex.normal.z() == 0 || std::abs(vertex.normal.z()) == 1);
+  }
+}
+
 }  // namespace
 }  // namespace tw::test

@@ -117,7 +117,7 @@
 ;; what is not there yet says so
 (for-each (lambda (args) (apply refused "not there yet" "ball.scm" args))
           '(("--movie=x.mp4") ("-m" "x.mp4") ("--record=x.twr") ("-o" "x.twr") ("--integrator=rk45")
-            ("--group-check-rate=60") ("--listen") ("--listen=sock") ("--policy=conservative")
+            ("--listen") ("--listen=sock") ("--policy=conservative")
             ("--policy=retroactive:0.01")))
 (refused "not there yet" "x.twr")
 (test-equal "--policy=timewarp --integrator=auto are" 0

@@ -9,6 +9,11 @@
 
 (test-assert "a sphere's volume" (close? (shape-volume (sphere 0.5)) (* 4/3 pi 0.125) 1e-15))
 (test-equal "a box has full edges" 24.0 (shape-volume (box 2 3 4)))
+(test-assert "a cylinder's volume" (close? (shape-volume (cylinder 0.5 2)) (* 1/2 pi) 1e-15))
+(test-assert "a cylinder stands along z"
+  (let ((inertia (shape-inertia (cylinder 0.5 2))))
+    (< (vector-ref (vector-ref inertia 2) 2) (vector-ref (vector-ref inertia 0) 0))))
+(test-message "negative length" "length.* is -1" (cylinder 1 -1))
 (test-assert "a box's inertia at density 1"
   (close? #(#(50.0 0.0 0.0) #(0.0 40.0 0.0) #(0.0 0.0 26.0)) (shape-inertia (box 2 3 4)) 1e-13))
 (test-assert "a hull's volume"

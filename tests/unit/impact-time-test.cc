@@ -49,8 +49,9 @@ TEST(ImpactTime, of_spheres_at_touch_depends_on_the_direction) {
 }
 
 TEST(ImpactTime, of_very_near_and_distant_spheres) {
-  // the discriminant loses (distance / radius)^2 units in the last place
-  EXPECT_NEAR(sphere_sphere_impact({1e4, 0, 0}, {-1, 0, 0}, 1), 9999, 1e-7);
+  EXPECT_NEAR(sphere_sphere_impact({1e4, 0, 0}, {-1, 0, 0}, 1), 9999, 1e-11);
+  EXPECT_NEAR(sphere_sphere_impact({1e9, 0, 0}, {-1, 0, 0}, 1), 1e9 - 1, 1e-6);
+  EXPECT_NEAR(sphere_sphere_impact({1e9, 0.6, 0}, {-1, 0, 0}, 1), 1e9 - 0.8, 1e-6);
   EXPECT_NEAR(sphere_sphere_impact({1 + 1e-9, 0, 0}, {-1, 0, 0}, 1), (1 + 1e-9) - 1, 1e-16);
 }
 

@@ -1,0 +1,130 @@
+// Ghost contacts at the seams of fixed bodies and of unions.
+//
+// For convex Q and a point p of Q, n is a normal of Q at p exactly where p is the nearest point of Q to
+// p + epsilon n.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+
+#include "collision/cylinder-point.h"
+#include "collision/manifold-parts.h"
+#include "collision/nearest-to-point.h"
+
+namespace tw {
+
+namespace {
+
+// relative to the size: points closer than this are one
+constexpr double same_point = 1e-5;
+
+// relative to the size: how far from the surface normals are compared, and how far around a point a
+// face is looked at
+constexpr double epsilon = 0.01;
+
+// cosine above which a normal is that of a face: 1e-4 rad
+constexpr double face_normal = 1 - 5e-9;
+
+struct Nearest {
+  Vec3 point;       // of the part; the query itself where that is inside
+  double distance;  // signed
+};
+
+Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
+  const ConvexPart& part = *q.part;
+  if (part.kind == PartKind::half_space) {
+    const Vec3 normal = q.frame.R * part.normal;
+    const double height = normal.dot(point - q.frame.p) - part.offset;
+    return {height > 0 ? Vec3(point - height * normal) : point, height};
+  }
+  const Frame world = q.frame * part.placement;
+  if (part.kind == PartKind::sphere) {
+    const Vec3 out = point - world.p;
+    const double length = out.norm();
+    if (length <= part.radius) return {point, length - part.radius};
+    return {world.p + out * (part.radius / length), length - part.radius};
+  }
+  if (part.kind == PartKind::cylinder) {
+    const NearestOnCylinder near =
+        nearest_on_cylinder(part.radius, part.half_length, world.to_local(point));
+    return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance};
+  }
+  const NearestToPoint near = nearest_to_point(*part.core, world.to_local(point));
+  return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance};
+}
+
+// Whether a face plane of a polyhedron proves that the point is farther from it than this.
+bool surely_apart(const SeamNeighbour& q, const Vec3& point, double distance) {
+  if (q.part->kind != PartKind::polyhedron) return false;
+  int face = 0;
+  const Vec3 local = q.part->placement.to_local(q.frame.to_local(point));
+  return q.part->core->face_separation(local, face) > distance;
+}
+
+// Whether a neighbour that holds the point has no such normal there.
+bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbour>& neighbours,
+            double size, double angle) {
+  for (const SeamNeighbour& q : neighbours) {
+    const Vec3 center = q.frame * q.part->bound_center;
+    const double near = q.part->bound_radius + same_point * size;
+    if ((center - point).squaredNorm() > near * near) continue;
+    if (surely_apart(q, point, same_point * size)) continue;
+    const Nearest here = nearest_of(q, point);
+    if (here.distance > same_point * size) continue;
+    if (here.distance < -same_point * size) return true;
+    const Nearest foot = nearest_of(q, point + epsilon * size * normal);
+    const double allowed = angle * epsilon * size + std::abs(here.distance);
+    if ((foot.point - here.point).norm() > allowed) return true;
+  }
+  return false;
+}
+
+// The number of the face with this normal (part's frame), or -1.
+int face_with(const Polyhedron& core, const Vec3& normal) {
+  for (std::size_t f = 0; f < core.faces().size(); ++f)
+    if (core.faces()[f].normal.dot(normal) > face_normal) return static_cast<int>(f);
+  return -1;
+}
+
+// The point moved onto the face from beside it.
+Vec3 onto_face(const Polyhedron& core, const Polyhedron::Face& face, Vec3 point) {
+  for (int i = 0; i < face.count; ++i) {
+    const Polyhedron::Side& side = core.side(face.first + i);
+    const double outside = side.offset - side.inward.dot(point);
+    if (outside > 0) point += outside * side.inward;
+  }
+  return point;
+}
+
+}  // namespace
+
+double height_over(const SeamNeighbour& part, const Vec3& point) {
+  return nearest_of(part, point).distance;
+}
+
+bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
+                 const std::vector<SeamNeighbour>& neighbours, double size, double angle) {
+  if (part.kind != PartKind::polyhedron) return denied(point, normal, neighbours, size, angle);
+  const Frame world = frame * part.placement;
+  const Polyhedron& core = *part.core;
+  const int number = face_with(core, world.R.transpose() * normal);
+  if (number < 0) return denied(point, normal, neighbours, size, angle);
+  // far inside a face: bodies don't sink so deep that it could be an inner wall
+  const Polyhedron::Face& face = core.face(number);
+  const Vec3 local = world.to_local(point);
+  if (over_face(core, face, local, -epsilon * size)) return false;
+  const Vec3 foot = onto_face(core, face, local);
+  if (!denied(world * foot, normal, neighbours, size, angle)) return false;
+  // an inner wall is denied all around
+  const Vec3 u = core.side(face.first).inward;
+  const Vec3 v = face.normal.cross(u);
+  constexpr int directions = 8;
+  for (int i = 0; i < directions; ++i) {
+    const double turn = 2 * pi * i / directions;
+    const Vec3 beside = foot + epsilon * size * (std::cos(turn) * u + std::sin(turn) * v);
+    if (!over_face(core, face, beside, 0)) continue;
+    if (!denied(world * beside, normal, neighbours, size, angle)) return false;
+  }
+  return true;
+}
+
+}  // namespace tw

@@ -1,0 +1,51 @@
+// A face of one polyhedron as the plane that another one lies on: the points of that contact.
+//
+// The incident face is clipped by the sides of the reference face (I. E. Sutherland, G. W. Hodgman,
+// "Reentrant polygon clipping", Comm. ACM 17 (1974)); each corner of what is left remembers the two
+// edges or sides that meet in it, which names it for as long as they do.  To these come *reach points*:
+// vertices of the incident polyhedron that may come down on the face by a motion of `reach`.
+//
+// Frames: that of the reference polyhedron.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+struct FacePoint {
+  Vec3 point = Vec3::Zero();  // on the incident polyhedron's surface
+  double gap = 0;             // m, height over the reference plane
+  std::uint64_t key = 0;      // names the point; vertices have the least keys
+};
+
+// A corner of a polygon that is being clipped.  `next` is what the polygon follows from here: its own
+// edge k as k, side number j as ~j.
+struct ClipCorner {
+  Vec3 point;
+  double height;
+  int next;
+};
+
+// Keeps what lies on the inner side, up to `slack` beyond.  The polygon isn't empty.
+void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side, int number,
+                  double slack);
+
+// Points closer than this to each other, relative to the size, are one.
+inline constexpr double coincident_ratio = 1e-6;
+
+// All points with gap <= reach, at most `most`: the deepest, then always the one farthest from those
+// chosen.  A vertex beside the face counts when it stands higher over the plane than it is beside:
+// lower ones pass by.  Overwrites `out`.
+void face_contact(const Polyhedron& reference, int face, const Polyhedron& incident,
+                  const Frame& incident_in_reference, int incident_face, double reach,
+                  std::size_t most, std::vector<FacePoint>& out);
+
+// Thins points to at most `most` as above; keeps their order.
+void thin_face_points(std::vector<FacePoint>& points, std::size_t most);
+
+}  // namespace tw

@@ -1,0 +1,75 @@
+// Contact manifolds of one pair of parts each: what manifold.cc puts together.
+//
+// Everything appends its points with gap <= reach to `out`; `pair` is the number of the pair of parts.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/hash.h"
+#include "collision/manifold.h"
+#include "collision/nearest-features.h"
+#include "collision/part-pairs.h"
+#include "collision/round-distance.h"
+
+namespace tw {
+
+// What meets at a point: part of its name.
+enum class FeatureMode : std::uint64_t {
+  ball = 1,
+  half_space,
+  face,
+  corners,
+  edge,
+  vertex,
+  side,
+  rim,
+  lying,
+  standing
+};
+
+// The name of a point by the numbers of what meets there.
+inline std::uint64_t feature_name(int pair, FeatureMode mode,
+                                  const std::array<std::uint64_t, 3>& numbers) {
+  Hasher hasher;
+  hasher.add(static_cast<std::uint64_t>(pair));
+  hasher.add(static_cast<std::uint64_t>(mode));
+  for (std::uint64_t number : numbers) hasher.add(number);
+  return hasher.value();
+}
+
+// Any pair of kinds.
+void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                   const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
+                   std::vector<ManifoldPoint>& out);
+// Whether the bounding balls prove a gap above the reach.
+bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+               const Frame& frame_b, double reach);
+
+void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                        const Frame& frame_b, double reach, ReferenceChoice choice,
+                        int pair, std::vector<ManifoldPoint>& out);
+// The same with features that are known.
+void features_manifold(const CorePair& cores, const NearestFeatures& near, double reach,
+                       ReferenceChoice choice, int pair, std::vector<ManifoldPoint>& out);
+// The half-space is the reference body; `reference_is_a` says which of the two it is.
+void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
+                         const ConvexPart& polyhedron, const Frame& frame_p, double reach,
+                         bool reference_is_a, int pair, std::vector<ManifoldPoint>& out);
+
+// A cylinder against any other kind; a or b is the cylinder.
+void cylinder_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                       const Frame& frame_b, double reach, int pair,
+                       std::vector<ManifoldPoint>& out);
+// The same of a cylinder and a polyhedron or cylinder whose axis and witnesses (world) are known.
+void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                    const Frame& frame_b, const RoundDistance& near, double reach, int pair,
+                    std::vector<ManifoldPoint>& out);
+
+// Signed distance of a point (world) from a part, m.
+double height_over(const SeamNeighbour& part, const Vec3& point);
+
+}  // namespace tw

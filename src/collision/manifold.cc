@@ -1,0 +1,123 @@
+// Contact manifolds: spheres, and the table of pairs of kinds.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/manifold.h"
+
+#include <algorithm>
+
+#include "collision/manifold-parts.h"
+#include "collision/nearest-to-point.h"
+#include "collision/separation.h"
+
+namespace tw {
+
+namespace {
+
+void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame_p,
+                                const ConvexPart& sphere, const Frame& frame_s, double reach,
+                                bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
+  const Frame world = frame_p * polyhedron.placement;
+  ManifoldPoint p;
+  p.core_point = frame_s * sphere.placement.p;
+  const NearestToPoint near = nearest_to_point(*polyhedron.core, world.to_local(p.core_point));
+  p.gap = near.distance - sphere.radius;
+  if (p.gap > reach) return;
+  p.reference_is_a = reference_is_a;
+  p.kind = near.kind;
+  p.normal = world.R * near.normal;
+  p.direction = world.R * near.direction;
+  p.reference_point = world * near.point;
+  p.radius = sphere.radius;
+  p.pair = pair;
+  constexpr FeatureMode modes[] = {FeatureMode::face, FeatureMode::edge, FeatureMode::vertex};
+  p.feature = feature_name(pair, modes[static_cast<int>(near.kind)], {near.number, 0, 0});
+  out.push_back(p);
+}
+
+void half_space_sphere_manifold(const ConvexPart& half_space, const Frame& frame_h,
+                                const ConvexPart& sphere, const Frame& frame_s, double reach,
+                                bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
+  ManifoldPoint p;
+  p.core_point = frame_s * sphere.placement.p;
+  p.normal = frame_h.R * half_space.normal;
+  const double height = p.normal.dot(p.core_point - frame_h.p) - half_space.offset;
+  p.gap = height - sphere.radius;
+  if (p.gap > reach) return;
+  p.reference_is_a = reference_is_a;
+  p.reference_point = p.core_point - height * p.normal;
+  p.radius = sphere.radius;
+  p.pair = pair;
+  p.feature = feature_name(pair, FeatureMode::half_space, {0, 0, 0});
+  out.push_back(p);
+}
+
+void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                      const Frame& frame_b, double reach, int pair,
+                      std::vector<ManifoldPoint>& out) {
+  ManifoldPoint p;
+  p.reference_point = frame_a * a.placement.p;
+  p.core_point = frame_b * b.placement.p;
+  const Vec3 apart = p.core_point - p.reference_point;
+  const double length = apart.norm();
+  p.gap = length - (a.radius + b.radius);
+  if (p.gap > reach) return;
+  p.kind = ReferenceFeature::point;
+  // concentric: any direction
+  if (length > 0) p.normal = apart / length;
+  p.reference_radius = a.radius;
+  p.radius = b.radius;
+  p.pair = pair;
+  p.feature = feature_name(pair, FeatureMode::ball, {0, 0, 0});
+  out.push_back(p);
+}
+
+}  // namespace
+
+void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                   const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
+                   std::vector<ManifoldPoint>& out) {
+  ++distance_queries;
+  using K = PartKind;
+  const auto are = [&](K first, K second) { return a.kind == first && b.kind == second; };
+  if (are(K::polyhedron, K::polyhedron))
+    return polyhedra_manifold(a, frame_a, b, frame_b, reach, choice, pair, out);
+  if (are(K::half_space, K::polyhedron))
+    return half_space_manifold(a, frame_a, b, frame_b, reach, true, pair, out);
+  if (are(K::polyhedron, K::half_space))
+    return half_space_manifold(b, frame_b, a, frame_a, reach, false, pair, out);
+  if (are(K::polyhedron, K::sphere))
+    return polyhedron_sphere_manifold(a, frame_a, b, frame_b, reach, true, pair, out);
+  if (are(K::sphere, K::polyhedron))
+    return polyhedron_sphere_manifold(b, frame_b, a, frame_a, reach, false, pair, out);
+  if (are(K::half_space, K::sphere))
+    return half_space_sphere_manifold(a, frame_a, b, frame_b, reach, true, pair, out);
+  if (are(K::sphere, K::half_space))
+    return half_space_sphere_manifold(b, frame_b, a, frame_a, reach, false, pair, out);
+  if (are(K::sphere, K::sphere))
+    return spheres_manifold(a, frame_a, b, frame_b, reach, pair, out);
+  if (a.kind == K::cylinder || b.kind == K::cylinder)
+    return cylinder_manifold(a, frame_a, b, frame_b, reach, pair, out);
+  // two half-spaces touch in a plane, which no few points describe
+}
+
+bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+               const Frame& frame_b, double reach) {
+  if (a.kind == PartKind::half_space || b.kind == PartKind::half_space) return false;
+  const double near = (a.bound_radius + b.bound_radius) * (1 + 1e-12) + reach;
+  return (frame_b * b.bound_center - frame_a * a.bound_center).squaredNorm() > near * near;
+}
+
+void manifold(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b,
+              double reach, std::vector<ManifoldPoint>& out, ReferenceChoice choice) {
+  int pair = 0;
+  for (const ConvexPart& part_a : a.parts())
+    for (const ConvexPart& part_b : b.parts()) {
+      const auto first = static_cast<std::ptrdiff_t>(out.size());
+      if (!far_apart(part_a, frame_a, part_b, frame_b, reach))
+        part_manifold(part_a, frame_a, part_b, frame_b, reach, choice, pair, out);
+      std::sort(out.begin() + first, out.end(),
+                [](const auto& p, const auto& q) { return p.feature < q.feature; });
+      ++pair;
+    }
+}
+
+}  // namespace tw

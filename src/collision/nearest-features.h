@@ -1,0 +1,40 @@
+// How two polyhedra lie: signed distance, axis, and the features that determine them.
+//
+// Frames: that of A's core.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+// What of one polyhedron is nearest to the other, or deepest in it: its vertices.
+struct CoreFeature {
+  int count = 0;                // 1: a vertex; 2: an edge or a diagonal of a face; 3: a face
+  std::array<int, 3> vertex{};
+  int face = -1;                // set where the axis is the normal of this face; then count is 0
+};
+
+struct NearestFeatures {
+  double distance = 0;          // m; negative: depth of penetration along the axis of least depth
+  Vec3 normal = Vec3::UnitZ();  // unit, from A to B
+  CoreFeature a, b;
+  Vec3 point_a = Vec3::Zero();  // witnesses: point_b - point_a = distance * normal
+  Vec3 point_b = Vec3::Zero();
+};
+
+// Cold: a function of the frame alone.  Distance to a few 1e-16 of the size.  Where the distance is
+// above `reach` only the distance is set, perhaps to a lower bound above `reach`.
+NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
+                                 double reach);
+
+// The features that are nearest when B is scaled by `factor` (below 1) about its center(), with the
+// distance of the unscaled B along that normal; for slight overlap.  False where even the scaled B
+// overlaps A.
+bool features_of_shrunk(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double factor,
+                        NearestFeatures& near);
+
+}  // namespace tw

@@ -1,0 +1,169 @@
+// Signed distance of cores by support points.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/round-distance.h"
+
+#include <vector>
+
+#include "collision/expanding-polytope.h"
+#include "collision/simplex.h"
+
+namespace tw {
+
+namespace {
+
+constexpr int most_steps = 200;
+constexpr int most_stalls = 6;
+
+// what the distance may err by, relative to the size
+constexpr double apart_accuracy = 1e-13;
+constexpr double depth_accuracy = 1e-12;
+
+// below this distance, relative to the size, GJK's direction is not trusted
+constexpr double touch = 1e-7;
+
+// how far B is moved in for the polytope, relative to the size
+constexpr double push = 1e-6;
+
+// special axes this near are tried, rad
+constexpr double special = 1e-3;
+
+// GJK's end.
+struct Descent {
+  bool overlap = false;
+  Simplex simplex;
+  std::vector<DifferencePoint> seen;  // what the simplex' numbers mean
+
+  const DifferencePoint& point(std::size_t i) const {
+    return seen[static_cast<std::size_t>(simplex.points[i].a)];
+  }
+};
+
+void add_point(Descent& d, const DifferencePoint& p) {
+  const int number = static_cast<int>(d.seen.size());
+  d.seen.push_back(p);
+  d.simplex.points[static_cast<std::size_t>(d.simplex.count++)] = {p.w, number, number};
+}
+
+bool in_simplex(const Simplex& simplex, const Vec3& w) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i)
+    if (simplex.points[i].w == w) return true;
+  return false;
+}
+
+Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
+  Descent best;
+  const double size = a.size() + b.size();
+  add_point(best, difference_support(a, b, shift, b.center() + shift - a.center()));
+  reduce(best.simplex);
+  Descent d = best;
+  double least = best.simplex.v.squaredNorm();
+  for (int step = 0, stalls = 0; step < most_steps && stalls < most_stalls; ++step) {
+    const Vec3 v = d.simplex.v;
+    const double square = v.squaredNorm();
+    if (!(square > 0)) break;
+    const DifferencePoint next = difference_support(a, b, shift, -v);
+    // |v| - v.w/|v| bounds what can still be gained
+    const double gain = square - v.dot(next.w);
+    if (gain <= apart_accuracy * size * std::sqrt(square) || in_simplex(d.simplex, next.w)) break;
+    add_point(d, next);
+    if (reduce(d.simplex)) {
+      d.overlap = true;
+      return d;
+    }
+    const double reached = d.simplex.v.squaredNorm();
+    if (reached < least) {
+      least = reached;
+      best = d;
+    } else {
+      ++stalls;
+      best.seen = d.seen;
+    }
+  }
+  return best;
+}
+
+// Special axes next to n of one core (outward from it), appended.
+void add_special(const SupportCore& core, const Vec3& n, double sign, std::vector<Vec3>& out) {
+  const auto offer = [&](const Vec3& axis) {
+    if ((axis - n).squaredNorm() < special * special) out.push_back(axis);
+  };
+  if (core.polyhedron != nullptr) {
+    const Vec3 local = sign * (core.place.R.transpose() * n);
+    const int vertex = core.polyhedron->support(local, 0);
+    const int face = core.polyhedron->face_at_vertex(vertex, local);
+    return offer(sign * (core.place.R * core.polyhedron->face(face).normal));
+  }
+  const Vec3 axis = core.axis();
+  const double along = axis.dot(n);
+  offer(along < 0 ? Vec3(-axis) : axis);
+  offer((n - along * axis).normalized());
+}
+
+// The special axis that loses nothing against `distance`, if any.
+Vec3 refined(const SupportCore& a, const SupportCore& b, const Vec3& n, double distance) {
+  thread_local std::vector<Vec3> axes;
+  axes.clear();
+  add_special(a, n, 1, axes);
+  add_special(b, n, -1, axes);
+  const double allowed = distance - 2 * depth_accuracy * (a.size() + b.size());
+  for (const Vec3& axis : axes)
+    if (distance_along(a, b, axis) >= allowed) return axis;
+  return n;
+}
+
+RoundDistance apart_at(const Descent& d) {
+  RoundDistance result;
+  result.distance = d.simplex.v.norm();
+  result.normal = -d.simplex.v / result.distance;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(d.simplex.count); ++i)
+    result.point_a += d.simplex.lambda[i] * d.point(i).on_a;
+  return result;
+}
+
+RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
+  const double size = a.size() + b.size();
+  Vec3 inward = a.center() - b.center();
+  if (!d.overlap && d.simplex.v.norm() > 0) inward = d.simplex.v;
+  if (!(inward.norm() > 0)) inward = Vec3::UnitZ();
+  inward.normalize();
+  // moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry
+  const Vec3 oblique(0.048, 0.06, 0.064);
+  Vec3 shift = Vec3::Zero();
+  for (double more = push * size; !d.overlap && more < size; more *= 10) {
+    shift = d.simplex.v.norm() * inward + more * (inward + oblique);
+    d = descend(a, b, shift);
+  }
+  RoundDistance result;
+  if (!d.overlap) return result;
+  const PolytopeDepth found =
+      polytope_depth(a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)},
+                     depth_accuracy * size);
+  result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
+  result.distance = distance_along(a, b, result.normal);
+  result.point_a = found.on_a;
+  return result;
+}
+
+}  // namespace
+
+double distance_along(const SupportCore& a, const SupportCore& b, const Vec3& normal) {
+  return normal.dot(b.support(-normal) - a.support(normal));
+}
+
+RoundDistance round_distance(const SupportCore& a, const SupportCore& b) {
+  const double size = a.size() + b.size();
+  const Descent d = descend(a, b, Vec3::Zero());
+  RoundDistance result;
+  if (!d.overlap && d.simplex.v.norm() > touch * size) {
+    result = apart_at(d);
+    const Vec3 axis = refined(a, b, result.normal, result.distance);
+    if (axis != result.normal) result.distance = distance_along(a, b, axis);
+    result.normal = axis;
+  } else {
+    result = overlapping(a, b, d);
+  }
+  result.point_b = result.point_a + result.distance * result.normal;
+  return result;
+}
+
+}  // namespace tw

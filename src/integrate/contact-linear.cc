@@ -1,0 +1,291 @@
+// Derivatives of four contacts' forces.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/contact-linear.h"
+
+namespace tw {
+
+namespace {
+
+struct LaneChange {
+  LaneVec x, th, v, w;
+};
+
+TW_LANES LaneChange gather(const ContactPack& pack, const BodyChange* changes,
+                           const int (&slot)[lane_count]) {
+  const BodyChange* c[lane_count];
+  for (int i = 0; i < lane_count; ++i) c[i] = &changes[slot[i]];
+  if (pack.uniform)
+    return {broadcast(c[0]->x), broadcast(c[0]->th), broadcast(c[0]->v), broadcast(c[0]->w)};
+  return {gather_vec(c[0]->x, c[1]->x, c[2]->x, c[3]->x),
+          gather_vec(c[0]->th, c[1]->th, c[2]->th, c[3]->th),
+          gather_vec(c[0]->v, c[1]->v, c[2]->v, c[3]->v),
+          gather_vec(c[0]->w, c[1]->w, c[2]->w, c[3]->w)};
+}
+
+// Nn y = (1 - n n^T - l l^T) y/|arm|
+TW_LANES LaneVec turn_normal(const ContactPack& pack, const PackLinear& o, const LaneVec& y) {
+  LaneVec part = y - dot(o.n, y) * o.n;
+  if (pack.feature == ContactFeature::line) part = part - dot(o.l, y) * o.l;
+  return o.inverse_length * part;
+}
+
+// derivative of the atan law: F = -mu N A(u), A = (2/pi) atan(|u|/v0) u/|u|
+void set_smooth(const ContactPack& pack, const PackState& s, PackLinear& o) {
+  o.drag = lanes(1);
+  o.bend = -s.vr;
+  o.q = lanes(0);
+  o.c0 = s.scale;
+  const Lanes y = s.target_length * lanes(1 / smooth_speed);
+  // along u: -mu N (2/pi)/(v0 (1 + y^2))
+  const Lanes along = lanes(-2 / (pi * smooth_speed)) * pack.mu * s.N / (lanes(1) + y * y);
+  o.c1 = along - s.scale;
+  o.m = select(s.N > lanes(0), (lanes(1) / max(s.N, lanes(1e-300))) * s.F,
+               LaneVec{lanes(0), lanes(0), lanes(0)});
+  o.sticking = LaneMask{};
+  o.tau = lanes(0);
+  o.inverse_ct = lanes(0);
+}
+
+void set_anchored(const ContactPack& pack, const PackState& s, PackLinear& o) {
+  const Lanes zero = lanes(0);
+  o.drag = -pack.ct;
+  o.bend = pack.kt * s.s + pack.ct * s.vr;
+  o.q = s.scale;
+  o.sticking = ~s.slipping;
+  o.c0 = s.scale;
+  o.c1 = s.slipping ? -s.scale : zero;
+  o.m = (s.slipping ? pack.mu : zero) * o.e;
+  o.inverse_ct = lanes(1) / pack.ct;
+  o.tau = pack.kt * o.inverse_ct;
+}
+
+// dN, by dp and dv'
+TW_LANES Lanes normal_change(const PackLinear& o, const LaneVec& dp, const LaneVec& dv) {
+  return dot(o.g, dp) - o.kb * dot(o.n, dv);
+}
+
+// raw dF of given dN, dn' and dv'
+template <bool flat>
+TW_LANES LaneVec friction_change(const PackLinear& o, Lanes dN, const LaneVec& dn,
+                                 const LaneVec& dv) {
+  LaneVec target = o.drag * (dv - dot(o.n, dv) * o.n);
+  if constexpr (!flat) target = target + o.vbend * dn + dot(o.bend, dn) * o.n;
+  return dN * o.m + o.c0 * target + (o.c1 * dot(o.e, target)) * o.e;
+}
+
+// W y
+TW_LANES LaneVec stretched(const PackLinear& o, const LaneVec& y) {
+  return o.m1 * (y - dot(o.n, y) * o.n) + (o.m2 * dot(o.t, y)) * o.t;
+}
+
+// `grounded`: body a does not change
+template <bool flat, bool grounded>
+void change(const ContactPack& pack, const PackLinear& o, const BodyChange* changes,
+            const LaneVec& stretch_side, PackChange& out) {
+  // relative displacement in a's frame
+  const LaneChange b = gather(pack, changes, pack.b);
+  LaneChange a;
+  if constexpr (!grounded) a = gather(pack, changes, pack.a);
+  LaneVec dx = b.x;
+  if constexpr (!grounded) dx = dx - a.x;
+  const LaneVec turned_b = cross(b.th, o.rb);
+  LaneVec dp = dx + turned_b;
+  if constexpr (!grounded) dp = dp - cross(a.th, o.ra);
+
+  // normal and arms
+  out.sa = dp;
+  out.sb = turned_b;
+  LaneVec dn;
+  if constexpr (!flat) {
+    dn = turn_normal(pack, o, dp);
+    out.sa = out.sa - pack.radius_b * dn;
+    out.sb = out.sb - pack.radius_b * dn;
+  }
+  if constexpr (!grounded) {
+    out.sa = out.sa + cross(a.th, o.sa);
+    out.sb = out.sb - pack.radius_b * cross(a.th, o.n);
+  }
+
+  // relative velocity in a's frame
+  LaneVec dv = b.v + cross(b.w, o.sb) + cross(o.dw, out.sa) - cross(o.wb, dx);
+  if constexpr (!grounded) dv = dv - a.v - cross(a.w, o.sa) + cross(o.vr, a.th);
+
+  // force
+  const Lanes dN = normal_change(o, dp, dv);
+  out.friction = friction_change<flat>(o, dN, dn, dv);
+  const LaneVec rest = out.friction - pack.ct * stretch_side;
+  out.f = dN * o.n + out.friction + stretched(o, rest);
+  if constexpr (!flat) out.f = out.f + o.N * dn;
+  if constexpr (!grounded) out.f = out.f + cross(a.th, o.f);
+}
+
+}  // namespace
+
+void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) {
+  for (int r = 0; r < 3; ++r) o.Ra.row[r] = s.Ra.row[r];
+  o.n = s.n;
+  o.l = s.l;
+  o.ra = s.ra;
+  o.rb = s.rb;
+  o.sa = s.sa;
+  o.sb = s.sb;
+  o.wb = s.wb;
+  o.dw = s.wb - s.wa;
+  o.vr = s.vr;
+  o.f = s.f;
+  o.N = s.N;
+  o.inverse_length = s.inverse_length;
+  o.e = (lanes(1) / max(s.target_length, lanes(1e-300))) * s.target;
+  o.t = cross(o.n, o.e);
+  if (pack.law == FrictionLaw::anchored)
+    set_anchored(pack, s, o);
+  else
+    set_smooth(pack, s, o);
+  o.vbend = dot(o.n, o.bend);
+
+  // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2), or k (1 + cap) beyond the cap
+  const Lanes zero = lanes(0), one = lanes(1);
+  const Lanes ratio = s.gap * pack.inverse_hardening, squared = ratio * ratio;
+  const Lanes slope =
+      squared < lanes(hardening_cap) ? one + lanes(3) * squared : lanes(1 + hardening_cap);
+  const Lanes by_depth = s.N > zero ? pack.k * slope * (one - pack.damping * s.vn) : zero;
+  o.kb = s.stiffness * pack.damping;
+  o.g = -(by_depth * o.n);
+  if (pack.feature != ContactFeature::plane) o.g = o.g - o.kb * turn_normal(pack, o, o.vr);
+  o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
+}
+
+void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
+  if (pack.law != FrictionLaw::anchored) return;
+  const Lanes s = lanes(sigma), zero = lanes(0), one = lanes(1);
+  const Lanes slip = one / (s + o.tau * (one - o.q)), relax = one / (s + o.tau);
+  o.m1 = o.sticking ? o.tau / s : zero;
+  o.m2 = o.sticking ? zero : o.tau * o.q * slip;
+  o.h0 = o.sticking ? one / s : relax;
+  o.h1 = o.sticking ? relax - one / s : zero;
+  o.h2 = o.sticking ? zero : slip - relax;
+}
+
+void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
+                 const LaneVec& stretch_side, bool outside_changes, PackChange& out) {
+  const bool flat = pack.feature == ContactFeature::plane;
+  const bool grounded = pack.grounded && !outside_changes;
+  const auto choose = flat ? (grounded ? change<true, true> : change<true, false>)
+                           : (grounded ? change<false, true> : change<false, false>);
+  choose(pack, linear, changes, stretch_side, out);
+}
+
+LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& friction) {
+  const LaneVec y = stretch_side - o.inverse_ct * friction;
+  return o.h0 * y + (o.h1 * dot(o.n, y)) * o.n + (o.h2 * dot(o.t, y)) * o.t;
+}
+
+namespace {
+
+// df by dp and by dv', stretches eliminated
+template <bool flat>
+TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, LaneMat& by_p,
+                                LaneMat& by_v) {
+  const Lanes zero = lanes(0), one = lanes(1);
+  const LaneVec unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+  // columns
+  LaneVec p[3], v[3];
+  for (int i = 0; i < 3; ++i) {
+    LaneVec dn = {zero, zero, zero};
+    if constexpr (!flat) dn = turn_normal(pack, o, unit[i]);
+    const LaneVec none = {zero, zero, zero};
+    const Lanes dNp = normal_change(o, unit[i], none), dNv = normal_change(o, none, unit[i]);
+    const LaneVec Fp = friction_change<flat>(o, dNp, dn, none);
+    const LaneVec Fv = friction_change<flat>(o, dNv, none, unit[i]);
+    p[i] = dNp * o.n + Fp + stretched(o, Fp);
+    if constexpr (!flat) p[i] = p[i] + o.N * dn;
+    v[i] = dNv * o.n + Fv + stretched(o, Fv);
+  }
+  by_p = {{{p[0].x, p[1].x, p[2].x}, {p[0].y, p[1].y, p[2].y}, {p[0].z, p[1].z, p[2].z}}};
+  by_v = {{{v[0].x, v[1].x, v[2].x}, {v[0].y, v[1].y, v[2].y}, {v[0].z, v[1].z, v[2].z}}};
+}
+
+template <bool flat>
+void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
+            PackBlocks& out) {
+  LaneMat fp, fv;
+  force_derivatives<flat>(pack, o, fp, fv);
+  const Lanes inverse = lanes(1 / sigma);
+
+  // point = (1 - radius_b Nn) dp
+  LaneMat turn, keep = scalar_matrix(lanes(1));
+  if constexpr (!flat) {
+    const LaneMat project = scalar_matrix(lanes(1)) - outer(o.n, o.n);
+    turn = o.inverse_length *
+           (pack.feature == ContactFeature::line ? project - outer(o.l, o.l) : project);
+    turn = pack.radius_b * turn;
+    keep = keep - turn;
+  }
+
+  // by dp at fixed dv, dw, through dv' too: fq = fp + fv [dw]x keep
+  const LaneMat fvw = times_cross(fv, o.dw);
+  LaneMat fq;
+  if constexpr (flat)
+    fq = fp + fvw;
+  else
+    fq = fp + fvw * keep;
+  // df by v of b
+  const LaneMat by_v = fv + inverse * (fq - times_cross(fv, o.wb));
+  const LaneVec arm[2] = {o.ra, o.rb}, reach[2] = {o.sa, o.sb};
+
+  // outside bodies have no unknowns
+  for (int X = pack.grounded ? 1 : 0; X < 2; ++X) {
+    const Lanes sign = X == 1 ? lanes(1) : lanes(-1);
+    const LaneMat &P = body[X].P, &V = body[X].V;
+
+    // dp and df by v, and by the rotation th of X
+    const LaneMat dp_th = (-sign) * cross_lanes(arm[X]);
+    LaneMat f_th = (-sign) * times_cross(fq, arm[X]);
+    if (X == 0) f_th = f_th - times_cross(fvw, o.sa) + times_cross(fv, o.vr) - cross_lanes(o.f);
+    const LaneMat f_w = (-sign) * times_cross(fv, reach[X]);
+    const LaneMat f_v = sign * by_v;
+    const LaneMat f_L = f_th * P + f_w * V;
+
+    // arms by v and th
+    LaneMat sa_th, sb_th = scalar_matrix(lanes(0));
+    if constexpr (flat) {
+      sa_th = dp_th;
+    } else {
+      sa_th = keep * dp_th;
+      sb_th = sa_th - dp_th;
+    }
+    if (X == 0) {
+      sa_th = sa_th - cross_lanes(o.sa);
+      sb_th = sb_th + pack.radius_b * cross_lanes(o.n);
+    } else {
+      sb_th = sb_th - cross_lanes(o.rb);
+    }
+    const LaneMat sa_v = (sign * inverse) * keep;
+    LaneMat sb_v = scalar_matrix(lanes(0));
+    if constexpr (!flat) sb_v = (-sign * inverse) * turn;
+    const LaneMat s_v[2] = {sa_v, sb_v}, s_L[2] = {sa_th * P, sb_th * P};
+
+    // torque s x f, force; on a with the opposite sign
+    for (int Y = pack.grounded ? 1 : 0; Y < 2; ++Y) {
+      const Lanes side = Y == 1 ? lanes(1) : lanes(-1);
+      LaneMat(&part)[2][2] = out.part[Y][X];
+      part[0][0] = side * f_v;
+      part[0][1] = side * f_L;
+      part[1][0] = side * (cross_times(reach[Y], f_v) - cross_times(o.f, s_v[Y]));
+      part[1][1] = side * (cross_times(reach[Y], f_L) - cross_times(o.f, s_L[Y]));
+    }
+  }
+}
+
+}  // namespace
+
+void pack_blocks(const ContactPack& pack, const PackLinear& linear, double sigma, const LaneBody& a,
+                 const LaneBody& b, PackBlocks& out) {
+  const LaneBody body[2] = {a, b};
+  if (pack.feature == ContactFeature::plane)
+    blocks<true>(pack, linear, sigma, body, out);
+  else
+    blocks<false>(pack, linear, sigma, body, out);
+}
+
+}  // namespace tw

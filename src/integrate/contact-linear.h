@@ -1,0 +1,87 @@
+// The exact derivative of contact forces, four contacts at a time, with the stretches eliminated.
+//
+// Write force and stretch in a's frame: they depend on the displacement p of b's core point, the
+// velocity v of b against a at the contact point and the stretch alone.  For displacements (dx,
+// dth) and velocity changes (dv, dw) of the two bodies, in the world frame,
+//   dp  = dx_b - dx_a + dth_b x r_b - dth_a x r_a
+//   dn' = Nn dp,  Nn = (1 - n n^T - l l^T)/|arm|  (0 for a plane)
+//   dv' = dv_b - dv_a + dw_b x s_b - dw_a x s_a + (w_b - w_a) x (dp - radius_b dn' + dth_a x s_a)
+//         - w_b x (dx_b - dx_a) + v_r x dth_a
+//   dN  = g.dp - K b (n.dv'),   g = -(dN/dd) n - K b Nn v_r,   K = N/(1 + b d')
+//   dF* = -ct (dv' - n n.dv') + (kt s + ct v_r).n dn' + n (kt s + ct v_r).dn'      (anchored)
+//   dF  = m dN + (c0 + c1 e e^T) dF*,  e = F*/|F*|
+//         sticking: m = 0, c0 = 1, c1 = 0;  slipping: m = mu e, c0 = q, c1 = -q, q = mu N/|F*|
+//   df  = n dN + N dn' + dF + dth_a x f
+// smooth: m = F/N, and du instead of dF* with the derivative of the atan law in c0, c1.
+//
+// The stretch z (world frame) has z' = -(F + kt z)/ct; dF/dz is -kt q t t^T when slipping, with
+// t = n x e, and -kt (1 - n n^T) when sticking.  With sigma = 1/(gamma h) and tau = kt/ct its stage
+// equation gives
+//   dz = H (r_z - dF/ct),  H = h0 + h1 n n^T + h2 t t^T, and dF becomes dF + W (dF - ct r_z),
+//   W = m1 (1 - n n^T) + m2 t t^T,
+//   sticking: m1 = tau/sigma, m2 = 0;  slipping: m1 = 0, m2 = tau q/(sigma + tau (1 - q)).
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "integrate/contact-pack.h"
+
+namespace tw {
+
+// Changes of one body's pose and velocity.
+struct BodyChange {
+  double x[3], th[3], v[3], w[3];
+};
+
+// Wrenches, or their changes, of one body about its centre.
+struct BodyWrench {
+  double f[3], t[3];
+};
+
+// What derivatives of a pack need.
+struct PackLinear {
+  LaneMat Ra;
+  LaneVec n, l, ra, rb, sa, sb, wb, dw, vr, f,
+      bend;  // dw = w_b - w_a; bend = kt s + ct v_r, or v_r
+  LaneVec e, t, m, g;
+  Lanes N, kb, inverse_length, vbend;  // vbend = n.bend
+  Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
+  Lanes inverse_ct, tau;
+  LaneMask sticking;
+  Lanes m1, m2, h0, h1, h2;  // by the step
+};
+
+// Changes of the force on b, of the raw friction (stretches held) and of the two arms.
+struct PackChange {
+  LaneVec f, friction, sa, sb;
+};
+
+// The derivative at a state; stretches are held until set_stage_rate is called.
+void linearise_pack(const ContactPack& pack, const PackState& state, PackLinear& out);
+// sigma = 1/(gamma h), 1/s: eliminates the stretches.
+void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& linear);
+
+// `stretch_side`: r_z in the world frame.  `outside_changes`: whether changes of outside bodies may
+// differ from 0.
+void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
+                 const LaneVec& stretch_side, bool outside_changes, PackChange& out);
+
+// The raw friction change alone gives the stretch: H (r_z - dF/ct), world frame.
+LaneVec solve_stretch(const PackLinear& linear, const LaneVec& stretch_side,
+                      const LaneVec& friction_change);
+
+// 6 x 6 blocks of the derivative of the wrenches (f, torque about the centre) on body Y by (v, L)
+// of body X, where the stage equations give dx = v/sigma, dth = P L, dw = V L.  Of [Y][X], a = 0
+// and b = 1; only [1][1] where the pack is grounded.
+struct PackBlocks {
+  LaneMat part[2][2][2][2];  // [Y][X][force, torque][v, L]
+};
+
+struct LaneBody {
+  LaneMat P, V;
+};
+
+void pack_blocks(const ContactPack& pack, const PackLinear& linear, double sigma, const LaneBody& a,
+                 const LaneBody& b, PackBlocks& out);
+
+}  // namespace tw

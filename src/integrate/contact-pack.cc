@@ -1,0 +1,262 @@
+// Geometry and force of four contacts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/contact-pack.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tw {
+
+namespace {
+
+// what a contact needs of one of its bodies
+struct LaneKinematics {
+  LaneVec x, v, w;
+  LaneMat R;
+};
+
+TW_LANES void gather(const ContactPack& pack, const BodyKinematics* bodies,
+                     const int (&slot)[lane_count], LaneKinematics& out) {
+  const BodyKinematics* body[lane_count];
+  for (int i = 0; i < lane_count; ++i) body[i] = &bodies[slot[i]];
+  if (pack.uniform) {
+    out.x = broadcast(body[0]->x);
+    out.v = broadcast(body[0]->v);
+    out.w = broadcast(body[0]->w);
+    for (int r = 0; r < 3; ++r) out.R.row[r] = broadcast(body[0]->R + 3 * r);
+    return;
+  }
+  const auto vec = [&](auto of) {
+    return gather_vec(of(body[0]), of(body[1]), of(body[2]), of(body[3]));
+  };
+  out.x = vec([](const BodyKinematics* b) { return b->x; });
+  out.v = vec([](const BodyKinematics* b) { return b->v; });
+  out.w = vec([](const BodyKinematics* b) { return b->w; });
+  for (int r = 0; r < 3; ++r)
+    out.R.row[r] = vec([r](const BodyKinematics* b) { return b->R + 3 * r; });
+}
+
+// n, gap and the signed 1/|arm| from D = P_b - P_a
+template <ContactFeature feature>
+TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVec& side,
+                         PackState& o) {
+  if constexpr (feature == ContactFeature::plane) {
+    o.n = o.Ra * pack.normal;
+    o.gap = dot(o.n, D) - pack.radius_b;
+    o.inverse_length = lanes(0);
+    return;
+  }
+  o.arm = D;
+  if constexpr (feature == ContactFeature::line) {
+    o.l = o.Ra * pack.direction;
+    o.arm = D - dot(o.l, D) * o.l;
+  }
+  const Lanes length = sqrt(dot(o.arm, o.arm));
+  const Lanes sign = dot(o.arm, side) < lanes(0) ? lanes(-1) : lanes(1);
+  const LaneMask somewhere = length > lanes(0);
+  o.inverse_length = somewhere ? sign / length : lanes(0);
+  o.n = select(somewhere, o.inverse_length * o.arm, side);
+  o.gap = sign * length - pack.radius_a - pack.radius_b;
+}
+
+// N = max(0, k d (1 + min((d/dh)^2, cap)) (1 - b vn))
+TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
+  const Lanes zero = lanes(0), one = lanes(1);
+  const Lanes depth = -o.gap, ratio = depth * pack.inverse_hardening;
+  const Lanes hard = one + min(ratio * ratio, lanes(hardening_cap));
+  const Lanes damped = one - pack.damping * o.vn;
+  const LaneMask pressed = (depth > zero) & (damped > zero);
+  o.stiffness = pressed ? pack.k * depth * hard : zero;
+  o.N = o.stiffness * damped;
+  o.N = pressed ? o.N : zero;
+}
+
+// F* = -kt s_t - ct u, cut to mu N
+TW_LANES void set_anchored_friction(const ContactPack& pack, PackState& o) {
+  const LaneVec st = o.s - dot(o.n, o.s) * o.n;
+  o.target = -(pack.kt * st) - pack.ct * o.u;
+  o.target_length = sqrt(dot(o.target, o.target));
+  const Lanes limit = pack.mu * o.N;
+  o.slipping = o.target_length >= limit;
+  o.scale = o.slipping ? limit / max(o.target_length, lanes(1e-300)) : lanes(1);
+  o.F = o.scale * o.target;
+  // xi' = R_a^T (-F - kt s)/ct
+  o.stretch_rate = transposed_times(o.Ra, (lanes(-1) / pack.ct) * (o.F + pack.kt * o.s));
+}
+
+// F = -mu N (2/pi) atan(|u|/v0)/|u| u
+TW_LANES void set_smooth_friction(const ContactPack& pack, PackState& o) {
+  o.target = o.u;
+  o.target_length = sqrt(dot(o.u, o.u));
+  o.slipping = LaneMask{};
+  for (int i = 0; i < lane_count; ++i) {
+    const double speed = o.target_length[i];
+    // atan(y)/y is 1 to rounding below 1e-8
+    const double per_speed =
+        speed > 1e-8 * smooth_speed ? std::atan(speed / smooth_speed) / speed : 1 / smooth_speed;
+    o.scale[i] = -(2 / pi) * pack.mu[i] * o.N[i] * per_speed;
+  }
+  o.F = o.scale * o.target;
+  o.stretch_rate = {lanes(0), lanes(0), lanes(0)};
+}
+
+template <ContactFeature feature>
+void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
+              const LaneVec& side, PackState& o) {
+  // core points
+  LaneKinematics a, b;
+  gather(pack, bodies, pack.a, a);
+  gather(pack, bodies, pack.b, b);
+  for (int r = 0; r < 3; ++r) o.Ra.row[r] = a.R.row[r];
+  o.rb = b.R * pack.point_b;
+  o.ra = b.x - a.x + o.rb;
+  set_normal<feature>(pack, o.ra - o.Ra * pack.point_a, side, o);
+
+  // velocity at the contact point
+  o.sa = o.ra - pack.radius_b * o.n;
+  o.sb = o.rb - pack.radius_b * o.n;
+  o.wa = a.w;
+  o.wb = b.w;
+  o.vr = b.v + cross(b.w, o.sb) - a.v - cross(a.w, o.sa);
+  o.vn = dot(o.n, o.vr);
+  o.u = o.vr - o.vn * o.n;
+
+  // force
+  set_normal_force(pack, o);
+  o.s = o.Ra * stretch;
+  if (pack.law == FrictionLaw::anchored)
+    set_anchored_friction(pack, o);
+  else
+    set_smooth_friction(pack, o);
+  o.f = o.N * o.n + o.F;
+}
+
+void set_lane(LaneVec& v, int lane, const Vec3& value) {
+  v.x[lane] = value.x();
+  v.y[lane] = value.y();
+  v.z[lane] = value.z();
+}
+
+void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int members) {
+  const auto slot = [members](int body) { return body >= 0 ? body : members + ~body; };
+  pack.a[lane] = slot(contact.a);
+  pack.b[lane] = slot(contact.b);
+  set_lane(pack.normal, lane, contact.normal);
+  set_lane(pack.direction, lane, contact.direction);
+  set_lane(pack.point_a, lane, contact.point_a);
+  set_lane(pack.point_b, lane, contact.point_b);
+  pack.radius_a[lane] = contact.radius_a;
+  pack.radius_b[lane] = contact.radius_b;
+  const ContactConstants& law = contact.law;
+  pack.k[lane] = contact.share * law.k;
+  pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
+  pack.damping[lane] = law.b;
+  // without a tangential spring and damper there is no friction of the anchored kind
+  const bool frictionless = law.law == FrictionLaw::anchored && !(law.ct > 0);
+  pack.mu[lane] = frictionless ? 0 : law.mu;
+  pack.kt[lane] = frictionless ? 0 : contact.share * law.kt;
+  pack.ct[lane] = frictionless ? 1 : contact.share * law.ct;
+}
+
+bool same_pair(const GroupContact& x, const GroupContact& y) {
+  return x.a == y.a && x.b == y.b;
+}
+
+// bodies of lanes without contact: those of the first lane
+void finish_pack(ContactPack& pack, int members) {
+  pack.uniform = true;
+  pack.grounded = true;
+  for (int i = 0; i < pack.count; ++i) {
+    pack.uniform &= pack.a[i] == pack.a[0] && pack.b[i] == pack.b[0];
+    pack.grounded &= pack.a[i] >= members;
+  }
+  for (int i = pack.count; i < lane_count; ++i) {
+    pack.a[i] = pack.a[0];
+    pack.b[i] = pack.b[0];
+  }
+}
+
+// contacts that touch nothing: without stiffness
+ContactPack empty_pack(const GroupContact& kind) {
+  ContactPack pack;
+  pack.feature = kind.feature;
+  pack.law = kind.law.law;
+  for (int i = 0; i < lane_count; ++i) {
+    pack.contact[i] = -1;
+    fill_lane(pack, i, GroupContact{}, 0);
+  }
+  return pack;
+}
+
+}  // namespace
+
+void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
+                   const LaneVec& side, PackState& out) {
+  switch (pack.feature) {
+    case ContactFeature::plane:
+      return evaluate<ContactFeature::plane>(pack, bodies, stretch, side, out);
+    case ContactFeature::line:
+      return evaluate<ContactFeature::line>(pack, bodies, stretch, side, out);
+    case ContactFeature::point:
+      return evaluate<ContactFeature::point>(pack, bodies, stretch, side, out);
+  }
+}
+
+LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies) {
+  LaneKinematics a;
+  gather(pack, bodies, pack.a, a);
+  return a.R * pack.normal;
+}
+
+Lanes pack_energy(const ContactPack& pack, const PackState& state) {
+  const Lanes zero = lanes(0), half = lanes(0.5), cap = lanes(hardening_cap);
+  // integral of k d (1 + min(r^2, cap)), r = d/dh: k d^2/2 (1 + r^2/2), beyond the cap
+  // k d^2/2 (1 + cap) less what the cap cut off, k dh^2 cap^2/4
+  const Lanes depth = max(-state.gap, zero), ratio = depth * pack.inverse_hardening;
+  const Lanes squared = ratio * ratio;
+  const Lanes over = cap * cap / max(squared, cap);
+  const Lanes hard = squared < cap ? half * squared : cap - half * over;
+  const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
+  if (pack.law != FrictionLaw::anchored) return normal;
+  const LaneVec st = state.s - dot(state.n, state.s) * state.n;
+  return normal + half * pack.kt * dot(st, st);
+}
+
+ContactPacks make_contact_packs(const GroupStart& start) {
+  const std::vector<GroupContact>& contacts = start.contacts;
+  const int members = static_cast<int>(start.members.size());
+  ContactPacks result;
+  result.slots = members + static_cast<int>(start.outside.size());
+  result.places.resize(contacts.size());
+
+  // by feature and law
+  std::vector<int> order(contacts.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto kind = [&](int i) {
+    const GroupContact& c = contacts[static_cast<std::size_t>(i)];
+    return 2 * static_cast<int>(c.feature) + static_cast<int>(c.law.law);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return kind(i) < kind(j); });
+
+  // fill pack after pack; pairs with several contacts begin one of their own
+  for (std::size_t at = 0; at < order.size(); ++at) {
+    const int i = order[at];
+    const GroupContact& contact = contacts[static_cast<std::size_t>(i)];
+    const bool new_kind = at == 0 || kind(i) != kind(order[at - 1]);
+    const bool new_pair =
+        at > 0 && !same_pair(contact, contacts[static_cast<std::size_t>(order[at - 1])]);
+    const bool several = at + 2 < order.size() && kind(order[at + 2]) == kind(i) &&
+                         same_pair(contact, contacts[static_cast<std::size_t>(order[at + 2])]);
+    if (new_kind || result.packs.back().count == lane_count || (new_pair && several))
+      result.packs.push_back(empty_pack(contact));
+    ContactPack& pack = result.packs.back();
+    pack.contact[pack.count] = i;
+    fill_lane(pack, pack.count, contact, members);
+    result.places[static_cast<std::size_t>(i)] = {static_cast<int>(result.packs.size()) - 1,
+                                                  pack.count++};
+  }
+  for (ContactPack& pack : result.packs) finish_pack(pack, members);
+  return result;
+}
+
+}  // namespace tw

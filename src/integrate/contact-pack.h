@@ -1,0 +1,84 @@
+// Contacts of a group four at a time: constants, geometry and force.
+//
+// Symbols, for a contact of bodies a (reference) and b: P the core point of b, n the normal, l the
+// line's direction; r_a, r_b from the centres to the core points; c = P - radius_b n where the
+// force acts; s_a, s_b from the centres to c; v_r velocity of b against a at c, u its tangential
+// part; s the stretch in the world frame; f = N n + F the force on b.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "integrate/group-arc.h"
+#include "integrate/lanes.h"
+
+namespace tw {
+
+// What contacts need to know of a body at one instant.
+struct BodyKinematics {
+  double x[3], R[9], v[3], w[3];  // R by rows: from the body's frame to the world
+};
+
+// Four contacts with the same feature and friction law.  Lanes beyond the last contact hold one
+// without stiffness between the bodies of the first.
+struct ContactPack {
+  ContactFeature feature = ContactFeature::plane;
+  FrictionLaw law = FrictionLaw::anchored;
+  int count = 0;
+  bool uniform = false;                         // all of the same two bodies
+  bool grounded = false;                        // all bodies a are outside
+  int contact[lane_count];                      // index in GroupStart::contacts
+  int a[lane_count], b[lane_count];             // body slots
+  LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
+  Lanes radius_a, radius_b;
+  Lanes k, inverse_hardening, damping, mu, kt, ct;
+};
+
+// Where in the packs a contact is.
+struct ContactPlace {
+  int pack = 0, lane = 0;
+};
+
+// Bodies in slots: members first, then outside bodies.
+struct ContactPacks {
+  std::vector<ContactPack> packs;
+  std::vector<ContactPlace> places;  // by contact
+  int slots = 0;
+};
+
+// By feature and friction law, otherwise in the given order.
+ContactPacks make_contact_packs(const GroupStart& start);
+
+// The contacts of a pack at one instant, in the world frame.
+struct PackState {
+  LaneMat Ra;
+  LaneVec n, l, ra, rb, sa, sb, wa, wb, vr, u, s;  // ra from the centre of a to the core point of b
+  LaneVec arm;                                     // n = arm/|arm|, signed; point and line
+  Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
+  Lanes gap, vn;
+  Lanes N, stiffness;          // stiffness = N/(1 - b vn)
+  LaneVec target;              // F* before the cut (anchored), u (smooth)
+  Lanes target_length, scale;  // F = scale target
+  LaneMask slipping;
+  LaneVec F, f, stretch_rate;  // the rate in a's frame
+};
+
+// `stretch`: a's frame.  `side`: the normals at an earlier instant, which choose their sign (line,
+// point).
+void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
+                   const LaneVec& side, PackState& out);
+
+// The normals that the definition of the contacts gives at the start of an arc: they choose the
+// sign.
+LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies);
+
+// Of the normal springs (without the damper) and the stretches, J.
+Lanes pack_energy(const ContactPack& pack, const PackState& state);
+
+// Depth beyond which a contact hardens no more, over its hardening depth, and the speed scale of
+// smooth friction, m/s.
+constexpr double hardening_cap = 100;
+constexpr double smooth_speed = 1e-4;
+
+}  // namespace tw

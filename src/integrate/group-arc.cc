@@ -1,0 +1,210 @@
+// Arcs of contact groups: extended on demand, looked at anywhere.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/group-arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "integrate/group-stepper.h"
+
+namespace tw {
+
+struct GroupArc::Data {
+  GroupStart start;
+  GroupStepper stepper;
+  const GroupSystem& system;
+  const GroupRecord& record;
+  GroupCounts counts;
+  std::string failure;
+  int failed_contact = -1;
+
+  explicit Data(GroupStart given)
+      : start(std::move(given)),
+        stepper(start),
+        system(stepper.system()),
+        record(stepper.record()) {}
+
+  double at(double time) const { return std::clamp(time, start.time, record.reached()); }
+  // kinematics of all slots at a time that is reached
+  void set_bodies(double time, GroupScratch& s) const;
+  void set_slot(int slot, double time, GroupScratch& s) const;
+  int strongest_contact() const;
+  void fail();
+};
+
+int GroupArc::Data::strongest_contact() const {
+  GroupScratch& s = stepper.scratch();
+  set_bodies(record.reached(), s);
+  int strongest = -1;
+  double largest = -1;
+  PackState state;
+  for (int p = 0; p < system.packs(); ++p) {
+    const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(p)];
+    evaluate_pack(pack, s.bodies.data(), record.stretch(p, record.reached()),
+                  record.side(p, record.reached()), state);
+    const Lanes force = dot(state.f, state.f);
+    for (int i = 0; i < pack.count; ++i)
+      if (!(force[i] <= largest)) largest = force[i], strongest = pack.contact[i];
+  }
+  return strongest;
+}
+
+void GroupArc::Data::fail() {
+  failed_contact = strongest_contact();
+  std::ostringstream text;
+  text.precision(17);
+  text << "contact group stopped at " << record.reached() << " s: " << stepper.failure();
+  if (failed_contact >= 0) text << "; largest force at contact " << failed_contact;
+  failure = text.str();
+}
+
+void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
+  if (slot >= system.members()) return;
+  Vec3 v, L;
+  record.velocities(slot, time, v, L);
+  system.set_member(slot, record.position(slot, time), record.attitude(slot, time), v, L,
+                    s.bodies[static_cast<std::size_t>(slot)]);
+}
+
+void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
+  system.set_outside(time, s.bodies);
+  for (int i = 0; i < system.members(); ++i) set_slot(i, time, s);
+}
+
+GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(start))) {}
+GroupArc::~GroupArc() = default;
+
+const GroupStart& GroupArc::start() const {
+  return data_->start;
+}
+double GroupArc::reached() const {
+  return data_->record.reached();
+}
+const std::string& GroupArc::failure() const {
+  return data_->failure;
+}
+int GroupArc::failed_contact() const {
+  return data_->failed_contact;
+}
+double GroupArc::next_step() const {
+  return data_->stepper.next_step();
+}
+
+const GroupCounts& GroupArc::counts() const {
+  data_->counts = data_->stepper.counts();
+  return data_->counts;
+}
+
+bool GroupArc::extend(double time) {
+  Data& d = *data_;
+  const double to = std::min(time, d.start.end);
+  while (d.record.reached() < to && d.failure.empty())
+    if (!d.stepper.step()) d.fail();
+  return d.record.reached() >= to;
+}
+
+GroupSample GroupArc::evaluate(int member, double time) {
+  extend(time);
+  const double at = data_->at(time);
+  GroupSample sample;
+  sample.x = data_->record.position(member, at);
+  sample.q = data_->record.attitude(member, at);
+  data_->record.velocities(member, at, sample.v, sample.L);
+  sample.w = data_->system.angular_velocity(member, sample.q, sample.L);
+  return sample;
+}
+
+void GroupArc::pose(int member, double time, Vec3& x, Quat& q) {
+  extend(time);
+  const double at = data_->at(time);
+  x = data_->record.position(member, at);
+  q = data_->record.attitude(member, at);
+}
+
+void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) {
+  // at the start too the rates are those of a step
+  extend(std::max(time, std::nextafter(data_->start.time, data_->start.end)));
+  if (data_->record.steps() > 0) return data_->record.pose_rates(member, data_->at(time), dx, w);
+  const GroupSample sample = evaluate(member, time);
+  dx = sample.v;
+  w = sample.w;
+}
+
+GroupBounds GroupArc::bounds(int member, double from, double to) {
+  extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
+  if (data_->record.steps() > 0) {
+    const double end = data_->at(to);
+    return data_->record.bounds(member, std::min(data_->at(from), end), end);
+  }
+  // it stands at its start
+  const GroupSample sample = evaluate(member, from);
+  GroupBounds bounds;
+  bounds.path.add(sample.x);
+  bounds.turn = sample.w.norm();
+  bounds.acceleration.add(Vec3(Vec3::Zero()));
+  return bounds;
+}
+
+double GroupArc::step_end(double time) {
+  const double from = data_->at(time);
+  const GroupRecord& record = data_->record;
+  const int step = std::max(record.step_from(from), 0);
+  return step < record.steps() ? record.time(step + 1) : record.reached();
+}
+
+Vec3 GroupArc::stretch(int contact, double time) {
+  extend(time);
+  const ContactPlace place =
+      data_->system.contact_packs().places[static_cast<std::size_t>(contact)];
+  const LaneVec s = data_->record.stretch(place.pack, data_->at(time));
+  return {s.x[place.lane], s.y[place.lane], s.z[place.lane]};
+}
+
+ContactForce GroupArc::contact_force(int contact, double time) {
+  extend(time);
+  const Data& d = *data_;
+  const double at = d.at(time);
+  GroupScratch& s = d.stepper.scratch();
+  const ContactPlace place = d.system.contact_packs().places[static_cast<std::size_t>(contact)];
+  const ContactPack& pack = d.system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
+  d.system.set_outside(at, s.bodies);
+  for (int i = 0; i < pack.count; ++i) {
+    d.set_slot(pack.a[i], at, s);
+    d.set_slot(pack.b[i], at, s);
+  }
+  PackState state;
+  evaluate_pack(pack, s.bodies.data(), d.record.stretch(place.pack, at),
+                d.record.side(place.pack, at), state);
+
+  const int i = place.lane;
+  const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
+  const double* xb = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
+  ContactForce force;
+  force.point = Vec3(xb[0], xb[1], xb[2]) + lane(state.sb);
+  force.normal = lane(state.n);
+  force.gap = state.gap[i];
+  force.normal_force = state.N[i];
+  force.friction = lane(state.F);
+  force.velocity = lane(state.vr);
+  force.slipping = state.slipping[i] != 0 && state.N[i] > 0;
+  return force;
+}
+
+double GroupArc::elastic_energy(double time) {
+  extend(time);
+  const Data& d = *data_;
+  const double at = d.at(time);
+  GroupScratch& s = d.stepper.scratch();
+  d.set_bodies(at, s);
+  double energy = 0;
+  PackState state;
+  for (int p = 0; p < d.system.packs(); ++p) {
+    const ContactPack& pack = d.system.contact_packs().packs[static_cast<std::size_t>(p)];
+    evaluate_pack(pack, s.bodies.data(), d.record.stretch(p, at), d.record.side(p, at), state);
+    energy += sum(pack_energy(pack, state));
+  }
+  return energy;
+}
+
+}  // namespace tw

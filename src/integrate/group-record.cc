@@ -1,0 +1,251 @@
+// Dense output of contact groups.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/group-record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "integrate/rotation-vector.h"
+
+namespace tw {
+
+namespace {
+
+constexpr int pack_node = 12, pack_step = 24, pack_side = 12;
+// places in a member's part of a node and of a step
+enum : int { x_at = 0, v_at = 3, L_at = 6, w_at = 9, q_at = 12, node_numbers = 16 };
+enum : int { theta_at = 0, rate_at = 3, d3_at = 6, d4_at = 12, step_numbers = 18 };
+
+Vec3 vec(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+
+void put(std::vector<double>& to, const double* from, int count) {
+  to.insert(to.end(), from, from + count);
+}
+
+void put(std::vector<double>& to, const Quat& q) {
+  to.insert(to.end(), {q.w(), q.x(), q.y(), q.z()});
+}
+
+Quat quat(const double* p) {
+  return Quat(p[0], p[1], p[2], p[3]);
+}
+
+LaneVec load(const double* p) {
+  LaneVec v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+Quat normalized(const Quat& q) {
+  const double n = 1 / std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
+  return Quat(n * q.w(), n * q.x(), n * q.y(), n * q.z());
+}
+
+}  // namespace
+
+GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
+    : members_(system.members()), packs_(system.packs()) {
+  for (const ContactPack& pack : system.contact_packs().packs)
+    with_sides_ |= pack.feature != ContactFeature::plane;
+  node_size_ = static_cast<std::size_t>(node_numbers * members_ + pack_node * packs_);
+  step_size_ = static_cast<std::size_t>(step_numbers * members_ +
+                                        (pack_step + (with_sides_ ? pack_side : 0)) * packs_);
+  first_sides_ = system.sides();
+  // the first node
+  times_.push_back(start.time);
+  for (int i = 0; i < members_; ++i) {
+    const GroupMember& m = start.members[static_cast<std::size_t>(i)];
+    const Vec3 w = system.angular_velocity(i, m.q, m.L);
+    for (const Vec3* part : {&m.x, &m.v, &m.L, &w}) put(nodes_, part->data(), 3);
+    put(nodes_, m.q);
+  }
+  for (const ContactPack& pack : system.contact_packs().packs)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int lane = 0; lane < lane_count; ++lane) {
+        const int contact = pack.contact[lane];
+        nodes_.push_back(
+            contact < 0 ? 0 : start.contacts[static_cast<std::size_t>(contact)].stretch[axis]);
+      }
+}
+
+void GroupRecord::load_last(GroupSystem& system, double* y) const {
+  const double* from = node(steps());
+  for (int i = 0; i < members_; ++i, from += node_numbers, y += 12) {
+    std::copy(from + x_at, from + x_at + 3, y);
+    std::fill(y + 3, y + 6, 0.0);
+    std::copy(from + v_at, from + v_at + 6, y + 6);
+    system.set_attitude(i, quat(from + q_at));
+  }
+  std::copy(from, from + pack_node * packs_, y);
+}
+
+void GroupRecord::append(double time, const GroupSystem& system, const double* y1, const double* d3,
+                         const double* d4) {
+  times_.push_back(time);
+  for (int i = 0; i < members_; ++i) {
+    const double* y = y1 + 12 * i;
+    const Vec3 theta = vec(y + 3);
+    const Quat q = normalized(short_rotation(theta) * system.attitude(i));
+    const Vec3 w = system.angular_velocity(i, q, vec(y + 9)), rate = rotation_vector_rate(theta, w);
+    put(nodes_, y, 3);
+    put(nodes_, y + 6, 6);
+    put(nodes_, w.data(), 3);
+    put(nodes_, q);
+    put(steps_, theta.data(), 3);
+    put(steps_, rate.data(), 3);
+    put(steps_, d3 + 12 * i + 6, 6);
+    put(steps_, d4 + 12 * i + 6, 6);
+  }
+  const int first = 12 * members_;
+  put(nodes_, y1 + first, pack_node * packs_);
+  for (int p = 0; p < packs_; ++p) {
+    put(steps_, d3 + first + 12 * p, 12);
+    put(steps_, d4 + first + 12 * p, 12);
+  }
+  if (!with_sides_) return;
+  for (const LaneVec& side : system.sides()) {
+    double numbers[pack_side];
+    std::memcpy(numbers, &side, sizeof side);
+    put(steps_, numbers, pack_side);
+  }
+}
+
+int GroupRecord::step_from(double time) const {
+  if (!(time < reached())) return -1;
+  const auto next = std::upper_bound(times_.begin(), times_.end(), time);
+  return std::max(0, static_cast<int>(next - times_.begin()) - 1);
+}
+
+int GroupRecord::step_to(double time) const {
+  const auto end = std::lower_bound(times_.begin(), times_.end(), time);
+  return std::clamp(static_cast<int>(end - times_.begin()) - 1, 0, steps() - 1);
+}
+
+double GroupRecord::fraction(int i, double t) const {
+  return std::clamp((t - time(i)) / length(i), 0.0, 1.0);
+}
+
+const double* GroupRecord::member_node(int i, int member) const {
+  return node(i) + node_numbers * member;
+}
+
+const double* GroupRecord::member_step(int i, int member) const {
+  return step(i) + step_numbers * member;
+}
+
+// rate(0) = y1 - y0 + D3, rate(1) = y1 - y0 - D3 - D4
+GroupRecord::Cubic GroupRecord::hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1,
+                                        const Vec3& rate1, double h) {
+  const Vec3 d3 = h * rate0 - (y1 - y0);
+  return {y0, y1, d3, (y1 - y0) - d3 - h * rate1};
+}
+
+GroupRecord::Cubic GroupRecord::path(int i, int member) const {
+  const double *a = member_node(i, member), *b = member_node(i + 1, member);
+  return hermite(vec(a + x_at), vec(a + v_at), vec(b + x_at), vec(b + v_at), length(i));
+}
+
+GroupRecord::Cubic GroupRecord::rotation(int i, int member) const {
+  const double *a = member_node(i, member), *s = member_step(i, member);
+  return hermite(Vec3::Zero(), vec(a + w_at), vec(s + theta_at), vec(s + rate_at), length(i));
+}
+
+Vec3 GroupRecord::position(int member, double t) const {
+  const int i = step_from(t);
+  if (i < 0) return vec(member_node(steps(), member) + x_at);
+  return path(i, member).value(fraction(i, t));
+}
+
+Quat GroupRecord::attitude(int member, double t) const {
+  const int i = step_from(t);
+  if (i < 0) return quat(member_node(steps(), member) + q_at);
+  return short_rotation(rotation(i, member).value(fraction(i, t))) *
+         quat(member_node(i, member) + q_at);
+}
+
+void GroupRecord::velocities(int member, double t, Vec3& v, Vec3& L) const {
+  const int i = step_from(t);
+  const double* a = member_node(i < 0 ? steps() : i, member);
+  v = vec(a + v_at);
+  L = vec(a + L_at);
+  if (i < 0) return;
+  const double *b = member_node(i + 1, member), *s = member_step(i, member);
+  const double r = fraction(i, t);
+  v = Cubic{v, vec(b + v_at), vec(s + d3_at), vec(s + d4_at)}.value(r);
+  L = Cubic{L, vec(b + L_at), vec(s + d3_at + 3), vec(s + d4_at + 3)}.value(r);
+}
+
+LaneVec GroupRecord::stretch(int pack, double t) const {
+  const int i = step_from(t), at = node_numbers * members_ + pack_node * pack;
+  if (i < 0) return load(node(steps()) + at);
+  const double* d = step(i) + step_numbers * members_ + pack_step * pack;
+  const double r = fraction(i, t);
+  const LaneVec y0 = load(node(i) + at), y1 = load(node(i + 1) + at), d3 = load(d),
+                d4 = load(d + 12);
+  return lanes(1 - r) * y0 + lanes(r) * (y1 + lanes(1 - r) * (d3 + lanes(r) * d4));
+}
+
+LaneVec GroupRecord::side(int pack, double t) const {
+  if (!with_sides_ || steps() == 0) return first_sides_[static_cast<std::size_t>(pack)];
+  return load(step(step_to(t)) + step_numbers * members_ + pack_step * packs_ + pack_side * pack);
+}
+
+void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {
+  const int i = step_to(t);
+  const double r = fraction(i, t), rate = 1 / length(i);
+  const Cubic turn = rotation(i, member);
+  dx = rate * path(i, member).rate(r);
+  w = angular_velocity(turn.value(r), rate * turn.rate(r));
+}
+
+void GroupRecord::add_step_bounds(int i, int member, double from, double to,
+                                  GroupBounds& bounds) const {
+  const double r0 = fraction(i, from), r1 = fraction(i, to), rate = 1 / length(i);
+
+  // path: control points over [r0, r1]: p(r0), p + (r1-r0) p'/3 from either end, p(r1)
+  const Cubic way = path(i, member);
+  const Vec3 p0 = way.value(r0), p1 = way.value(r1);
+  const double third = (r1 - r0) / 3;
+  const Vec3 control0 = p0 + third * way.rate(r0), control1 = p1 - third * way.rate(r1);
+  for (const Vec3& p : {p0, p1, control0, control1}) bounds.path.add(p);
+
+  // x'' is linear: largest at an end
+  for (const double r : {r0, r1}) bounds.acceleration.add(Vec3(rate * rate * way.second(r)));
+
+  // |w| <= |theta'|, quadratic: within its control points; |Jl| <= 1
+  const Cubic turn = rotation(i, member);
+  const Vec3 t0 = turn.rate(r0), t1 = turn.rate(r1);
+  const Vec3 middle = t0 + 0.5 * (r1 - r0) * turn.second(r0);
+  const double speed = rate * std::max({t0.norm(), t1.norm(), middle.norm()});
+  bounds.turn = std::max(bounds.turn, speed);
+
+  // |w'| <= |theta''| + |theta'| |theta x theta'|/6, and theta x theta' = r^2 e x (-D3 +
+  // (1-2r) D4)/h with e = theta/r = theta1 + (1-r)(D3 + r D4)
+  const double swing = turn.d3.norm() + turn.d4.norm();
+  const double bend = r1 * r1 * rate * (turn.y1.norm() + swing) * swing;
+  const double turn_second = rate * rate * std::max(turn.second(r0).norm(), turn.second(r1).norm());
+  bounds.turn_change = std::max(bounds.turn_change, turn_second + speed * bend / 6);
+}
+
+GroupBounds GroupRecord::bounds(int member, double from, double to) const {
+  GroupBounds result;
+  // steps of positive overlap, at least one
+  const int last = step_to(to), first = std::min(std::max(step_from(from), 0), last);
+  for (int i = from < to ? first : last; i <= last; ++i)
+    add_step_bounds(i, member, from, to, result);
+  // rounding of the interpolant
+  const double largest =
+      std::max(result.path.lo.cwiseAbs().maxCoeff(), result.path.hi.cwiseAbs().maxCoeff());
+  result.path.grow(1e-15 * largest);
+  const double widen = 1 + 1e-12;
+  result.acceleration.grow(1e-12 * std::max(result.acceleration.lo.cwiseAbs().maxCoeff(),
+                                            result.acceleration.hi.cwiseAbs().maxCoeff()));
+  result.turn *= widen;
+  result.turn_change *= widen;
+  return result;
+}
+
+}  // namespace tw

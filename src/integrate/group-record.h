@@ -1,0 +1,86 @@
+// What an arc keeps of its steps: states at the nodes and the dense output between them.
+//
+// Per node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12).  Per
+// step and member theta and theta' at its end (6) and D3, D4 of rodas4.h for v, L (12), per pack
+// D3, D4 (24), and where some contact is not of the plane kind the normals at the step's start
+// (12).
+//
+// Positions and rotation vectors are the cubics with the nodes' values and rates: order 3 as the
+// dense output of the method, but with continuous rates, so that pose rates and bounds on their
+// change suffice for certificates across nodes.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "integrate/group-system.h"
+
+namespace tw {
+
+class GroupRecord {
+ public:
+  GroupRecord(const GroupStart& start, const GroupSystem& system);
+
+  int steps() const { return static_cast<int>(times_.size()) - 1; }
+  double start() const { return times_.front(); }
+  double reached() const { return times_.back(); }
+  double time(int node) const { return times_[static_cast<std::size_t>(node)]; }
+
+  // y of the step that begins at the last node, theta = 0; sets the attitudes of the system.
+  void load_last(GroupSystem& system, double* y) const;
+  // Appends the step to `time`: y1, D3, D4 in the layout of group-system.h; the system's attitudes
+  // and sides are those of the step's start.
+  void append(double time, const GroupSystem& system, const double* y1, const double* d3,
+              const double* d4);
+
+  // The step that holds `time`, its start included (-1: at or after the last node) or its end
+  // included.
+  int step_from(double time) const;
+  int step_to(double time) const;
+
+  // At a time in [start, reached].
+  Vec3 position(int member, double time) const;
+  Quat attitude(int member, double time) const;
+  void velocities(int member, double time, Vec3& v, Vec3& L) const;
+  LaneVec stretch(int pack, double time) const;
+  LaneVec side(int pack, double time) const;
+  void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
+  // As GroupArc::bounds; from <= to, both in [start, reached], at least one step.
+  GroupBounds bounds(int member, double from, double to) const;
+
+ private:
+  // cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step
+  struct Cubic {
+    Vec3 y0, y1, d3, d4;
+    Vec3 value(double r) const { return (1 - r) * y0 + r * (y1 + (1 - r) * (d3 + r * d4)); }
+    // by r
+    Vec3 rate(double r) const { return y1 - y0 + (1 - 2 * r) * d3 + r * (2 - 3 * r) * d4; }
+    Vec3 second(double r) const { return -2 * d3 + (2 - 6 * r) * d4; }
+  };
+
+  const double* node(int i) const {
+    return nodes_.data() + node_size_ * static_cast<std::size_t>(i);
+  }
+  const double* step(int i) const {
+    return steps_.data() + step_size_ * static_cast<std::size_t>(i);
+  }
+  double fraction(int i, double time) const;
+  double length(int i) const { return time(i + 1) - time(i); }
+  static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,
+                       double h);
+  Cubic path(int step, int member) const;
+  Cubic rotation(int step, int member) const;
+  const double* member_node(int node, int member) const;
+  const double* member_step(int step, int member) const;
+  void add_step_bounds(int step, int member, double from, double to, GroupBounds& bounds) const;
+
+  int members_, packs_;
+  bool with_sides_ = false;
+  std::size_t node_size_, step_size_;
+  std::vector<double> times_, nodes_, steps_;
+  std::vector<LaneVec> first_sides_;
+};
+
+}  // namespace tw

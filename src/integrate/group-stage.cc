@@ -1,0 +1,208 @@
+// The derivative of a contact group and the linear systems of its stages.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/group-rows.h"
+#include "integrate/group-system.h"
+
+namespace tw {
+
+using namespace rows;
+
+void GroupSystem::linearise(double time, const double* y, GroupScratch& s, double* slope) {
+  evaluate_as<true>(time, y, s, slope);
+  for (int p = 0; p < packs(); ++p)
+    if (packs_.packs[index(p)].feature != ContactFeature::plane)
+      sides_[index(p)] = s.linear[index(p)].n;
+  for (int i = 0; i < members_; ++i) {
+    Member& m = member_[index(i)];
+    const Mat3 R =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.bodies[index(i)].R);
+    m.w = vec(s.bodies[index(i)].w);
+    m.J = R * m.inverse_moments.asDiagonal() * R.transpose();
+    m.W = m.J * cross_matrix(vec(y + 12 * i + 9)) - cross_matrix(m.w);
+  }
+}
+
+void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
+                                 double* time_slope) const {
+  std::fill(time_slope, time_slope + size_, 0.0);
+  std::fill(s.changes.begin(), s.changes.begin() + packs_.slots, BodyChange{});
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+
+  // outside bodies move by their velocities; accelerations (-3 u0 + 4 u1 - u2)/(2 d)
+  const double d = step / 32;
+  for (std::size_t i = 0; i < outside_.size(); ++i) {
+    BodyChange& change = s.changes[index(members_) + i];
+    Vec3 v[3], w[3];
+    for (int j = 0; j < 3; ++j) outside_[i]->velocity(time + j * d, v[j], w[j]);
+    vec(change.x) = v[0];
+    vec(change.th) = w[0];
+    vec(change.v) = (4 * (v[1] - v[0]) - (v[2] - v[0])) / (2 * d);
+    vec(change.w) = (4 * (w[1] - w[0]) - (w[2] - w[0])) / (2 * d);
+  }
+
+  const LaneVec none = {lanes(0), lanes(0), lanes(0)};
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const PackLinear& linear = s.linear[index(p)];
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), none, true, change);
+    scatter_change(pack, linear, change, s.wrenches.data());
+    store(transposed_times(linear.Ra, -(linear.inverse_ct * change.friction)),
+          time_slope + 12 * (members_ + p));
+  }
+  for (int i = 0; i < members_; ++i) {
+    vec(time_slope + 12 * i + 6) = member_[index(i)].inverse_mass * vec(s.wrenches[index(i)].f);
+    vec(time_slope + 12 * i + 9) = vec(s.wrenches[index(i)].t);
+  }
+}
+
+LaneBody GroupSystem::gather(const ContactPack& pack, const int (&slot)[lane_count]) const {
+  LaneBody out = {};
+  if (pack.uniform) {
+    if (slot[0] >= members_) return out;
+    const Member& m = member_[index(slot[0])];
+    for (int r = 0; r < 3; ++r) {
+      out.P.row[r] = {lanes(m.P(r, 0)), lanes(m.P(r, 1)), lanes(m.P(r, 2))};
+      out.V.row[r] = {lanes(m.V(r, 0)), lanes(m.V(r, 1)), lanes(m.V(r, 2))};
+    }
+    return out;
+  }
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (slot[lane] >= members_) continue;
+    const Member& m = member_[index(slot[lane])];
+    for (int r = 0; r < 3; ++r) {
+      set_lane(out.P.row[r], lane, m.P.row(r));
+      set_lane(out.V.row[r], lane, m.V.row(r));
+    }
+  }
+  return out;
+}
+
+void GroupSystem::add_block(int Y, int X, const LaneMat (&part)[2][2], int lane) {
+  double* to = matrix_.at(matrix_.offset(Y, X));
+  constexpr int stride = BodyMatrix::block;
+  const auto number = [lane](Lanes v) { return lane < 0 ? sum(v) : v[lane]; };
+  for (int i = 0; i < 2; ++i)
+    for (int r = 0; r < 3; ++r) {
+      double* row = to + 3 * i + r;
+      for (int j = 0; j < 2; ++j, row += 3 * stride) {
+        row[0] -= number(part[i][j].row[r].x);
+        row[stride] -= number(part[i][j].row[r].y);
+        row[2 * stride] -= number(part[i][j].row[r].z);
+      }
+    }
+}
+
+double GroupSystem::squared_frequency(GroupScratch& s) const {
+  double* total = s.right_side.data();
+  std::fill(total, total + members_, 0.0);
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const Lanes slope = sqrt(dot(s.linear[index(p)].g, s.linear[index(p)].g));
+    for (int i = 0; i < pack.count; ++i)
+      for (const int body : {pack.a[i], pack.b[i]})
+        if (body < members_) total[body] += slope[i];
+  }
+  double largest = 0;
+  for (int i = 0; i < members_; ++i)
+    largest = std::max(largest, total[i] * member_[index(i)].inverse_mass);
+  return largest;
+}
+
+bool GroupSystem::factor(double sigma, GroupScratch& s) {
+  sigma_ = sigma;
+  matrix_.clear();
+  for (int i = 0; i < members_; ++i) {
+    Member& m = member_[index(i)];
+    Mat3 stage = -m.W - 0.5 * cross_matrix(m.w);
+    stage.diagonal().array() += sigma;
+    m.A = stage.inverse();
+    m.P = m.A * m.J;
+    m.V = m.J + m.W * m.P;
+    double* block = matrix_.at(matrix_.offset(i, i));
+    for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
+  }
+  PackBlocks blocks;
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    set_stage_rate(pack, sigma, s.linear[index(p)]);
+    pack_blocks(pack, s.linear[index(p)], sigma, gather(pack, pack.a), gather(pack, pack.b),
+                blocks);
+    // the lanes of one pair as one
+    const int lanes_apart = pack.uniform ? 1 : pack.count;
+    for (int lane = 0; lane < lanes_apart; ++lane) {
+      const int body[2] = {pack.a[lane], pack.b[lane]};
+      for (int Y = 0; Y < 2; ++Y)
+        for (int X = 0; X < 2; ++X)
+          if (body[Y] < members_ && body[X] < members_)
+            add_block(body[Y], body[X], blocks.part[Y][X], pack.uniform ? -1 : lane);
+    }
+  }
+  return matrix_.factor();
+}
+
+bool GroupSystem::solve(GroupScratch& s, double* stage) {
+  const double inverse = 1 / sigma_;
+  std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+
+  // positions of the eliminated part
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    const double* r = stage + 12 * i;
+    BodyChange& change = s.changes[index(i)];
+    vec(change.x) = inverse * vec(r);
+    vec(change.th) = m.A * vec(r + 3);
+    vec(change.v).setZero();
+    vec(change.w) = m.W * vec(change.th);
+  }
+
+  // right side
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const PackLinear& linear = s.linear[index(p)];
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), linear.Ra * load(stage + 12 * (members_ + p)),
+                false, change);
+    scatter_change(pack, linear, change, s.wrenches.data());
+  }
+  double* right = s.right_side.data();
+  for (int i = 0; i < members_; ++i) {
+    const double* r = stage + 12 * i;
+    vec(right + 6 * i) = member_[index(i)].mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
+    vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
+  }
+  if (!matrix_.solve(right)) return false;
+
+  // all unknowns
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    double* k = stage + 12 * i;
+    BodyChange& change = s.changes[index(i)];
+    const Vec3 kv = vec(right + 6 * i), kL = vec(right + 6 * i + 3);
+    vec(change.x) += inverse * kv;
+    vec(change.th) += m.P * kL;
+    vec(change.v) = kv;
+    vec(change.w) += m.V * kL;
+    vec(k) = vec(change.x);
+    vec(k + 3) = vec(change.th);
+    vec(k + 6) = kv;
+    vec(k + 9) = kL;
+  }
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    if (pack.law != FrictionLaw::anchored) continue;
+    const PackLinear& linear = s.linear[index(p)];
+    double* k = stage + 12 * (members_ + p);
+    const LaneVec side = linear.Ra * load(k);
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), side, false, change);
+    store(transposed_times(linear.Ra, solve_stretch(linear, side, change.friction)), k);
+  }
+  return true;
+}
+
+}  // namespace tw

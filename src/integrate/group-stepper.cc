@@ -1,0 +1,210 @@
+// Stepping of contact groups with RODAS4.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/group-stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/rodas4.h"
+
+namespace tw {
+
+namespace {
+
+// step control: h1 = h clamp(safety err^(-1/4), least_change, most_change)
+constexpr double safety = 0.9, least_change = 0.2, most_change = 5;
+// of first_step
+constexpr double first_error = 50;
+// members turn no further than this in a step, rad: theta is a chart up to 2 pi
+constexpr double most_turn = 2;
+
+}  // namespace
+
+GroupStepper::GroupStepper(const GroupStart& start)
+    : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {}
+
+GroupCounts GroupStepper::counts() const {
+  GroupCounts counts = counts_;
+  counts.factorizations = system_.factorizations();
+  return counts;
+}
+
+GroupScratch& GroupStepper::scratch() const {
+  thread_local GroupScratch shared;
+  const auto fit = [](auto& v, std::size_t size) {
+    if (v.size() < size) v.resize(size);
+  };
+  const std::size_t slots = static_cast<std::size_t>(system_.contact_packs().slots);
+  fit(shared.bodies, slots);
+  fit(shared.changes, slots);
+  fit(shared.wrenches, slots);
+  fit(shared.linear, static_cast<std::size_t>(system_.packs()));
+  fit(shared.right_side, 6 * static_cast<std::size_t>(system_.members()));
+  for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
+    fit(*v, system_.size());
+  for (std::vector<double>& v : shared.stage) fit(v, system_.size());
+  return shared;
+}
+
+// A step for a group of which nothing is known.  Loaded contacts oscillate at about omega, omega^2
+// = the largest sum of |dN/dd| over a member's mass; the jerk j = dv'/dt then makes an error of
+// about omega^2 j h^4/first_error in v.
+double GroupStepper::first_step(GroupScratch& s) const {
+  const double squared = system_.squared_frequency(s);
+  const double left = start_.end - start_.time;
+  if (!(squared > 0)) return left;
+
+  // the jerk, by a difference along y'
+  const double h = 1e-3 / std::sqrt(squared);
+  for (std::size_t e = 0; e < system_.size(); ++e) s.trial[e] = s.state[e] + h * s.slope[e];
+  double* slope = s.stage[0].data();
+  system_.evaluate(start_.time, s.trial.data(), s, slope);
+  double jerk = 0;
+  for (int i = 0; i < system_.members(); ++i) {
+    const GroupMember& m = start_.members[static_cast<std::size_t>(i)];
+    for (int j = 6; j < 9; ++j) {
+      const double dv = slope[12 * i + j] - s.slope[static_cast<std::size_t>(12 * i + j)];
+      const double dL = slope[12 * i + j + 3] - s.slope[static_cast<std::size_t>(12 * i + j + 3)];
+      jerk =
+          std::max({jerk, std::abs(dv) / h, std::abs(dL) * m.radius / (h * m.moments.minCoeff())});
+    }
+  }
+  const double fourth = first_error * start_.velocity_tolerance / (squared * jerk);
+  return std::min(left, std::sqrt(std::sqrt(fourth)));
+}
+
+// U_i of rodas4.h
+template <int i>
+bool GroupStepper::set_stage(double h, GroupScratch& s) {
+  using namespace rodas4;
+  const std::size_t size = system_.size();
+  double* U = s.stage[i].data();
+  const double* earlier[stages];
+  for (int j = 0; j < stages; ++j) earlier[j] = s.stage[j].data();
+  if constexpr (i == 0) {
+    std::copy_n(s.slope.data(), size, U);
+  } else {
+    // y0 + sum a_ij U_j
+    double* y = s.trial.data();
+    const double* y0 = s.state.data();
+    for (std::size_t e = 0; e < size; ++e) {
+      double sum = y0[e];
+      for (int j = 0; j < i; ++j) sum += a[i][j] * earlier[j][e];
+      y[e] = sum;
+    }
+    system_.evaluate(record_.reached() + alpha[i] * h, y, s, U);
+    ++counts_.evaluations;
+    const double rate = 1 / h;
+    for (std::size_t e = 0; e < size; ++e) {
+      double sum = 0;
+      for (int j = 0; j < i; ++j) sum += c[i][j] * earlier[j][e];
+      U[e] += rate * sum;
+    }
+  }
+  if (system_.moved_from_outside() && gamma_i[i] != 0)
+    for (std::size_t e = 0; e < size; ++e) U[e] += h * gamma_i[i] * s.time_slope[e];
+  return system_.solve(s, U);
+}
+
+// the stages at a step h; error over tolerance (not finite: no good)
+bool GroupStepper::try_step(double h, GroupScratch& s, double& error) {
+  if (!system_.factor(1 / (rodas4::gamma * h), s)) return false;
+  if (!set_stage<0>(h, s) || !set_stage<1>(h, s) || !set_stage<2>(h, s) || !set_stage<3>(h, s) ||
+      !set_stage<4>(h, s) || !set_stage<5>(h, s))
+    return false;
+
+  // y1 = y6 + U6
+  double sum = 0;
+  for (std::size_t e = 0; e < system_.size(); ++e) {
+    s.trial[e] += s.stage[5][e];
+    sum += s.trial[e];
+  }
+  error = error_norm(s, s.stage[5].data());
+  return std::isfinite(error + sum);
+}
+
+// RMS over members and over the four parts
+double GroupStepper::error_norm(const GroupScratch& s, const double* stage) const {
+  double positions = 0, velocities = 0;
+  for (int i = 0; i < system_.members(); ++i) {
+    const double* e = stage + 12 * i;
+    const double* w = s.changes[static_cast<std::size_t>(i)].w;
+    const double r = start_.members[static_cast<std::size_t>(i)].radius, squared = r * r;
+    for (int j = 0; j < 3; ++j) {
+      positions += e[j] * e[j] + squared * e[3 + j] * e[3 + j];
+      velocities += e[6 + j] * e[6 + j] + squared * w[j] * w[j];
+    }
+  }
+  const double p = start_.position_tolerance, v = start_.velocity_tolerance;
+  return std::sqrt((positions / (p * p) + velocities / (v * v)) /
+                   (4.0 * std::max(system_.members(), 1)));
+}
+
+double GroupStepper::fastest_turn(const GroupScratch& s) const {
+  double squared = 0;
+  for (int i = 0; i < system_.members(); ++i) {
+    const double* w = s.bodies[static_cast<std::size_t>(i)].w;
+    squared = std::max(squared, w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  }
+  return std::sqrt(squared);
+}
+
+void GroupStepper::accept(double time, GroupScratch& s) {
+  // D3 and D4 in the place of stages that are not needed any more
+  const std::size_t size = system_.size();
+  double *d3 = s.stage[4].data(), *d4 = s.stage[5].data();
+  const double* earlier[rodas4::stages - 1];
+  for (int j = 0; j < rodas4::stages - 1; ++j) earlier[j] = s.stage[j].data();
+  for (std::size_t e = 0; e < size; ++e) {
+    double sum3 = 0, sum4 = 0;
+    for (int j = 0; j < rodas4::stages - 1; ++j) {
+      sum3 += rodas4::d3[j] * earlier[j][e];
+      sum4 += rodas4::d4[j] * earlier[j][e];
+    }
+    d3[e] = sum3;
+    d4[e] = sum4;
+  }
+  record_.append(time, system_, s.trial.data(), d3, d4);
+}
+
+// one accepted step; false: failed
+bool GroupStepper::step() {
+  GroupScratch& s = scratch();
+  const double time = record_.reached(), left = start_.end - time;
+  // outside bodies that do not move
+  system_.set_outside(time, s.bodies);
+  record_.load_last(system_, s.state.data());
+  system_.linearise(time, s.state.data(), s, s.slope.data());
+  ++counts_.evaluations;
+  const double turn_limit = most_turn / std::max(fastest_turn(s), 1e-300);
+  if (!(next_step_ > 0)) next_step_ = first_step(s);
+  double h = std::min({next_step_, left, turn_limit});
+  if (system_.moved_from_outside()) system_.set_time_slope(time, h, s, s.time_slope.data());
+
+  for (bool rejected = false;; rejected = true) {
+    // the last step lands on the end, the one before leaves no sliver
+    const bool last = h >= left * (1 - 1e-6);
+    if (last)
+      h = left;
+    else if (2 * h > left)
+      h = 0.5 * left;
+    double error = 0;
+    const bool good = try_step(h, s, error);
+    const double change =
+        good ? std::clamp(safety / std::sqrt(std::sqrt(error)), least_change, most_change) : 0.1;
+    if (good && error <= 1) {
+      accept(last ? start_.end : time + h, s);
+      ++counts_.steps;
+      // a step cut short says little against a longer one
+      const double planned = h * (rejected ? std::min(change, 1.0) : change);
+      next_step_ = !rejected && change >= most_change ? std::max(planned, next_step_) : planned;
+      return true;
+    }
+    ++counts_.rejected;
+    h *= std::min(change, 0.9);
+    if (!(time + 0.1 * h > time))
+      return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
+  }
+}
+
+}  // namespace tw

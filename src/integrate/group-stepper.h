@@ -1,0 +1,49 @@
+// Steps of RODAS4 through a contact group, and their record.
+//
+// Error of a step: RMS over members of dx and radius dtheta over the position tolerance, dv and
+// radius dw over the velocity tolerance; stretches are not weighed.  A rejected step's successor
+// does not grow.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "integrate/group-arc.h"
+#include "integrate/group-record.h"
+#include "integrate/group-system.h"
+
+namespace tw {
+
+class GroupStepper {
+ public:
+  // `start` must outlive it.
+  explicit GroupStepper(const GroupStart& start);
+
+  // One accepted step.  False: it stopped for the reason that `failure` gives.
+  bool step();
+  const char* failure() const { return failure_; }
+
+  const GroupSystem& system() const { return system_; }
+  const GroupRecord& record() const { return record_; }
+  double next_step() const { return next_step_; }
+  GroupCounts counts() const;
+  // Of this thread, fitted to the system.
+  GroupScratch& scratch() const;
+
+ private:
+  double first_step(GroupScratch& s) const;
+  template <int i>
+  bool set_stage(double h, GroupScratch& s);
+  bool try_step(double h, GroupScratch& s, double& error);
+  double error_norm(const GroupScratch& s, const double* stage) const;
+  double fastest_turn(const GroupScratch& s) const;
+  void accept(double time, GroupScratch& s);
+
+  const GroupStart& start_;
+  GroupSystem system_;
+  GroupRecord record_;
+  GroupCounts counts_;
+  double next_step_;
+  const char* failure_ = nullptr;
+};
+
+}  // namespace tw

@@ -1,0 +1,128 @@
+// Bodies, forces and right sides of contact groups.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/group-system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/group-rows.h"
+#include "integrate/rotation-vector.h"
+
+namespace tw {
+
+using namespace rows;
+
+namespace {
+
+std::vector<std::pair<int, int>> member_pairs(const GroupStart& start) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const GroupContact& c : start.contacts)
+    if (c.a >= 0 && c.b >= 0 && c.a != c.b) pairs.emplace_back(c.a, c.b);
+  return pairs;
+}
+
+}  // namespace
+
+GroupSystem::GroupSystem(const GroupStart& start)
+    : members_(static_cast<int>(start.members.size())),
+      end_(start.end),
+      outside_(start.outside),
+      packs_(make_contact_packs(start)),
+      matrix_(members_, member_pairs(start)) {
+  for (const GroupMember& m : start.members) {
+    Member member;
+    member.mass = m.mass;
+    member.inverse_mass = 1 / m.mass;
+    member.inverse_moments = m.moments.cwiseInverse();
+    member.force = m.force;
+    member.torque = m.torque;
+    member.q0 = m.q;
+    member_.push_back(member);
+  }
+  size_ = 12 * (start.members.size() + packs_.packs.size());
+  for (const MotionPtr& motion : outside_)
+    moved_from_outside_ |= motion->speed_bound(start.time, start.end) > 0 ||
+                           motion->angular_speed_bound(start.time, start.end) > 0;
+
+  // the sides at the start
+  std::vector<BodyKinematics> bodies(index(packs_.slots));
+  set_outside(start.time, bodies);
+  for (int i = 0; i < members_; ++i) {
+    const GroupMember& m = start.members[index(i)];
+    set_member(i, m.x, m.q, m.v, m.L, bodies[index(i)]);
+  }
+  for (const ContactPack& pack : packs_.packs) sides_.push_back(starting_side(pack, bodies.data()));
+}
+
+Vec3 GroupSystem::angular_velocity(int member, const Quat& q, const Vec3& L) const {
+  const Mat3 R = q.toRotationMatrix();
+  return R * member_[index(member)].inverse_moments.cwiseProduct(R.transpose() * L);
+}
+
+void GroupSystem::set_member(int member, const Vec3& x, const Quat& q, const Vec3& v, const Vec3& L,
+                             BodyKinematics& out) const {
+  const Mat3 R = q.toRotationMatrix();
+  vec(out.x) = x;
+  vec(out.v) = v;
+  vec(out.w) = R * member_[index(member)].inverse_moments.cwiseProduct(R.transpose() * L);
+  store_rotation(R, out.R);
+}
+
+void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) const {
+  // the arc ends before a corner at its end: velocities from the left there
+  const double inside = time < end_ ? time : std::nextafter(end_, end_ - 1);
+  for (std::size_t i = 0; i < outside_.size(); ++i) {
+    BodyKinematics& body = bodies[index(members_) + i];
+    const Pose pose = outside_[i]->pose(time);
+    Vec3 v, w;
+    outside_[i]->velocity(inside, v, w);
+    vec(body.x) = pose.p;
+    vec(body.v) = v;
+    vec(body.w) = w;
+    store_rotation(pose.q.toRotationMatrix(), body.R);
+  }
+}
+
+template <bool with_derivative>
+void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, double* slope) const {
+  // bodies
+  if (moved_from_outside_) set_outside(time, s.bodies);
+  for (int i = 0; i < members_; ++i) {
+    const double* from = y + 12 * i;
+    double* to = slope + 12 * i;
+    BodyKinematics& body = s.bodies[index(i)];
+    const Vec3 theta = vec(from + 3);
+    set_member(i, vec(from), short_rotation(theta) * member_[index(i)].q0, vec(from + 6),
+               vec(from + 9), body);
+    vec(to) = vec(from + 6);
+    vec(to + 3) = rotation_vector_rate(theta, vec(body.w));
+  }
+
+  // contacts
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+  PackState state;
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const std::size_t at = index(12 * (members_ + p));
+    evaluate_pack(pack, s.bodies.data(), load(y + at), sides_[index(p)], state);
+    if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
+    store(state.stretch_rate, slope + at);
+    scatter(pack, state.f, cross(state.sa, state.f), cross(state.sb, state.f), s.wrenches.data());
+  }
+
+  // forces
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    const BodyWrench& wrench = s.wrenches[index(i)];
+    vec(slope + 12 * i + 6) = m.inverse_mass * (m.force + vec(wrench.f));
+    vec(slope + 12 * i + 9) = m.torque + vec(wrench.t);
+  }
+}
+
+void GroupSystem::evaluate(double time, const double* y, GroupScratch& s, double* slope) const {
+  evaluate_as<false>(time, y, s, slope);
+}
+
+template void GroupSystem::evaluate_as<true>(double, const double*, GroupScratch&, double*) const;
+
+}  // namespace tw

@@ -1,0 +1,98 @@
+// The differential equations of a contact group, their derivative and the linear systems of a step.
+//
+// A state is a row of numbers: 12 a member (x, theta, v, L; theta from the step's start), then 12 a
+// pack of four contacts (the stretches: four x, four y, four z, in a's frame).
+//   x' = v,  theta' = Jl(theta)^-1 w,  v' = F/m,  L' = T,  w = R I^-1 R^T L,  R = exp(theta) R0
+// With J = R0 I^-1 R0^T, the derivatives at theta = 0 (exact):
+//   dw = J dL + W dth,  W = J [L]x - [w]x,     dtheta' = dw + [w]x dth/2.
+// A stage (s 1 - Jacobian) k = r is reduced to 6 unknowns a member, (kv, kL):
+//   kx = (rx + kv)/s,  kth = A (rth + J kL),  A = (s - W - [w]x/2)^-1,
+//   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "integrate/body-matrix.h"
+#include "integrate/contact-linear.h"
+
+namespace tw {
+
+// Work space of a step, shared by all arcs of a thread.  Nothing in it is read that the step did
+// not write.
+struct GroupScratch {
+  std::vector<BodyKinematics> bodies;  // by slot
+  std::vector<BodyChange> changes;     // by slot
+  std::vector<BodyWrench> wrenches;    // by slot
+  std::vector<PackLinear> linear;      // by pack
+  std::vector<double> right_side;      // 6 a member
+  std::vector<double> state, slope, time_slope, trial, stage[6];
+};
+
+class GroupSystem {
+ public:
+  explicit GroupSystem(const GroupStart& start);
+
+  int members() const { return members_; }
+  int packs() const { return static_cast<int>(packs_.packs.size()); }
+  std::size_t size() const { return size_; }
+  const ContactPacks& contact_packs() const { return packs_; }
+  bool moved_from_outside() const { return moved_from_outside_; }
+  std::uint64_t factorizations() const { return matrix_.factorizations(); }
+
+  // Attitude of a member at the step's start.
+  void set_attitude(int member, const Quat& q) { member_[static_cast<std::size_t>(member)].q0 = q; }
+  const Quat& attitude(int member) const { return member_[static_cast<std::size_t>(member)].q0; }
+  // Normals that choose the sign of line and point contacts, by pack.
+  const std::vector<LaneVec>& sides() const { return sides_; }
+
+  // dy/dt; leaves the kinematics of all slots in the scratch.
+  void evaluate(double time, const double* y, GroupScratch& scratch, double* slope) const;
+  // The same at theta = 0, with the derivative; sets the sides.
+  void linearise(double time, const double* y, GroupScratch& scratch, double* slope);
+  // Partial derivative by time, by the motion of outside bodies, whose velocities are differenced
+  // over a part of the `step`.  After linearise, before factor.
+  void set_time_slope(double time, double step, GroupScratch& scratch, double* time_slope) const;
+  // Largest over members of the sum of |dN/dd| of its contacts over its mass, 1/s^2, as linearised
+  // last.
+  double squared_frequency(GroupScratch& scratch) const;
+  // For a step h, sigma = 1/(gamma h).  False: singular.
+  bool factor(double sigma, GroupScratch& scratch);
+  // In place: right side to stage.  Leaves the changes of x, theta, v, w in the scratch.  False:
+  // singular.
+  bool solve(GroupScratch& scratch, double* stage);
+
+  Vec3 angular_velocity(int member, const Quat& q, const Vec3& L) const;
+  // Kinematics of slots at one instant from poses and momenta.
+  void set_member(int member, const Vec3& x, const Quat& q, const Vec3& v, const Vec3& L,
+                  BodyKinematics& out) const;
+  void set_outside(double time, std::vector<BodyKinematics>& bodies) const;
+
+ private:
+  struct Member {
+    double mass = 1, inverse_mass = 1;
+    Vec3 inverse_moments = Vec3::Ones(), force = Vec3::Zero(), torque = Vec3::Zero();
+    Quat q0 = Quat::Identity();
+    // at the step's start; A, P = A J and V = J + W P by the step
+    Mat3 J = Mat3::Zero(), W = Mat3::Zero(), A = Mat3::Zero(), P = Mat3::Zero(), V = Mat3::Zero();
+    Vec3 w = Vec3::Zero();
+  };
+
+  // of one lane, or (-1) of the sum of the lanes
+  void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
+  template <bool with_derivative>
+  void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
+  LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
+
+  int members_;
+  std::size_t size_;
+  double end_;
+  bool moved_from_outside_ = false;
+  std::vector<MotionPtr> outside_;
+  std::vector<Member> member_;
+  ContactPacks packs_;
+  std::vector<LaneVec> sides_;
+  BodyMatrix matrix_;
+  double sigma_ = 0;
+};
+
+}  // namespace tw

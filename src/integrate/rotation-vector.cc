@@ -1,0 +1,69 @@
+// The left Jacobian of the rotation group and its inverse.
+//
+// Near 0 by series: the closed forms cancel.  Below phi = 1/2 the omitted terms are under 1e-15.
+//
+// Source: J. Sola, J. Deray, D. Atchuthan, A micro Lie theory for state estimation in robotics
+// (2018), B.2.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/rotation-vector.h"
+
+#include <cmath>
+
+namespace tw {
+
+namespace {
+
+// phi^2 below which the series serve
+constexpr double near = 0.25;
+
+// value of a polynomial, lowest coefficient first
+template <int n>
+double polynomial(const double (&c)[n], double x) {
+  double value = c[n - 1];
+  for (int i = n - 2; i >= 0; --i) value = value * x + c[i];
+  return value;
+}
+
+// (1 - (phi/2) cot(phi/2))/phi^2
+double inverse_jacobian_term(double squared) {
+  // Bernoulli numbers |B_2k|/(2k)!
+  constexpr double series[] = {1.0 / 12,      1.0 / 720,      1.0 / 30240,
+                               1.0 / 1209600, 1.0 / 47900160, 691.0 / 1307674368000};
+  if (squared < near) return polynomial(series, squared);
+  const double half = 0.5 * std::sqrt(squared);
+  return (1 - half * std::cos(half) / std::sin(half)) / squared;
+}
+
+}  // namespace
+
+Vec3 rotation_vector_rate(const Vec3& theta, const Vec3& w) {
+  const Vec3 turned = theta.cross(w);
+  return w - 0.5 * turned + inverse_jacobian_term(theta.squaredNorm()) * theta.cross(turned);
+}
+
+Vec3 angular_velocity(const Vec3& theta, const Vec3& rate) {
+  // p = sum (-1)^k phi^2k/(2k+2)!,  q = sum (-1)^k phi^2k/(2k+3)!
+  constexpr double p_series[] = {1.0 / 2,      -1.0 / 24,     1.0 / 720,
+                                 -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
+  constexpr double q_series[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
+                                 -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
+  const double squared = theta.squaredNorm(), phi = std::sqrt(squared);
+  const bool series = squared < near;
+  const double p = series ? polynomial(p_series, squared) : (1 - std::cos(phi)) / squared;
+  const double q = series ? polynomial(q_series, squared) : (phi - std::sin(phi)) / (squared * phi);
+  const Vec3 turned = theta.cross(rate);
+  return rate + p * turned + q * theta.cross(turned);
+}
+
+Quat short_rotation(const Vec3& theta) {
+  // sin(phi/2)/phi and cos(phi/2) in y = (phi/2)^2, exact to rounding up to phi = 0.2
+  constexpr double sine[] = {0.5, -0.5 / 6, 0.5 / 120, -0.5 / 5040, 0.5 / 362880};
+  constexpr double cosine[] = {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800};
+  const double y = 0.25 * theta.squaredNorm();
+  if (!(y < 0.01)) return rotation_by(theta);
+  const double s = polynomial(sine, y);
+  return Quat(polynomial(cosine, y), s * theta.x(), s * theta.y(), s * theta.z());
+}
+
+}  // namespace tw

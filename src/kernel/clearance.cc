@@ -1,0 +1,99 @@
+// Clearance: whether a pair is surely apart for a whole window, by how far it is apart and how far its
+// bodies can come towards each other.
+//
+// In a heap most neighbours never touch and hardly move: a distance once measured, less what both have
+// travelled since, keeps answering for many windows without another query.  What is remembered decides
+// only whether to look, never the answer.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+// Where a body's centre may get to from where it is, and how far turning carries its surface beyond.
+struct Travel {
+  Vec3 center = Vec3::Zero();
+  Aabb displacement{Vec3::Zero(), Vec3::Zero()};
+  double turning = 0;
+};
+
+Travel travel_of(const Body& body, const State& arc, double from, double to) {
+  Travel t;
+  const double dt = to - from;
+  t.center = center_at(body, arc, from);
+  if (body.fixed() || (arc.group && arc.group->at_rest)) return t;
+  if (arc.group) {
+    const GroupBounds bounds = arc.group->arc->bounds(static_cast<int>(arc.member), from, to);
+    t.displacement = {bounds.path.lo - t.center, bounds.path.hi - t.center};
+    t.turning = body.sphere_radius >= 0 ? 0 : bounds.turn * dt * body.radius;
+    return t;
+  }
+  if (body.dynamic()) {
+    const Vec3 end = center_at(body, arc, to) - t.center;
+    const Vec3 apex = (0.125 * dt * dt) * arc.acceleration.cwiseAbs();
+    t.displacement = {end.cwiseMin(0.0) - apex, end.cwiseMax(0.0) + apex};
+    t.turning = body.sphere_radius >= 0 ? 0 : angular_speed_bound(body, arc, from, to) * dt * body.radius;
+    return t;
+  }
+  t.displacement = Aabb{Vec3::Zero(), Vec3::Zero()};
+  t.displacement.grow(body.motion->speed_bound(from, to) * dt);
+  t.turning = body.motion->angular_speed_bound(from, to) * dt * body.radius;
+  return t;
+}
+
+// What the centres' displacements may do to the distance of two surface points.
+struct RelativeTravel {
+  Vec3 lo, hi;       // of b against a
+  double turning;
+
+  RelativeTravel(const Travel& a, const Travel& b)
+      : lo(b.displacement.lo - a.displacement.hi), hi(b.displacement.hi - a.displacement.lo),
+        turning(a.turning + b.turning) {}
+  // in any direction
+  double most() const { return lo.cwiseAbs().cwiseMax(hi.cwiseAbs()).norm() + turning; }
+  // against the unit normal n from a to b
+  double against(const Vec3& n) const {
+    double closing = 0;
+    for (int i = 0; i < 3; ++i) closing += std::max(-n[i] * lo[i], -n[i] * hi[i]);
+    return std::max(closing, 0.0) + turning;
+  }
+};
+
+}  // namespace
+
+bool Kernel::apart_throughout(Pair& pair, const Piece& piece, double to) {
+  const Body& a = *bodies[pair.a];
+  const Body& b = *bodies[pair.b];
+  if (a.unbounded || b.unbounded) return false;
+  const double from = pair.from.time;
+  const Travel ta = travel_of(a, *piece.a, from, to), tb = travel_of(b, *piece.b, from, to);
+  const RelativeTravel travel(ta, tb);
+
+  // remembered, or by the bounding balls, or by a query: what is left of it at the end
+  const bool remembered = pair.clear_from <= from && from <= pair.clear_at;
+  const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
+  double left = std::max(remembered ? pair.clearance : 0, balls) - travel.most();
+  if (!(left > 0)) {
+    const Frame fa = frame_at(a, *piece.a, from), fb = frame_at(b, *piece.b, from);
+    const auto& parts_a = a.shape_P->parts();
+    const auto& parts_b = b.shape_P->parts();
+    if (pair.caches.empty()) pair.caches.resize(parts_a.size() * parts_b.size());
+    left = never;
+    for (std::size_t i = 0; i < parts_a.size() && left > 0; ++i)
+      for (std::size_t j = 0; j < parts_b.size() && left > 0; ++j) {
+        const Separation s = part_separation(parts_a[i], fa, parts_b[j], fb,
+                                             &pair.caches[i * parts_b.size() + j]);
+        left = std::min(left, s.distance - travel.against(s.normal));
+      }
+  }
+  if (!(left > 0)) return false;
+  pair.clearance = left;
+  pair.clear_from = from;
+  pair.clear_at = to;
+  return true;
+}
+
+}  // namespace tw

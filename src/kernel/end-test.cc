@@ -1,0 +1,122 @@
+// The end test: where the arcs of a group really end.
+//
+// A group is integrated with the contacts it had at the start.  Before anybody relies on its arcs, each
+// linked pair is looked at where they end: a feature that came down unrepresented, or a contact that
+// closes faster than its spring is meant for, ends the arcs where it touches, and the group check that
+// stands there takes it in.  So the end is a function of the group alone.
+//
+// Cost: one manifold a link, none for pairs that moved less than a fraction of their contact's depth.
+// Source: doc/numerics.md, "Contact groups" (missed features gain energy).
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/kernel.h"
+#include "math/root.h"
+
+namespace tw {
+namespace {
+
+// Depth that may stay unrepresented, share of the contact's depth under its own load.
+constexpr double unseen_depth = 0.5;
+
+// A pair of bodies along the arc.
+struct Pairing {
+  const Kernel& kernel;
+  Group& group;
+  const GroupLink& link;
+  const Body& a;
+  const Body& b;
+
+  Frame frame(const Body& body, double when) const {
+    const auto at = std::lower_bound(group.members.begin(), group.members.end(), body.id());
+    if (at == group.members.end() || *at != body.id()) return Frame(body.motion->pose(when));
+    Vec3 x;
+    Quat q;
+    group.arc->pose(static_cast<int>(at - group.members.begin()), when, x, q);
+    return Frame(q.toRotationMatrix(), x);
+  }
+  double distance(double when) const {
+    return separation(*a.shape_P, frame(a, when), *b.shape_P, frame(b, when)).distance;
+  }
+  // the least gap that the link's contacts know of
+  double represented(double when) const {
+    double least = never;
+    for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
+      least = std::min(least, group.arc->contact_force(static_cast<int>(c), when).gap);
+    return least;
+  }
+  // How far any surface point may have moved, m.
+  double travel() const {
+    double sum = 0;
+    for (const Body* body : {&a, &b}) {
+      const auto at = std::lower_bound(group.members.begin(), group.members.end(), body->id());
+      if (at == group.members.end() || *at != body->id()) continue;
+      const double from = group.arc->start().time, to = group.next_check;
+      const GroupBounds bounds =
+          group.arc->bounds(static_cast<int>(at - group.members.begin()), from, to);
+      sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
+    }
+    return sum;
+  }
+};
+
+// When the pair is deeper than its contacts know; `never` if it is not.  `known`: the least gap that they
+// know of at the end.
+double unseen_touch(const Pairing& pair, double known, double allowed,
+                    std::vector<ManifoldPoint>& points) {
+  const double from = pair.group.arc->start().time, to = pair.group.next_check;
+  points.clear();
+  manifold(*pair.a.shape_P, pair.frame(pair.a, to), *pair.b.shape_P, pair.frame(pair.b, to), 0, points);
+  double deepest = 0;
+  for (const ManifoldPoint& p : points) deepest = std::min(deepest, p.gap);
+  if (!(std::min(known, 0.0) - deepest > allowed)) return never;
+
+  // certainly deeper: where it came to be
+  const auto excess = [&](double t) {
+    return std::min(pair.represented(t), allowed) - pair.distance(t) - allowed;
+  };
+  const double first = excess(from), last = excess(to);
+  if (!(last > 0) || first >= 0) return never;
+  return find_root(excess, from, to, first, last).left;
+}
+
+// When a contact that was open closes faster than `slow`; `never` if it does not.
+double fast_touch(GroupArc& arc, int contact, double first, double last, double slow) {
+  if (!(first > 0 && last < 0)) return never;
+  const auto gap = [&](double t) { return arc.contact_force(contact, t).gap; };
+  const double when = find_root(gap, arc.start().time, arc.reached(), first, last).left;
+  const ContactForce f = arc.contact_force(contact, when);
+  return -f.velocity.dot(f.normal) > slow ? when : never;
+}
+
+}  // namespace
+
+void Kernel::test_group_end(Group& group) {
+  if (group.end_tested || group.at_rest) return;
+  group.end_tested = true;
+  group.arc->extend(group.next_check);
+  double end = group.next_check;
+  for (const GroupLink& link : group.links) {
+    if (link.count == 0) continue;
+    const Pairing pair{*this, group, link, *bodies[link.pair >> 32],
+                       *bodies[link.pair & 0xffffffffu]};
+    const double allowed = unseen_depth * group.arc->start().contacts[link.first].law.depth;
+    if (pair.travel() <= allowed) continue;
+    double known = never;
+    for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
+      const double last = group.arc->contact_force(static_cast<int>(c), group.next_check).gap;
+      known = std::min(known, last);
+      end = std::min(end, fast_touch(*group.arc, static_cast<int>(c), group.gaps[c], last,
+                                     fusion_speed(pair.a, pair.b)));
+    }
+    end = std::min(end, unseen_touch(pair, known, allowed, manifold_points_));
+  }
+  // no shorter than the spacing of checks on the grid of collisions
+  end = std::max(end, std::min(group.next_check, group.arc->start().time + check_grid));
+  if (end < group.next_check) ++counters.early_ends;
+  group.next_check = end;
+}
+
+}  // namespace tw

@@ -1,0 +1,46 @@
+// Impulses on bodies: the velocities of a discontinuity while they change.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "dynamics/impact-law.h"
+#include "kernel/arc.h"
+#include "kernel/draft.h"
+
+namespace tw {
+
+// One body during the resolution of an impact.
+struct Resolved {
+  const Body& body;
+  const ArcPoint& point;
+  Vec3 v, w;
+  Mat3 inverse_inertia = Mat3::Zero();
+  double inverse_mass = 0;
+  bool moves;
+
+  Resolved(const Body& b, const ArcPoint& p)
+      : body(b), point(p), v(p.v), w(p.w), moves(b.dynamic()) {
+    if (!moves) return;
+    inverse_mass = 1 / b.mass;
+    inverse_inertia = inverse_inertia_world(b, p.q);
+  }
+  Vec3 velocity_at(const Vec3& where) const { return v + w.cross(where - point.x); }
+  Mat3 compliance(const Vec3& where) const {
+    if (!moves) return Mat3::Zero();
+    return contact_compliance(inverse_mass, inverse_inertia, where - point.x);
+  }
+  void apply(const Vec3& impulse, const Vec3& where) {
+    if (!moves) return;
+    v += inverse_mass * impulse;
+    w += inverse_inertia * (where - point.x).cross(impulse);
+  }
+};
+
+// The draft's motion is now what impulses made of it.
+inline void take_velocities(Draft& draft, const Resolved& after) {
+  draft.data.v = draft.point.v = after.v;
+  draft.point.w = after.w;
+  draft.data.L = angular_momentum(*draft.body, draft.point.q, after.w);
+  draft.data.rotation_ready = false;
+}
+
+}  // namespace tw

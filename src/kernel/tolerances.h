@@ -1,0 +1,23 @@
+// What follows from the one dial that users see, `accuracy` (relative, default 1e-6).
+//
+// A contact is a spring: its depth, not the step tolerance, bounds how true a heap is.  Steps of contact
+// groups therefore need not resolve more than a small share of the depth; measured motion hardly depends
+// on the tolerance (doc/numerics.md).
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+
+namespace tw {
+
+// Of one step of a contact group, m: `size` is the least width of its smallest member.  At the default
+// accuracy a tenth of the static depth (2.5e-4 size).
+inline double group_position_tolerance(double accuracy, double size) { return 25 * accuracy * size; }
+
+// m/s: what gravity does to a body of that size within the time of its contact.
+inline double group_velocity_tolerance(double accuracy, double size, double gravity) {
+  return 250 * accuracy * std::sqrt(gravity * size);
+}
+
+}  // namespace tw

@@ -1,0 +1,118 @@
+;; The scenes that come with the program: each loads and starts; the avalanche is the paper's.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+(use-modules (timewarp parameters) (timewarp vectors) (ice-9 ftw))
+
+(define scenes-folder (string-append (dirname (current-filename)) "/../../scenes"))
+(define (scene-file name) (string-append scenes-folder "/" name ".scm"))
+(define (names folder)
+  (map (lambda (name) (string-drop-right name 4))
+       (scandir folder (lambda (name) (string-suffix? ".scm" name)))))
+
+;; Loads the scene NAME, with parameters ((NAME . TEXT) ...), into the current world.
+(define* (load-scene-named name #:optional (parameters '()))
+  (set-definitions! parameters)
+  (let ((module (make-fresh-user-module)))
+    (module-use! module (resolve-interface '(timewarp)))
+    (save-module-excursion
+     (lambda ()
+       (set-current-module module)
+       (load-scene (scene-file name)))))
+  (set-definitions! '()))
+
+(define (count-kind kind) (count (lambda (body) (eq? kind (body-kind body))) (world-bodies)))
+
+(define (first-line file)
+  (call-with-input-file file get-line))
+
+(test-begin "scenes")
+
+(for-each
+ (lambda (name)
+   (test-assert (format #f "~a begins with what is to be seen" name)
+     (string-prefix? ";;; " (first-line (scene-file name))))
+   (in-world ()
+     (test-equal (format #f "~a loads and starts" name) #f
+       (error-of (load-scene-named name) (run! #:until 0)))
+     (test-assert (format #f "~a moves something" name) (positive? (count-kind 'dynamic)))))
+ (append (names scenes-folder)
+         (map (lambda (name) (string-append "gallery/" name))
+              (names (string-append scenes-folder "/gallery")))))
+
+(in-world ()
+  (load-scene-named "avalanche")
+  (test-equal "the avalanche has 300 rocks and 524 fixed pieces" '(300 524)
+              (list (count-kind 'dynamic) (count-kind 'fixed)))
+  (test-equal "and lasts 45 s" 45 (world-duration (current-world))))
+
+(define (ground-and-rocks seed)
+  (in-world ((cons 'seed seed))
+    (load-scene-named "avalanche" '((rocks . "20")))
+    (run! #:until 0)
+    (call-with-values (lambda () (partition (lambda (b) (eq? 'fixed (body-kind b))) (world-bodies)))
+      (lambda (ground rocks) (list (map position ground) (map position rocks))))))
+
+(let ((one (ground-and-rocks 1)) (again (ground-and-rocks 1)) (two (ground-and-rocks 2)))
+  (test-equal "a seed gives the same avalanche each time" one again)
+  (test-equal "the mountain is the same for all seeds" (first one) (first two))
+  (test-assert "the rocks are not" (not (equal? (second one) (second two))))
+  (test-equal "the number of rocks can be given" 20 (length (second one))))
+
+(in-world ()
+  (load-scene-named "gallery/dominoes")
+  (test-equal "a hundred dominoes" 100 (count-kind 'dynamic)))
+
+;; ---- what must be seen in the gallery ----
+
+(define (at body axis) (vector-ref (position (find-body body)) axis))
+(define (speed body) (norm (velocity (find-body body))))
+(define (still? body)
+  (and (zero? (speed body)) (zero? (norm (angular-velocity (find-body body))))))
+;; cosine of the angle between a body's own z axis and the vertical
+(define (uprightness body) (vector-ref (rotate (orientation (find-body body)) #(0 0 1)) 2))
+
+(in-world ()
+  (load-scene-named "gallery/box-stack")
+  (run! #:until 3)
+  (test-assert "the box stack stands" (close? 1.9 (at "box-9" 2) 2e-3))
+  (test-assert "straight" (< (norm (vector (at "box-9" 0) (at "box-9" 1) 0)) 1e-4))
+  (test-assert "and comes to rest"
+    (every (lambda (k) (still? (format #f "box-~a" k))) (iota 10))))
+
+(in-world ()
+  (load-scene-named "gallery/newtons-cradle")
+  (run! #:until 0.6)
+  (test-assert "the last ball of the cradle leaves with the first one's speed"
+    (close? 2 (vector-ref (velocity (find-body "ball-4")) 0) 1e-9))
+  (test-assert "and the others stop"
+    (every (lambda (k) (< (speed (format #f "ball-~a" k)) 1e-9)) (iota 4))))
+
+(in-world ()
+  (load-scene-named "gallery/slope")
+  (let ((start (at "sticks" 0)))
+    (run! #:until 2)
+    (test-assert "a box that sticks stays" (< (abs (- start (at "sticks" 0))) 1e-3))
+    (test-assert "the others overtake it by their acceleration"
+      (< (at "sticks" 0) (at "slides" 0) (at "rolls" 0) (at "glides" 0)))
+    (test-assert "a rolling ball gets 5/7 as far as a gliding one"
+      (close? 5/7 (/ (- (at "rolls" 0) start) (- (at "glides" 0) start)) 1e-2))))
+
+(in-world ()
+  (load-scene-named "gallery/dominoes" '((dominoes . "12")))
+  (run! #:until 4)
+  (test-assert "all dominoes fall"
+    (every (lambda (k) (< (uprightness (format #f "domino-~a" k)) 0.6)) (iota 12))))
+
+(in-world ()
+  (load-scene-named "gallery/spinning-top")
+  (run! #:until 2)
+  (test-assert "a fast top does not fall" (< 0.85 (uprightness "spins") 1))
+  (test-assert "on its tip" (< (norm (v- (position (find-body "spins")) #(-0.1 0 0))) 0.01))
+  (test-assert "one that does not spin lies" (< (uprightness "falls") 0.8)))
+
+(in-world ()
+  (load-scene-named "gallery/kapla-tower" '((floors . "2")))
+  (run! #:until 2)
+  (test-assert "a small Kapla tower stands" (close? (* 2 0.1326) (+ 0.0039 (at "plank-15" 2)) 1e-3)))
+
+(test-end "scenes")

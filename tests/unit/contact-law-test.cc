@@ -1,0 +1,56 @@
+// Constants of the contact law.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "dynamics/contact-law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tw {
+namespace {
+
+TEST(ContactLaw, depth_is_a_quarter_thousandth_of_the_size_and_carries_the_weight) {
+  const ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
+  EXPECT_DOUBLE_EQ(c.depth, 2.5e-4 * 0.4);
+  EXPECT_DOUBLE_EQ(c.k * c.depth, 2 * 9.81);
+  EXPECT_DOUBLE_EQ(c.hardening, 2 * c.depth);
+}
+
+TEST(ContactLaw, damping_gives_half_of_critical_at_the_static_depth) {
+  const ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
+  // N = k d (1 + b d'): damper k d0 b against 2 sqrt(k m)
+  EXPECT_NEAR(c.k * c.depth * c.b / (2 * std::sqrt(c.k * 2)), 0.5, 1e-14);
+  EXPECT_NEAR(c.ct / (2 * std::sqrt(c.kt * 2)), 0.5, 1e-14);
+  EXPECT_DOUBLE_EQ(c.kt, 0.8 * c.k);
+}
+
+TEST(ContactLaw, unequal_masses_make_it_five_times_as_stiff_and_harden_at_the_static_depth) {
+  const ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
+  const ContactConstants u = contact_constants({}, 2, 0.4, 9.81, true);
+  EXPECT_NEAR(u.k / c.k, 5, 1e-13);
+  EXPECT_DOUBLE_EQ(u.hardening, u.depth);
+}
+
+TEST(ContactLaw, given_stiffness_and_damping_hold) {
+  ContactParameters parameters;
+  parameters.stiffness = 1e5;
+  parameters.damping = 0.25;
+  parameters.friction = 0.7;
+  parameters.friction_law = FrictionLaw::smooth;
+  const ContactConstants c = contact_constants(parameters, 2, 0.4, 9.81, true);
+  EXPECT_EQ(c.k, 1e5);
+  EXPECT_EQ(c.b, 0.25);
+  EXPECT_EQ(c.mu, 0.7);
+  EXPECT_EQ(c.law, FrictionLaw::smooth);
+  EXPECT_DOUBLE_EQ(c.depth, 2 * 9.81 / 1e5);
+}
+
+TEST(ContactLaw, without_gravity_the_standard_one_stands_in) {
+  const ContactConstants zero = contact_constants({}, 2, 0.4, 0, false);
+  const ContactConstants standard = contact_constants({}, 2, 0.4, 9.81, false);
+  EXPECT_EQ(zero.k, standard.k);
+  EXPECT_EQ(zero.b, standard.b);
+}
+
+}  // namespace
+}  // namespace tw

@@ -1,0 +1,226 @@
+// Contact manifolds of cylinders: lying, standing, rolling, on edges and on each other.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "collision/manifold.h"
+#include "collision/separation.h"
+#include "convex-oracles.h"
+
+namespace tw::testing {
+namespace {
+
+using Points = std::vector<ManifoldPoint>;
+
+Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
+                   const Frame& frame_b, double reach) {
+  Points points;
+  manifold(*a, frame_a, *b, frame_b, reach, points);
+  return points;
+}
+
+Frame turned(const Vec3& rotation, const Vec3& position) {
+  return Frame(rotation_by(rotation).toRotationMatrix(), position);
+}
+
+double gap_by_feature(const ManifoldPoint& p) {
+  const Vec3 r = p.core_point - p.reference_point;
+  const Vec3 across = r - p.direction * p.direction.dot(r);
+  const double radii = p.reference_radius + p.radius;
+  if (p.kind == ReferenceFeature::plane) return p.normal.dot(r) - p.radius;
+  return (p.kind == ReferenceFeature::line ? across : r).norm() - radii;
+}
+
+const ShapePtr ground = make_half_space({0, 0, 1}, 0);
+
+TEST(CylinderManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_from_its_features) {
+  Random random(1);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  zoo.push_back(make_sphere(0.4));
+  zoo.push_back(make_half_space({1, 2, 3}, 0.1));
+  const std::vector<ShapePtr> round = {make_cylinder(0.5, 1), make_cylinder(0.5, 0.05),
+                                       make_cylinder(0.03, 1.5)};
+  zoo.insert(zoo.end(), round.begin(), round.end());
+  int poses = 0;
+  for (int i = 0; i < 100; ++i)
+    for (const ShapePtr& a : round)
+      for (const ShapePtr& b : zoo) {
+        const Frame frame_a = random_frame(random, 1);
+        Frame frame_b = random_frame(random, 1);
+        if (b->is_half_space()) frame_b.R = frame_a.R * Mat3(frame_b.R);
+        frame_b.p = frame_a.p + 4 * random_direction(random);
+        const double depth = (i % 3 == 0 ? -1 : 1) * std::pow(10, uniform(random, -6, -3));
+        const Separation far = separation(*a, frame_a, *b, frame_b);
+        frame_b.p -= (far.distance + depth) * far.normal;
+        const Separation s = separation(*a, frame_a, *b, frame_b);
+        for (bool swap : {false, true}) {
+          const Points points = swap ? manifold_of(b, frame_b, a, frame_a, 0.01)
+                                     : manifold_of(a, frame_a, b, frame_b, 0.01);
+          ASSERT_FALSE(points.empty());
+          ASSERT_LE(points.size(), most_manifold_points);
+          double least = 1e300;
+          std::set<std::uint64_t> names;
+          for (const ManifoldPoint& p : points) {
+            least = std::min(least, p.gap);
+            names.insert(p.feature);
+            ASSERT_NEAR(p.gap, gap_by_feature(p), 1e-10);
+            ASSERT_GT((p.reference_is_a != swap ? 1 : -1) * p.normal.dot(s.normal), 0.99);
+          }
+          ASSERT_EQ(names.size(), points.size());
+          ASSERT_NEAR(least, s.distance, 2e-3 * std::abs(s.distance) + 5e-6);
+          ++poses;
+        }
+      }
+  EXPECT_GT(poses, 5000);
+}
+
+TEST(CylinderManifold, lying_it_has_the_ends_of_its_axis_and_rolling_leaves_them_exact) {
+  const ShapePtr log = make_cylinder(0.2, 1);
+  const ShapePtr table = make_box({4, 4, 1});
+  for (double roll : {0.0, 0.3, 2.0}) {
+    const Frame lying(rotation_by({0, pi / 2, 0}).toRotationMatrix() *
+                          rotation_by({0, 0, roll}).toRotationMatrix(),
+                      {0, 0, 0.2 - 1e-4});
+    const Frame below(Mat3::Identity(), {0, 0, -0.5});
+    for (const Points& points :
+         {manifold_of(ground, Frame(), log, lying, 0.01), manifold_of(table, below, log, lying, 0.01)}) {
+      ASSERT_EQ(points.size(), 2u);
+      for (const ManifoldPoint& p : points) {
+        EXPECT_EQ(p.kind, ReferenceFeature::plane);
+        EXPECT_NEAR(p.gap, -1e-4, 1e-15);
+        EXPECT_NEAR(p.radius, 0.2, 1e-15);
+        EXPECT_NEAR((p.core_point.cwiseAbs() - Vec3(0.5, 0, 0.2 - 1e-4)).norm(), 0, 1e-15);
+      }
+    }
+  }
+}
+
+TEST(CylinderManifold, tilted_its_gaps_are_exact_and_stay_while_it_spins) {
+  Random random(2);
+  const ShapePtr coin = make_cylinder(0.3, 0.1);
+  for (int i = 0; i < 300; ++i) {
+    const double tilt = std::pow(10, uniform(random, -3.5, 0.19));
+    const Frame frame = turned({tilt, 0, 0}, {0, 0, uniform(random, 0.05, 0.3)});
+    const double truth = separation(*ground, Frame(), *coin, frame).distance;
+    const Points points = manifold_of(ground, Frame(), coin, frame, 1);
+    double least = 1e300;
+    const ManifoldPoint* lowest = nullptr;
+    for (const ManifoldPoint& p : points)
+      if (p.gap < least) {
+        least = p.gap;
+        lowest = &p;
+      }
+    ASSERT_NEAR(least, truth, 1e-10) << tilt;
+    // the core is on the axis (far up where it stands): spinning does not move it
+    const Vec3 local = frame.to_local(lowest->core_point);
+    ASSERT_NEAR(local.head<2>().norm(), 0, 1e-9 * lowest->radius);
+    // nodding by a little lowers the rim as the ball says, to second order
+    const Frame nodded(rotation_by({1e-5, 0, 0}).toRotationMatrix() * frame.R, frame.p);
+    const double ball = (nodded * local).z() - lowest->radius;
+    ASSERT_NEAR(ball, separation(*ground, Frame(), *coin, nodded).distance,
+                1e-10 * (1 + lowest->radius));
+  }
+}
+
+TEST(CylinderManifold, standing_it_has_eight_points_fixed_in_it) {
+  const ShapePtr can = make_cylinder(0.3, 0.8);
+  const Points flat = manifold_of(ground, Frame(), can, turned({0, 0, 0.3}, {0, 0, 0.4 - 1e-4}), 0.01);
+  ASSERT_EQ(flat.size(), 8u);
+  for (const ManifoldPoint& p : flat) {
+    EXPECT_EQ(p.radius, 0);
+    EXPECT_NEAR(p.gap, -1e-4, 1e-15);
+    EXPECT_NEAR(p.core_point.head<2>().norm(), 0.3, 1e-15);
+  }
+  // their names stay while it rocks a little
+  const Points rocked =
+      manifold_of(ground, Frame(), can, turned({1e-4, 1e-4, 0.3}, {0, 0, 0.4 - 1e-4}), 0.01);
+  ASSERT_EQ(rocked.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(rocked[i].feature, flat[i].feature);
+}
+
+TEST(CylinderManifold, over_the_edge_of_a_table_only_what_is_over_it_carries) {
+  const ShapePtr table = make_box({1, 1, 1});
+  const ShapePtr log = make_cylinder(0.1, 1);
+  const Frame lying = turned({0, pi / 2, 0}, {0.3, 0, 0.6 - 1e-4});
+  const Points points = manifold_of(table, Frame(), log, lying, 0.01);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(std::min(points[0].core_point.x(), points[1].core_point.x()), -0.2, 1e-12);
+  EXPECT_NEAR(std::max(points[0].core_point.x(), points[1].core_point.x()), 0.5, 1e-12);
+  // a can on a box narrower than itself stands on the box's corners
+  const ShapePtr post = make_box({0.2, 0.2, 1});
+  const ShapePtr can = make_cylinder(0.3, 0.8);
+  const Points corners =
+      manifold_of(post, Frame(), can, turned({0, 0, 0}, {0, 0, 0.9 - 1e-4}), 0.01);
+  Aabb support;
+  for (const ManifoldPoint& p : corners) support.add(p.core_point);
+  EXPECT_NEAR(support.size().x(), 0.2, 1e-12);
+  EXPECT_NEAR(support.size().y(), 0.2, 1e-12);
+}
+
+TEST(CylinderManifold, a_log_along_an_edge_has_two_points_and_across_it_one) {
+  const ShapePtr box = make_box({1, 1, 1});
+  const ShapePtr log = make_cylinder(0.1, 0.6);
+  // beside the edge along x through (., 0.5, 0.5)
+  const Vec3 out(0, std::sqrt(0.5), std::sqrt(0.5));
+  const Vec3 place = Vec3(0.4, 0.5, 0.5) + (0.1 - 1e-4) * out;
+  const Points along = manifold_of(box, Frame(), log, turned({0, pi / 2, 0}, place), 0.01);
+  ASSERT_EQ(along.size(), 2u);
+  for (const ManifoldPoint& p : along) {
+    EXPECT_EQ(p.kind, ReferenceFeature::line);
+    EXPECT_FALSE(p.reference_is_a);
+    EXPECT_EQ(p.reference_radius, 0.1);
+    EXPECT_NEAR(p.gap, -1e-4, 1e-12);
+  }
+  EXPECT_NEAR(std::abs(along[0].core_point.x() - along[1].core_point.x()), 0.4, 1e-12);
+  Frame across = turned({pi / 4, 0, 0}, Vec3(0.1, 0.5, 0.5) + (0.1 - 1e-4) * out);
+  const Points one = manifold_of(box, Frame(), log, across, 0.01);
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0].kind, ReferenceFeature::line);
+  EXPECT_NEAR((one[0].core_point - Vec3(0.1, 0.5, 0.5)).norm(), 0, 1e-6);
+}
+
+TEST(CylinderManifold, logs_side_by_side_have_two_points_crossed_ones_one_stacked_cans_eight) {
+  const ShapePtr log = make_cylinder(0.1, 1);
+  const Points beside =
+      manifold_of(log, Frame(), log, turned({0, 0, 0}, {0.2 - 1e-4, 0, 0.3}), 0.01);
+  ASSERT_EQ(beside.size(), 2u);
+  for (const ManifoldPoint& p : beside) {
+    EXPECT_EQ(p.kind, ReferenceFeature::line);
+    EXPECT_NEAR(p.gap, -1e-4, 1e-14);
+    EXPECT_EQ(p.radius, 0.1);
+    EXPECT_EQ(p.reference_radius, 0.1);
+  }
+  const Points crossed =
+      manifold_of(log, Frame(), log, turned({1, 0, 0}, {0.2 - 1e-4, 0, 0}), 0.01);
+  ASSERT_EQ(crossed.size(), 1u);
+  EXPECT_NEAR(crossed[0].gap, -1e-4, 1e-12);
+  EXPECT_NEAR((crossed[0].core_point - Vec3(0.2 - 1e-4, 0, 0)).norm(), 0, 1e-6);
+  const Points stacked =
+      manifold_of(log, Frame(), log, turned({0, 0, 0.2}, {0, 0, 1 - 1e-4}), 0.01);
+  ASSERT_EQ(stacked.size(), 8u);
+  for (const ManifoldPoint& p : stacked) EXPECT_NEAR(p.gap, -1e-4, 1e-14);
+}
+
+TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {
+  const ShapePtr can = make_cylinder(0.3, 0.8);
+  const ShapePtr ball = make_sphere(0.1);
+  const auto meets = [&](const Vec3& center) {
+    const Points points = manifold_of(can, Frame(), ball, Frame(Mat3::Identity(), center), 0.1);
+    EXPECT_EQ(points.size(), 1u);
+    return points.at(0);
+  };
+  ManifoldPoint p = meets({0.39, 0, 0.1});
+  EXPECT_EQ(p.kind, ReferenceFeature::line);
+  EXPECT_NEAR(p.gap, -0.01, 1e-15);
+  EXPECT_NEAR(gap_by_feature(p), -0.01, 1e-15);
+  p = meets({0.1, 0, 0.49});
+  EXPECT_EQ(p.kind, ReferenceFeature::plane);
+  EXPECT_NEAR(gap_by_feature(p), -0.01, 1e-15);
+  p = meets({0.36, 0, 0.48});
+  EXPECT_EQ(p.kind, ReferenceFeature::point);
+  EXPECT_NEAR(gap_by_feature(p), 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace tw::testing

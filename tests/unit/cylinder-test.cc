@@ -1,0 +1,225 @@
+// Cylinders: mass, bounds, and signed distance proven by its own witnesses.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "collision/cylinder-point.h"
+#include "collision/round-distance.h"
+#include "collision/separation.h"
+#include "convex-oracles.h"
+
+namespace tw::testing {
+namespace {
+
+SupportCore placed(const ShapePtr& shape, const Frame& frame) {
+  const ConvexPart& part = shape->parts()[0];
+  return SupportCore(part, frame * part.placement);
+}
+
+Separation parts(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Frame& frame_b) {
+  return part_separation(a->parts()[0], frame_a, b->parts()[0], frame_b, nullptr);
+}
+
+std::vector<ShapePtr> round_zoo() {
+  return {make_cylinder(0.5, 1), make_cylinder(0.5, 0.05), make_cylinder(0.03, 1.5)};
+}
+
+// How far the point lies outside a core: positive outside.
+double outside(const ShapePtr& shape, const Frame& frame, const Vec3& point) {
+  const ConvexPart& part = shape->parts()[0];
+  const Vec3 local = (frame * part.placement).to_local(point);
+  if (part.kind == PartKind::cylinder)
+    return nearest_on_cylinder(part.radius, part.half_length, local).distance;
+  int face = 0;
+  return part.core->face_separation(local, face);
+}
+
+TEST(Cylinder, mass_is_that_of_the_closed_form_and_of_a_fine_prism) {
+  const MassProperties m = make_cylinder(0.5, 2)->mass_properties();
+  EXPECT_DOUBLE_EQ(m.volume, 0.5 * pi);
+  EXPECT_DOUBLE_EQ(m.inertia(2, 2), m.volume * 0.125);
+  EXPECT_DOUBLE_EQ(m.inertia(0, 0), m.volume * (0.75 + 4) / 12);
+  EXPECT_EQ(m.centroid, Vec3::Zero());
+  const MassProperties fine = prism(720, 0.5, 1)->mass_properties();
+  EXPECT_NEAR((m.inertia - fine.inertia).norm(), 0, 1e-4 * m.inertia.norm());
+}
+
+TEST(Cylinder, bounds_and_radius_are_those_of_its_rims) {
+  Random random(1);
+  const ShapePtr shape = make_cylinder(0.3, 0.8);
+  EXPECT_DOUBLE_EQ(shape->least_width(), 0.6);
+  EXPECT_DOUBLE_EQ(shape->radius_about_origin(), 0.5);
+  for (int i = 0; i < 50; ++i) {
+    const Pose pose{random_vector(random, 1), random_rotation(random)};
+    const ShapePtr moved = place_shape(shape, pose);
+    const Frame frame(pose);
+    Aabb rims;
+    double farthest = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const double angle = 2 * pi * k / 4000;
+      for (double z : {-0.4, 0.4}) {
+        const Vec3 x = frame * Vec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), z);
+        rims.add(x);
+        farthest = std::max(farthest, x.norm());
+      }
+    }
+    EXPECT_NEAR((moved->bounds(Frame()).lo - rims.lo).norm(), 0, 1e-6);
+    EXPECT_NEAR((moved->bounds(Frame()).hi - rims.hi).norm(), 0, 1e-6);
+    EXPECT_NEAR(moved->radius_about_origin(), farthest, 1e-6);
+    EXPECT_GE(moved->radius_about_origin(), farthest);
+  }
+}
+
+TEST(Cylinder, refuses_lengths_that_are_not_positive) {
+  EXPECT_THROW(make_cylinder(0, 1), UserError);
+  EXPECT_THROW(make_cylinder(1, -1), UserError);
+  EXPECT_THROW(make_cylinder(std::nan(""), 1), UserError);
+  EXPECT_EQ(make_cylinder(1, 1)->kind_name(), "cylinder");
+}
+
+TEST(Cylinder, distance_to_a_ball_and_a_half_space_is_the_closed_form) {
+  const ShapePtr cylinder = make_cylinder(0.5, 2);
+  const ShapePtr ball = make_sphere(0.1);
+  const auto at = [](double x, double y, double z) { return Frame(Mat3::Identity(), {x, y, z}); };
+  EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.8, 0, 0.3)).distance, 0.2);
+  EXPECT_DOUBLE_EQ(parts(ball, at(0, -0.8, 0.3), cylinder, Frame()).distance, 0.2);
+  EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.2, 0, 1.3)).distance, 0.2);
+  EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.5 + 0.3, 0, 1 + 0.4)).distance, 0.4);
+  EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.45, 0, 0)).distance, -0.15);
+  const ShapePtr ground = make_half_space({0, 0, 1}, 0);
+  EXPECT_DOUBLE_EQ(parts(ground, Frame(), cylinder, at(0, 0, 1.25)).distance, 0.25);
+  Frame lying(rotation_by({pi / 2, 0, 0}).toRotationMatrix(), {0, 0, 0.7});
+  EXPECT_NEAR(parts(cylinder, lying, ground, Frame()).distance, 0.2, 1e-15);
+  Frame tilted(rotation_by({0.3, 0, 0}).toRotationMatrix(), {0, 0, 0});
+  EXPECT_NEAR(parts(ground, Frame(), cylinder, tilted).distance,
+              -(std::cos(0.3) + 0.5 * std::sin(0.3)), 1e-15);
+}
+
+// Distances above zero are proven: two points of the bodies are so far apart, and a slab of that width
+// separates them.
+TEST(Cylinder, distance_is_proven_by_a_slab_and_two_points) {
+  Random random(2);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  int cases = 0;
+  double worst = 0;
+  for (int round = 0; round < 60; ++round)
+    for (const ShapePtr& a : round_zoo()) {
+      for (const ShapePtr& b : round_zoo()) zoo.push_back(b);
+      for (const ShapePtr& b : zoo) {
+        const Frame frame_a = random_frame(random, 1);
+        Frame frame_b = random_frame(random, 1);
+        frame_b.p = frame_a.p + 4 * random_direction(random);
+        const Separation far = parts(a, frame_a, b, frame_b);
+        frame_b.p -= (far.distance - std::pow(10, uniform(random, -6, -1))) * far.normal;
+        const Separation s = parts(a, frame_a, b, frame_b);
+        if (s.distance <= 0) continue;
+        const double slab =
+            distance_along(placed(a, frame_a), placed(b, frame_b), s.normal.normalized());
+        ASSERT_NEAR(slab, s.distance, 1e-11);
+        ASSERT_NEAR((s.point_b - s.point_a).norm(), s.distance, 1e-11);
+        ASSERT_LT(outside(a, frame_a, s.point_a), 1e-11);
+        ASSERT_LT(outside(b, frame_b, s.point_b), 1e-11);
+        worst = std::max(worst, std::abs(slab - s.distance));
+        ++cases;
+      }
+      zoo.resize(10);
+    }
+  EXPECT_GT(cases, 1500);
+  RecordProperty("worst_slab", std::to_string(worst));
+}
+
+// No axis of many separates by less than the depth.
+TEST(Cylinder, depth_is_the_least_of_many_axes_and_that_of_its_own) {
+  Random random(3);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  int overlaps = 0;
+  for (int round = 0; round < 6; ++round)
+    for (const ShapePtr& a : round_zoo()) {
+      for (const ShapePtr& b : round_zoo()) zoo.push_back(b);
+      for (const ShapePtr& b : zoo) {
+        const Frame frame_a = random_frame(random, 1);
+        Frame frame_b = random_frame(random, 1);
+        frame_b.p = frame_a.p + 4 * random_direction(random);
+        const Separation far = parts(a, frame_a, b, frame_b);
+        const bool shallow = random() % 3 != 0;
+        frame_b.p -= (far.distance + std::pow(10, uniform(random, -9, shallow ? -3 : -1))) *
+                     far.normal;
+        const Separation s = parts(a, frame_a, b, frame_b);
+        const SupportCore core_a = placed(a, frame_a);
+        const SupportCore core_b = placed(b, frame_b);
+        if (s.distance > 0) continue;
+        ++overlaps;
+        ASSERT_NEAR(distance_along(core_a, core_b, s.normal), s.distance, 1e-14);
+        ASSERT_LT(std::abs(outside(a, frame_a, s.point_a)), 1e-5);
+        // climbing from there and from random axes finds nothing better
+        double best = s.distance;
+        for (int start = 0; start < 20; ++start) {
+          Vec3 n = start == 0 ? s.normal : random_direction(random);
+          double here = distance_along(core_a, core_b, n);
+          for (double step = 0.3; step > 1e-9; step *= 0.8)
+            for (int k = 0; k < 8; ++k) {
+              const Vec3 m = (n + step * random_direction(random)).normalized();
+              const double there = distance_along(core_a, core_b, m);
+              if (there > here) {
+                here = there;
+                n = m;
+              }
+            }
+          best = std::max(best, here);
+        }
+        ASSERT_LE(best, s.distance + 1e-11);
+      }
+      zoo.resize(10);
+    }
+  EXPECT_GT(overlaps, 150);
+}
+
+TEST(Cylinder, normals_of_faces_caps_and_sides_are_exact) {
+  Random random(4);
+  const ShapePtr box = make_box({2, 2, 1});
+  const ShapePtr cylinder = make_cylinder(0.3, 0.8);
+  for (int i = 0; i < 200; ++i) {
+    const double depth = (i % 4 - 1) * std::pow(10, uniform(random, -9, -3));
+    const Frame world = random_frame(random, 1);
+    const Mat3 spin = rotation_by({0, 0, uniform(random, 0, 6)}).toRotationMatrix();
+    // standing, then lying
+    const Frame standing(spin, {uniform(random, -0.5, 0.5), 0, 0.5 + 0.4 - depth});
+    const Mat3 lie = spin * rotation_by({pi / 2, 0, 0}).toRotationMatrix();
+    const Frame lying(lie, {0, uniform(random, -0.5, 0.5), 0.5 + 0.3 - depth});
+    for (const Frame& place : {standing, lying}) {
+      const Separation s = parts(box, world, cylinder, world * place);
+      ASSERT_NEAR(s.distance, -depth, 1e-14);
+      ASSERT_NEAR((s.normal - world.R.col(2)).norm(), 0, 1e-14);
+    }
+  }
+}
+
+TEST(Cylinder, symmetric_overlaps_have_the_depth_of_the_nearest_way_out) {
+  const ShapePtr can = make_cylinder(0.5, 2);
+  const ShapePtr rod = make_cylinder(0.1, 1);
+  const ShapePtr box = make_box({2, 2, 2});
+  const auto depth = [](const ShapePtr& a, const ShapePtr& b, const Frame& frame_b) {
+    const Separation s = parts(a, Frame(), b, frame_b);
+    EXPECT_NEAR(distance_along(placed(a, Frame()), placed(b, frame_b), s.normal), s.distance, 1e-14);
+    return -s.distance;
+  };
+  const auto at = [](double x, double y, double z) { return Frame(Mat3::Identity(), {x, y, z}); };
+  const Frame crossed(rotation_by({pi / 2, 0, 0}).toRotationMatrix(), {0, 0, 0});
+  // one in the other, about the same axis; then shifted along it, and beside it
+  EXPECT_NEAR(depth(can, rod, at(0, 0, 0)), 0.6, 1e-11);
+  EXPECT_NEAR(depth(can, rod, at(0, 0, 1.4)), 0.1, 1e-12);
+  EXPECT_NEAR(depth(can, rod, at(0.55, 0, 0)), 0.05, 1e-11);
+  EXPECT_NEAR(depth(rod, rod, at(0, 0, 0)), 0.2, 1e-11);
+  EXPECT_NEAR(depth(rod, rod, crossed), 0.2, 1e-11);
+  EXPECT_NEAR(depth(can, rod, crossed), 0.6, 1e-11);
+  EXPECT_NEAR(depth(box, rod, at(0, 0, 0)), 1.1, 1e-11);
+  EXPECT_NEAR(depth(box, can, crossed), 1.5, 1e-11);
+  EXPECT_NEAR(depth(box, rod, at(0.95, 0.2, 0)), 0.15, 1e-11);
+  // touching to the last bit
+  EXPECT_NEAR(depth(can, rod, at(0.6, 0, 0)), 0, 1e-12);
+  EXPECT_NEAR(depth(can, rod, at(0, 0, 1.5)), 0, 1e-12);
+  EXPECT_NEAR(depth(box, rod, at(0, 0, 1.5)), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace tw::testing

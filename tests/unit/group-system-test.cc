@@ -1,0 +1,239 @@
+// The linear systems of contact groups against central differences.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "integrate/group-system.h"
+
+namespace tw {
+namespace {
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  double in(double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(engine_);
+  }
+  Vec3 vec(double size) {
+    const double x = in(-size, size), y = in(-size, size), z = in(-size, size);
+    return {x, y, z};
+  }
+  Vec3 unit() { return vec(1).normalized(); }
+  Quat turn() {
+    const Vec3 v = vec(3);
+    return rotation_by(v);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+// slides along and turns about a line, at accelerating speed
+class Slide : public Motion {
+ public:
+  Pose pose(double t) const override {
+    return {Vec3(0.3 * t * t, 0.2 * t, 0), rotation_by(Vec3(0, 0, 0.5 * t * t))};
+  }
+  void velocity(double t, Vec3& v, Vec3& w) const override {
+    v = Vec3(0.6 * t, 0.2, 0);
+    w = Vec3(0, 0, t);
+  }
+  double speed_bound(double, double to) const override { return 0.6 * to + 0.2; }
+  double angular_speed_bound(double, double to) const override { return to; }
+  Aabb path_bounds(double, double) const override { return {}; }
+};
+
+enum class Regime { sticking, slipping, apart };
+
+struct Case {
+  ContactFeature feature;
+  FrictionLaw law;
+  Regime regime;
+};
+
+GroupMember random_member(Draw& draw) {
+  GroupMember m;
+  m.mass = draw.in(0.5, 2);
+  m.moments = Vec3(draw.in(0.1, 0.2), draw.in(0.2, 0.25), draw.in(0.15, 0.3));
+  m.x = draw.vec(1);
+  m.q = draw.turn();
+  m.v = draw.vec(0.3);
+  m.L = draw.vec(0.1);
+  m.force = draw.vec(1);
+  m.torque = draw.vec(0.1);
+  return m;
+}
+
+// Four members and two outside bodies (one moving); contacts of the kind between random pairs,
+// loaded by about .02 m, in the regime by choice of mu and the velocity scale of friction.
+GroupStart random_group(Draw& draw, const Case& kind) {
+  GroupStart start;
+  start.time = 1;
+  start.end = 2;
+  for (int i = 0; i < 4; ++i) start.members.push_back(random_member(draw));
+  const Vec3 place = draw.vec(1);
+  start.outside = {make_fixed_motion({place, draw.turn()}), std::make_shared<Slide>()};
+  const int pairs[][2] = {{-1, 0}, {0, 1}, {1, -2}, {2, 1}, {2, 0}, {3, -2}, {0, 3}};
+  for (const auto& pair : pairs) {
+    GroupContact c;
+    c.a = pair[0];
+    c.b = pair[1];
+    c.feature = kind.feature;
+    c.normal = draw.unit();
+    c.direction = draw.unit();
+    c.point_b = draw.vec(0.5);
+    c.radius_b = draw.in(0.05, 0.2);
+    c.radius_a = draw.in(0.05, 0.2);
+    c.law.k = draw.in(50, 100);
+    c.law.hardening = 0.03;
+    c.law.b = 0.2;
+    c.law.kt = 0.8 * c.law.k;
+    c.law.ct = draw.in(5, 10);
+    c.law.mu = kind.regime == Regime::sticking ? 1000 : 0.4;
+    c.law.law = kind.law;
+    c.share = 0.5;
+    c.stretch = draw.vec(0.01);
+
+    // the reference point that gives the wanted gap
+    const auto pose = [&](int body) {
+      if (body < 0) return start.outside[static_cast<std::size_t>(~body)]->pose(start.time);
+      const GroupMember& m = start.members[static_cast<std::size_t>(body)];
+      return Pose{m.x, m.q};
+    };
+    const Pose a = pose(c.a), b = pose(c.b);
+    const double gap = kind.regime == Regime::apart ? 0.02 : -0.02;
+    const Vec3 core = b.q * c.point_b + b.p;
+    const Vec3 n = c.feature == ContactFeature::line
+                       ? Vec3(c.normal - c.normal.dot(c.direction) * c.direction).normalized()
+                       : c.normal;
+    c.normal = n;
+    const double radii = c.radius_b + (c.feature == ContactFeature::plane ? 0 : c.radius_a);
+    c.point_a = a.q.conjugate() * (core - a.p) - (gap + radii) * n;
+    if (c.feature == ContactFeature::line) c.point_a += 0.3 * c.direction;
+    if (c.feature == ContactFeature::plane) c.stretch -= n * n.dot(c.stretch);
+    start.contacts.push_back(c);
+  }
+  return start;
+}
+
+struct Bench {
+  explicit Bench(const GroupStart& start) : system(start) {
+    const std::size_t slots = static_cast<std::size_t>(system.contact_packs().slots);
+    scratch.bodies.resize(slots);
+    scratch.changes.resize(slots);
+    scratch.wrenches.resize(slots);
+    scratch.linear.resize(static_cast<std::size_t>(system.packs()));
+    scratch.right_side.resize(6 * start.members.size());
+    system.set_outside(start.time, scratch.bodies);
+    y.resize(static_cast<Eigen::Index>(system.size()));
+    y.setZero();
+    Eigen::Index at = 0;
+    for (const GroupMember& m : start.members) {
+      y.segment<3>(at) = m.x;
+      y.segment<3>(at + 6) = m.v;
+      y.segment<3>(at + 9) = m.L;
+      at += 12;
+    }
+    for (const ContactPack& pack : system.contact_packs().packs)
+      for (int axis = 0; axis < 3; ++axis)
+        for (int lane = 0; lane < lane_count; ++lane, ++at)
+          if (pack.contact[lane] >= 0)
+            y[at] = start.contacts[static_cast<std::size_t>(pack.contact[lane])].stretch[axis];
+  }
+  Eigen::VectorXd slope(double time, const Eigen::VectorXd& state) {
+    Eigen::VectorXd f(state.size());
+    system.evaluate(time, state.data(), scratch, f.data());
+    return f;
+  }
+  GroupSystem system;
+  GroupScratch scratch;
+  Eigen::VectorXd y;
+};
+
+Eigen::MatrixXd differences(Bench& bench, double time) {
+  const Eigen::Index size = bench.y.size();
+  Eigen::MatrixXd J(size, size);
+  for (Eigen::Index j = 0; j < size; ++j) {
+    // fourth order
+    const double d = bench.system.packs() > 0 ? 1e-5 : 1e-4;
+    Eigen::VectorXd y = bench.y;
+    const auto at = [&](double by) {
+      y[j] = bench.y[j] + by * d;
+      return bench.slope(time, y);
+    };
+    J.col(j) = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * d);
+  }
+  return J;
+}
+
+// the worst residual of (sigma - J) k = r, J by differences, over the largest entry that takes part
+double worst_residual(const GroupStart& start, Draw& draw, double sigma) {
+  Bench bench(start);
+  Eigen::VectorXd f(bench.y.size());
+  bench.system.linearise(start.time, bench.y.data(), bench.scratch, f.data());
+  EXPECT_EQ((f - bench.slope(start.time, bench.y)).norm(), 0);
+  const Eigen::MatrixXd J = differences(bench, start.time);
+  EXPECT_TRUE(bench.system.factor(sigma, bench.scratch));
+  double worst = 0;
+  for (int i = 0; i < 4; ++i) {
+    Eigen::VectorXd r(bench.y.size());
+    for (Eigen::Index j = 0; j < r.size(); ++j) r[j] = draw.in(-1, 1);
+    // smooth contacts have no stretches
+    if (start.contacts.front().law.law == FrictionLaw::smooth)
+      r.tail(r.size() - 12 * bench.system.members()).setZero();
+    Eigen::VectorXd k = r;
+    bench.system.solve(bench.scratch, k.data());
+    const Eigen::VectorXd residual = sigma * k - J * k - r;
+    const double scale = (J.cwiseAbs() * k.cwiseAbs()).maxCoeff() + r.cwiseAbs().maxCoeff();
+    worst = std::max(worst, residual.cwiseAbs().maxCoeff() / scale);
+  }
+  return worst;
+}
+
+class GroupSystemTest : public testing::TestWithParam<Case> {};
+
+TEST_P(GroupSystemTest, stage_solution_satisfies_the_differenced_jacobian_to_1e_8) {
+  Draw draw(7);
+  for (int i = 0; i < 20; ++i) {
+    const GroupStart start = random_group(draw, GetParam());
+    EXPECT_LT(worst_residual(start, draw, 30), 1e-8) << "case " << i;
+    EXPECT_LT(worst_residual(start, draw, 3000), 1e-8) << "case " << i;
+  }
+}
+
+TEST_P(GroupSystemTest, time_slope_is_that_of_the_outside_motion_to_1e_6) {
+  Draw draw(8);
+  for (int i = 0; i < 20; ++i) {
+    const GroupStart start = random_group(draw, GetParam());
+    Bench bench(start);
+    Eigen::VectorXd f(bench.y.size()), slope(bench.y.size());
+    bench.system.linearise(start.time, bench.y.data(), bench.scratch, f.data());
+    bench.system.set_time_slope(start.time, 0.01, bench.scratch, slope.data());
+    const double d = 1e-5;
+    const Eigen::VectorXd expected =
+        (bench.slope(start.time + d, bench.y) - bench.slope(start.time - d, bench.y)) / (2 * d);
+    EXPECT_LT((slope - expected).cwiseAbs().maxCoeff(),
+              1e-6 * (1 + expected.cwiseAbs().maxCoeff()));
+  }
+}
+
+constexpr ContactFeature features[] = {ContactFeature::plane, ContactFeature::line,
+                                       ContactFeature::point};
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const ContactFeature feature : features) {
+    for (const Regime regime : {Regime::sticking, Regime::slipping, Regime::apart})
+      cases.push_back({feature, FrictionLaw::anchored, regime});
+    cases.push_back({feature, FrictionLaw::smooth, Regime::slipping});
+    cases.push_back({feature, FrictionLaw::smooth, Regime::apart});
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllLaws, GroupSystemTest, testing::ValuesIn(all_cases()));
+
+}  // namespace
+}  // namespace tw

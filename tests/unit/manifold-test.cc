@@ -1,0 +1,306 @@
+// Contact manifolds: features, depths, names, and what their points leave out.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/manifold.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "collision/separation.h"
+#include "convex-oracles.h"
+
+namespace tw::testing {
+namespace {
+
+using Points = std::vector<ManifoldPoint>;
+
+Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
+                   const Frame& frame_b, double reach,
+                   ReferenceChoice choice = ReferenceChoice::larger) {
+  Points points;
+  manifold(*a, frame_a, *b, frame_b, reach, points, choice);
+  return points;
+}
+
+Frame at(double x, double y, double z) { return Frame(Mat3::Identity(), Vec3(x, y, z)); }
+
+Frame turned(const Vec3& rotation, const Vec3& position) {
+  return Frame(rotation_by(rotation).toRotationMatrix(), position);
+}
+
+const ShapePtr& cube() {
+  static const ShapePtr shape = make_box({1, 1, 1});
+  return shape;
+}
+
+double least_gap(const Points& points) {
+  double least = 1e300;
+  for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
+  return least;
+}
+
+// Frames of a and b that penetrate by about `depth` along the line of nearest points.
+struct ShallowPose {
+  Frame frame_a, frame_b;
+
+  ShallowPose(Random& random, const ShapePtr& a, const ShapePtr& b, double depth) {
+    frame_a = random_frame(random, 1);
+    frame_b = random_frame(random, 1);
+    frame_b.p = frame_a.p + 4 * random_direction(random);
+    const Separation apart = separation(*a, frame_a, *b, frame_b);
+    frame_b.p -= (apart.distance + depth) * apart.normal;
+  }
+};
+
+// The gap of a point from its features, by the formulas of integrate/group-arc.h.
+double gap_by_feature(const ManifoldPoint& p) {
+  const Vec3 r = p.core_point - p.reference_point;
+  switch (p.kind) {
+    case ReferenceFeature::plane: return p.normal.dot(r) - p.radius;
+    case ReferenceFeature::line:
+      return (r - p.direction * p.direction.dot(r)).norm() - p.reference_radius - p.radius;
+    case ReferenceFeature::point: break;
+  }
+  return r.norm() - p.reference_radius - p.radius;
+}
+
+TEST(Manifold, gaps_follow_from_the_features) {
+  Random random(1);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  zoo.push_back(make_sphere(0.4));
+  zoo.push_back(make_half_space({1, 2, 3}, 0.1));
+  int points = 0;
+  for (int round = 0; round < 10; ++round)
+    for (const ShapePtr& a : zoo)
+      for (const ShapePtr& b : zoo) {
+        if (a->is_half_space() && b->is_half_space()) continue;
+        const double depth = (random() % 2 == 0 ? 1 : -1) * std::pow(10, uniform(random, -6, -2));
+        const ShallowPose pose(random, a, b, depth);
+        for (const ManifoldPoint& p : manifold_of(a, pose.frame_a, b, pose.frame_b, 0.05)) {
+          ASSERT_NEAR(p.gap, gap_by_feature(p), 1e-14);
+          ASSERT_NEAR(p.normal.norm(), 1, 1e-14);
+          ASSERT_NEAR(p.direction.norm(), 1, 1e-14);
+          ASSERT_LE(p.gap, 0.05);
+          ++points;
+        }
+      }
+  EXPECT_GT(points, 2000);
+}
+
+TEST(Manifold, stacked_cubes_lie_on_four_corners) {
+  for (double gap : {0.0, 1e-12, 1e-4, -1e-12, -1e-4}) {
+    const Points points = manifold_of(cube(), Frame(), cube(), at(0, 0, 1 + gap), 0.01);
+    ASSERT_EQ(points.size(), 4u) << gap;
+    for (const ManifoldPoint& p : points) {
+      EXPECT_TRUE(p.reference_is_a);
+      EXPECT_EQ(p.normal, Vec3::UnitZ());
+      EXPECT_NEAR(p.gap, gap, 1e-15);
+      EXPECT_NEAR((p.core_point.cwiseAbs() - Vec3(0.5, 0.5, 0.5 + gap)).norm(), 0, 1e-15);
+    }
+  }
+}
+
+TEST(Manifold, the_deepest_point_is_as_deep_as_the_separating_axis_test_says) {
+  Random random(2);
+  const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  for (int round = 0; round < 200; ++round)
+    for (const ShapePtr& a : zoo)
+      for (const ShapePtr& b : zoo) {
+        const ShallowPose pose(random, a, b, std::pow(10, uniform(random, -6, -3)));
+        const Separation s = separation(*a, pose.frame_a, *b, pose.frame_b);
+        const Points points = manifold_of(a, pose.frame_a, b, pose.frame_b, 0.01);
+        ASSERT_FALSE(points.empty());
+        ASSERT_LE(points.size(), most_manifold_points);
+        // 1 - cos 2 degrees, and what one millionth of the size is
+        ASSERT_NEAR(least_gap(points), s.distance, 2e-3 * std::abs(s.distance) + 3e-6);
+      }
+}
+
+TEST(Manifold, every_pair_within_reach_has_a_point_and_none_beyond) {
+  Random random(3);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  zoo.push_back(make_sphere(0.4));
+  int near = 0;
+  for (int round = 0; round < 60; ++round)
+    for (const ShapePtr& a : zoo)
+      for (const ShapePtr& b : zoo) {
+        const ShallowPose pose(random, a, b, -uniform(random, 0, 0.1));
+        const double distance = separation(*a, pose.frame_a, *b, pose.frame_b).distance;
+        if (std::abs(distance - 0.05) < 1e-9) continue;
+        const Points points = manifold_of(a, pose.frame_a, b, pose.frame_b, 0.05);
+        ASSERT_EQ(points.empty(), distance > 0.05) << distance;
+        near += points.empty() ? 0 : 1;
+      }
+  EXPECT_GT(near, 2000);
+}
+
+TEST(Manifold, swapping_the_bodies_mirrors_the_points) {
+  Random random(4);
+  const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  int pairs = 0;
+  for (int round = 0; round < 20; ++round)
+    for (std::size_t i = 0; i < zoo.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const ShallowPose pose(random, zoo[i], zoo[j], 1e-4);
+        Points points = manifold_of(zoo[i], pose.frame_a, zoo[j], pose.frame_b, 0.01);
+        Points mirror = manifold_of(zoo[j], pose.frame_b, zoo[i], pose.frame_a, 0.01);
+        ASSERT_EQ(points.size(), mirror.size());
+        ASSERT_NEAR(least_gap(points), least_gap(mirror), 1e-12);
+        for (const ManifoldPoint& p : points) {
+          // the edge pair's one point always has a as reference
+          const bool same = std::any_of(mirror.begin(), mirror.end(), [&p](const auto& q) {
+            const bool turned_round = p.reference_is_a == q.reference_is_a;
+            return (turned_round ? (p.normal + q.normal).norm() : (p.normal - q.normal).norm()) <
+                       1e-9 &&
+                   ((turned_round ? q.reference_point : q.core_point) - p.core_point).norm() < 1e-3;
+          });
+          ASSERT_TRUE(same);
+        }
+        ++pairs;
+      }
+  EXPECT_GT(pairs, 500);
+}
+
+TEST(Manifold, a_rigid_motion_of_both_moves_the_points_along) {
+  Random random(5);
+  std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  zoo.push_back(make_sphere(0.4));
+  for (int round = 0; round < 10; ++round)
+    for (const ShapePtr& a : zoo)
+      for (const ShapePtr& b : zoo) {
+        const ShallowPose pose(random, a, b, 1e-4);
+        const Frame motion = random_frame(random, 10);
+        const Points before = manifold_of(a, pose.frame_a, b, pose.frame_b, 0.01);
+        const Points after = manifold_of(a, motion * pose.frame_a, b, motion * pose.frame_b, 0.01);
+        ASSERT_EQ(before.size(), after.size());
+        for (std::size_t i = 0; i < before.size(); ++i) {
+          ASSERT_EQ(before[i].feature, after[i].feature);
+          ASSERT_EQ(before[i].kind, after[i].kind);
+          ASSERT_NEAR(before[i].gap, after[i].gap, 1e-12);
+          ASSERT_NEAR((motion * before[i].core_point - after[i].core_point).norm(), 0, 1e-10);
+          ASSERT_NEAR((motion.R * before[i].normal - after[i].normal).norm(), 0, 1e-10);
+        }
+      }
+}
+
+TEST(Manifold, names_of_points_outlive_small_motions) {
+  Random random(6);
+  int kept = 0;
+  int all = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // a box of random edges resting on a larger one
+    const ShapePtr box = make_box({uniform(random, 0.2, 0.6), uniform(random, 0.2, 0.6), 0.2});
+    const Vec3 place(uniform(random, -0.6, 0.6), uniform(random, -0.6, 0.6), 0.6 - 1e-4);
+    const Vec3 turn(0, 0, uniform(random, 0, 6));
+    const Points before = manifold_of(cube(), Frame(), box, turned(turn, place), 0.01);
+    const Vec3 rattle = 1e-5 * random_direction(random);
+    const Points after =
+        manifold_of(cube(), Frame(), box,
+                    turned(turn + 1e-5 * random_direction(random), place + rattle), 0.01);
+    std::set<std::uint64_t> names;
+    for (const ManifoldPoint& p : after) names.insert(p.feature);
+    ASSERT_EQ(names.size(), after.size());
+    for (const ManifoldPoint& p : before) kept += names.count(p.feature) != 0 ? 1 : 0;
+    all += static_cast<int>(before.size());
+  }
+  EXPECT_GT(all, 6000);
+  EXPECT_GT(kept, 0.999 * all);
+}
+
+// The greatest depth of a vertex of b under the face of a that the points refer to, over it.
+double deepest_under_top(const ShapePtr& b, const Frame& frame_b, double half, double top) {
+  double deepest = 0;
+  for (const Vec3& v : b->parts()[0].core->vertices()) {
+    const Vec3 x = frame_b * v;
+    if (std::max(std::abs(x.x()), std::abs(x.y())) > half) continue;
+    deepest = std::max(deepest, top - x.z());
+  }
+  return deepest;
+}
+
+TEST(Manifold, what_rolls_within_the_reach_is_represented) {
+  Random random(7);
+  const ShapePtr table = make_box({2, 2, 1});
+  int rolled = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const ShapePtr rock = random_rock(random, 12, {0.3, 0.3, 0.25});
+    Frame before = random_frame(random, 0.3);
+    before.p.z() = 0.5;
+    before.p.z() -= rock->bounds(before).lo.z() - 0.5 + 1e-4;
+    const double reach = 0.03;
+    const Points points = manifold_of(table, Frame(), rock, before, reach);
+    if (points.size() >= most_manifold_points) continue;
+    // roll about the lowest point, each surface point by less than the reach
+    const Vec3 pivot(before.p.x(), before.p.y(), 0.5);
+    const Vec3 turn = uniform(random, 0, 1) * reach / 0.6 * random_direction(random);
+    const Frame roll(rotation_by(turn).toRotationMatrix(), Vec3::Zero());
+    const Frame after(roll.R * before.R, pivot + roll.R * (before.p - pivot));
+    double predicted = 0;
+    for (const ManifoldPoint& p : points) {
+      const Vec3 now = after * before.to_local(p.core_point);
+      predicted = std::max(predicted, 0.5 - now.z());
+    }
+    ASSERT_LE(deepest_under_top(rock, after, 1, 0.5), predicted + 1e-12);
+    rolled += predicted > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(rolled, 500);
+}
+
+TEST(Manifold, a_box_over_an_edge_is_not_carried_beyond_it) {
+  // coplanar faces, slightly deep: the points end at the edge of the lower cube
+  const ShapePtr box = make_box({1, 1, 0.2});
+  for (double overhang : {0.3, 0.49, 0.499, 0.7}) {
+    const Points points =
+        manifold_of(cube(), Frame(), box, at(overhang, 0, 0.6 - 1e-4), 0.05);
+    ASSERT_EQ(points.size(), 4u);
+    for (const ManifoldPoint& p : points) EXPECT_LE(p.core_point.x(), 0.5 + 1e-12) << overhang;
+  }
+}
+
+TEST(Manifold, a_ball_meets_faces_edges_and_vertices_as_planes_lines_and_points) {
+  const ShapePtr ball = make_sphere(0.2);
+  const auto meets = [&ball](const Vec3& center) {
+    const Points points = manifold_of(cube(), Frame(), ball, Frame(Mat3::Identity(), center), 0.1);
+    EXPECT_EQ(points.size(), 1u);
+    return points.at(0);
+  };
+  ManifoldPoint p = meets({0.1, 0.2, 0.69});
+  EXPECT_EQ(p.kind, ReferenceFeature::plane);
+  EXPECT_EQ(p.normal, Vec3::UnitZ());
+  EXPECT_EQ(p.radius, 0.2);
+  EXPECT_NEAR(p.gap, -0.01, 1e-15);
+  EXPECT_EQ(p.core_point, Vec3(0.1, 0.2, 0.69));
+  // sunk until the centre is inside
+  p = meets({0.1, 0.2, 0.45});
+  EXPECT_EQ(p.kind, ReferenceFeature::plane);
+  EXPECT_NEAR(p.gap, -0.25, 1e-15);
+  // beside an edge along x
+  p = meets({0.1, 0.5 + 0.12, 0.5 + 0.16});
+  EXPECT_EQ(p.kind, ReferenceFeature::line);
+  EXPECT_NEAR(std::abs(p.direction.x()), 1, 1e-15);
+  EXPECT_NEAR((p.normal - Vec3(0, 0.6, 0.8)).norm(), 0, 1e-14);
+  EXPECT_NEAR(p.gap, 0, 1e-15);
+  EXPECT_EQ(p.reference_radius, 0);
+  // beside a corner
+  p = meets({0.6, 0.6, 0.6});
+  EXPECT_EQ(p.kind, ReferenceFeature::point);
+  EXPECT_EQ(p.reference_point, Vec3(0.5, 0.5, 0.5));
+  EXPECT_NEAR(p.gap, 0.1 * std::sqrt(3.0) - 0.2, 1e-15);
+}
+
+TEST(Manifold, the_fixed_face_is_the_reference_where_asked) {
+  const ShapePtr large = make_box({2, 2, 0.2});
+  const Frame over = turned({1e-3, 0, 0}, {0, 0, 0.6});
+  for (const ManifoldPoint& p : manifold_of(cube(), Frame(), large, over, 0.01))
+    EXPECT_FALSE(p.reference_is_a);
+  const Points of_a =
+      manifold_of(cube(), Frame(), large, over, 0.01, ReferenceChoice::of_a);
+  ASSERT_EQ(of_a.size(), 4u);
+  for (const ManifoldPoint& p : of_a) {
+    EXPECT_TRUE(p.reference_is_a);
+    EXPECT_EQ(p.normal, Vec3::UnitZ());
+  }
+}
+
+}  // namespace
+}  // namespace tw::testing
