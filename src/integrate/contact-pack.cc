@@ -218,8 +218,11 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes hard = squared < cap ? half * squared : cap - half * over;
   const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
   if (pack.law != FrictionLaw::anchored) return normal;
+  // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back
   const LaneVec st = state.s - dot(state.n, state.s) * state.n;
-  return normal + half * pack.kt * dot(st, st);
+  const Lanes cone = pack.mu * state.stiffness;
+  const Lanes tiny = lanes(1e-300);
+  return normal + half * min(pack.kt * dot(st, st), cone * cone / max(pack.kt, tiny));
 }
 
 ContactPacks make_contact_packs(const GroupStart& start) {

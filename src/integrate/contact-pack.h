@@ -73,7 +73,7 @@ void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const 
 // sign.
 LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies);
 
-// Of the normal springs (without the damper) and the stretches, J.
+// Of the normal springs (without the damper) and of the stretches as far as the cone holds them, J.
 Lanes pack_energy(const ContactPack& pack, const PackState& state);
 
 // Depth beyond which a contact hardens no more, over its hardening depth, and the speed scale of

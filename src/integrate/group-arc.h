@@ -143,7 +143,8 @@ class GroupArc {
   double step_end(double time);
   Vec3 stretch(int contact, double time);  // a's frame
   ContactForce contact_force(int contact, double time);
-  double elastic_energy(double time);  // of normal springs and stretches, J
+  // Of normal springs, and of stretches as far as friction holds them, J.
+  double elastic_energy(double time);
   // The step that the controller would take after the arc's end, s: for the next arc's first_step.
   double next_step() const;
   const GroupCounts& counts() const;

@@ -7,7 +7,6 @@
 namespace tw {
 namespace {
 
-bool in_moving_group(const StateData& arc) { return arc.group && !arc.group->at_rest; }
 bool at_rest(const StateData& arc) { return arc.group && arc.group->at_rest; }
 
 ArcPoint group_point(const StateData& arc, double time) {

@@ -70,18 +70,19 @@ void Kernel::process_callback(std::uint32_t number) {
       schedule_callback(number);
       return;
     }
-  for (const BodyId id : callback.def.targets) {
-    Body& body = *bodies[id];
-    while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error) {
-      const State& tail = *graph.tail(id);
-      if (body.claim.time >= natural_end(tail)) {
-        // first the group check that stands before the call
-        process_group_check(tail.group->leader());
-        return;
+  for (const BodyId target : callback.def.targets)
+    for (const BodyId id : fellows(target, key)) {
+      Body& body = *bodies[id];
+      while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error) {
+        const State& tail = *graph.tail(id);
+        if (body.claim.time >= natural_end(tail)) {
+          // first the group check that stands before the call
+          process_group_check(tail.group->leader());
+          return;
+        }
+        claim_window(body);
       }
-      claim_window(body);
     }
-  }
   if (!(callback.next == key)) return;
 
   // drafts that carry the old arcs, and views of them
@@ -122,7 +123,9 @@ void Kernel::process_callback(std::uint32_t number) {
     data.next_callback = next;
   }
   for (Draft& draft : drafts) draft.data.changed = any_changed;
-  if (std::none_of(drafts.begin(), drafts.end(), [](const Draft& d) { return d.data.error != nullptr; }))
+  if (drafts.front().data.error)
+    stop_fellows(key, drafts);
+  else
     regroup_changed(key, drafts);
 
   // the next call, then the states (a rollback through them rewinds it again)

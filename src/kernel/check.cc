@@ -40,7 +40,9 @@ const State* next_arc(const State* state) {
   return state;
 }
 
-bool moves_in_group(const State& state) { return state.group && !state.group->at_rest; }
+bool moves_in_group(const State& state) {
+  return state.group && !state.group->at_rest && !state.error;
+}
 
 Key key_or_last(const State* state) { return state ? state->key : last_key; }
 
@@ -146,7 +148,10 @@ void Kernel::reset_pair(std::uint32_t index, const Key& key) {
   }
   pair.pending = false;
   pair.parked = false;
-  if (moves_in_group(*graph.tail(pair.a)) || moves_in_group(*graph.tail(pair.b))) {
+  const State& tail_a = *graph.tail(pair.a);
+  const State& tail_b = *graph.tail(pair.b);
+  const bool stopped = tail_a.error || tail_b.error;
+  if (!stopped && (moves_in_group(tail_a) || moves_in_group(tail_b))) {
     // the next claim asks again
     queue.withdraw(pair.event);
     return;

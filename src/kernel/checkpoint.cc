@@ -52,6 +52,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     if (pairs[i].live) drop_pair(i);
   for (const auto& body : bodies) {
     queue.withdraw(body->advance);
+    queue.withdraw(body->group_check);
     graph.clear(body->id());
   }
   undelivered_.clear();
@@ -74,10 +75,14 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     static_cast<StateData&>(*state) = data;
     state->committed = begun;
     body->claim = body->fixed() && begun ? last_key : begun ? present : key;
-    if (begun)
+    // boxes are those of another time until the first claim
+    if (!body->fixed()) body->placed = false;
+    if (begun) {
       schedule_advance(*body);
-    else
+      schedule_group_check(*body);
+    } else {
       newborn_.push_back(body->id());
+    }
   }
   for (std::uint32_t i = 0; i < callbacks.size(); ++i) {
     callbacks[i].next = checkpoint.callbacks[i].first;

@@ -95,7 +95,8 @@ void Kernel::commit_states(double limit, bool inclusive) {
     if (!state || state->committed) continue;
     for (; state && passed(state) && !state->error; state = state->next) commit_state(*state);
   }
-  std::sort(undelivered_.begin() + static_cast<std::ptrdiff_t>(delivered_before),
+  // what one discontinuity tells has one key: in the order told
+  std::stable_sort(undelivered_.begin() + static_cast<std::ptrdiff_t>(delivered_before),
             undelivered_.end(), [](const auto& x, const auto& y) { return x->key < y->key; });
 }
 

@@ -18,16 +18,18 @@
 namespace tw {
 namespace {
 
-// Depth that may stay unrepresented, share of the contact's depth under its own load.
-constexpr double unseen_depth = 0.5;
+// Depth that may stay unrepresented: half of a contact's depth under the body's own weight, which is this
+// share of its size.
+constexpr double unseen_depth = 0.5, default_depth = 2.5e-4;
 
 // A pair of bodies along the arc.
 struct Pairing {
-  const Kernel& kernel;
   Group& group;
   const GroupLink& link;
   const Body& a;
   const Body& b;
+  std::vector<SeamNeighbour> around_a, around_b;  // of the one that is ground
+  std::vector<ManifoldPoint>& points;
 
   Frame frame(const Body& body, double when) const {
     const auto at = std::lower_bound(group.members.begin(), group.members.end(), body.id());
@@ -37,8 +39,18 @@ struct Pairing {
     group.arc->pose(static_cast<int>(at - group.members.begin()), when, x, q);
     return Frame(q.toRotationMatrix(), x);
   }
-  double distance(double when) const {
-    return separation(*a.shape_P, frame(a, when), *b.shape_P, frame(b, when)).distance;
+  // The depth of the deepest point, m, as a negative gap; 0: none.  `at_seams`: ghosts left out.
+  double deepest(double when, bool at_seams) const {
+    points.clear();
+    const double size = std::min(a.least_width, b.least_width);
+    if (at_seams)
+      manifold_at_seams(*a.shape_P, frame(a, when), around_a, *b.shape_P, frame(b, when), around_b,
+                        0, size, points);
+    else
+      manifold(*a.shape_P, frame(a, when), *b.shape_P, frame(b, when), 0, points);
+    double least = 0;
+    for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
+    return least;
   }
   // the least gap that the link's contacts know of
   double represented(double when) const {
@@ -62,20 +74,12 @@ struct Pairing {
   }
 };
 
-// When the pair is deeper than its contacts know; `never` if it is not.  `known`: the least gap that they
-// know of at the end.
-double unseen_touch(const Pairing& pair, double known, double allowed,
-                    std::vector<ManifoldPoint>& points) {
+// When the pair came to be deeper than its contacts know; `never` if it did not.
+double unseen_touch(const Pairing& pair, double allowed) {
   const double from = pair.group.arc->start().time, to = pair.group.next_check;
-  points.clear();
-  manifold(*pair.a.shape_P, pair.frame(pair.a, to), *pair.b.shape_P, pair.frame(pair.b, to), 0, points);
-  double deepest = 0;
-  for (const ManifoldPoint& p : points) deepest = std::min(deepest, p.gap);
-  if (!(std::min(known, 0.0) - deepest > allowed)) return never;
-
-  // certainly deeper: where it came to be
+  // where it came to be
   const auto excess = [&](double t) {
-    return std::min(pair.represented(t), allowed) - pair.distance(t) - allowed;
+    return std::min(pair.represented(t), 0.0) - pair.deepest(t, true) - allowed;
   };
   const double first = excess(from), last = excess(to);
   if (!(last > 0) || first >= 0) return never;
@@ -99,10 +103,10 @@ void Kernel::test_group_end(Group& group) {
   group.arc->extend(group.next_check);
   double end = group.next_check;
   for (const GroupLink& link : group.links) {
-    if (link.count == 0) continue;
-    const Pairing pair{*this, group, link, *bodies[link.pair >> 32],
-                       *bodies[link.pair & 0xffffffffu]};
-    const double allowed = unseen_depth * group.arc->start().contacts[link.first].law.depth;
+    const Body& a = *bodies[link.pair >> 32];
+    const Body& b = *bodies[link.pair & 0xffffffffu];
+    Pairing pair{group, link, a, b, {}, {}, manifold_points_};
+    const double allowed = unseen_depth * default_depth * std::min(a.least_width, b.least_width);
     if (pair.travel() <= allowed) continue;
     double known = never;
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
@@ -111,7 +115,13 @@ void Kernel::test_group_end(Group& group) {
       end = std::min(end, fast_touch(*group.arc, static_cast<int>(c), group.gaps[c], last,
                                      fusion_speed(pair.a, pair.b)));
     }
-    end = std::min(end, unseen_touch(pair, known, allowed, manifold_points_));
+    if (!(std::min(known, 0.0) - pair.deepest(group.next_check, false) > allowed)) continue;
+    if (!a.dynamic() || !b.dynamic()) {
+      find_fixed_around(a.dynamic() ? a : b);
+      pair.around_a = around(a);
+      pair.around_b = around(b);
+    }
+    end = std::min(end, unseen_touch(pair, allowed));
   }
   // no shorter than the spacing of checks on the grid of collisions
   end = std::max(end, std::min(group.next_check, group.arc->start().time + check_grid));

@@ -151,10 +151,8 @@ void Kernel::process_group_check(BodyId leader) {
 
   // only after the members' claims, and those of kinematic bodies, have reached its time
   bool claimed = false;
-  for (const auto& body : bodies) {
-    if (body->info.kind != BodyKind::kinematic) continue;
-    for (; body->claim.time < key.time; claimed = true) claim_window(*body);
-  }
+  for (const BodyId id : kinematic)
+    for (; bodies[id]->claim.time < key.time; claimed = true) claim_window(*bodies[id]);
   for (const BodyId id : group->members)
     for (; bodies[id]->claim.time < key.time; claimed = true) claim_window(*bodies[id]);
   // these may have found something that comes first

@@ -21,6 +21,10 @@ constexpr std::uint32_t most_microsteps = 100000;
 constexpr double touch_per_accuracy = 0.1;
 
 constexpr std::uint32_t soft_run = 8;
+// Again and again at one instant: slower than this share of the fusion speed it is rounding; after so many
+// impacts it is a heavy body that comes down on a light one, which impulses would stop too slowly.
+constexpr double grazing = 1e-5;
+constexpr std::uint32_t most_repeated = 2000;
 // The interval of a quick run where the pair is not pressed together, share of that where it is.
 constexpr double free_run_share = 1e-2;
 
@@ -145,7 +149,8 @@ void Kernel::find_impact_points(const Draft& a, const Draft& b) {
   contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
 }
 
-// Drops the points at seams that neighbours of a fixed body bury; true if none is left.
+// At seams of the ground: points that neighbours of the fixed body bury give way to those that support;
+// true if there are none.
 bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
   const Draft* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
@@ -157,7 +162,7 @@ bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
   const Frame frame(fixed->point.q.toRotationMatrix(), fixed->point.x);
   const double size = std::min(a.body->least_width, b.body->least_width);
   const std::size_t parts_b = b.body->shape_P->parts().size();
-  std::erase_if(contact_points_, [&](const ContactPoint& c) {
+  const auto is_ghost = [&](const ContactPoint& c) {
     const auto pair = static_cast<std::size_t>(c.pair);
     const std::size_t number = fixed == &a ? pair / parts_b : pair % parts_b;
     std::vector<SeamNeighbour> neighbours = others;
@@ -166,7 +171,18 @@ bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
     const Vec3 outward = fixed == &a ? c.normal : Vec3(-c.normal);
     const Vec3 on_fixed = c.point - 0.5 * c.gap * outward;
     return buried_edge(parts[number], frame, on_fixed, outward, neighbours, size);
-  });
+  };
+  if (std::erase_if(contact_points_, is_ghost) == 0 || !contact_points_.empty()) return false;
+
+  // another axis may support
+  manifold_points_.clear();
+  const Side side_a = side_of(a), side_b = side_of(b);
+  manifold_at_seams(*a.body->shape_P, side_a.frame, around(*a.body), *b.body->shape_P, side_b.frame,
+                    around(*b.body), touch_per_accuracy * options.accuracy * size, size,
+                    manifold_points_);
+  for (const ManifoldPoint& p : manifold_points_)
+    contact_points_.push_back({p.core_point - p.radius * p.normal,
+                               p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, p.pair});
   return contact_points_.empty();
 }
 
@@ -176,6 +192,8 @@ bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
   const double slow = fusion_speed(*a.body, *b.body);
   const double size = std::min(a.body->least_width, b.body->least_width);
   const double d0 = 2.5e-4 * size;
+  if (key.microstep > 1 && fastest <= grazing * slow) return true;
+  if (key.microstep > most_repeated) return true;
 
   // what a group carries does not fall away from what comes to lie on it
   const auto pull = [](const Draft& d) {

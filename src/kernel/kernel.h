@@ -131,6 +131,7 @@ class Kernel {
   EventQueue queue;
   SpatialHash grid;
   std::vector<BodyId> unbounded;     // bodies that no box holds: every claim tests them
+  std::vector<BodyId> kinematic;     // bodies that move by a given function of time
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> unused_pairs;
   std::vector<CallbackRecord> callbacks;
@@ -157,6 +158,7 @@ class Kernel {
   void make_birth(Body& body, const BodyDef& def);
   void validate_body_def(const BodyDef& def, const std::string& name) const;
   void restart_future();             // forget everything after `time`
+  void renew_groups();               // their contacts take what was set since, and wake
   void retry_errors();
   void update_cell();
 
@@ -254,9 +256,11 @@ class Kernel {
             bool must);
   bool wants_link(const Side& a, const Side& b, bool linked_before, double interval,
                   const ContactConstants& law) const;
+  ContactConstants contact_law(const Body& a, const Body& b, double lightest, double heaviest) const;
   LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
                              const ContactConstants& law) const;
   void match_stretches(Regroup& work, const LooseLink& link, const Group& before) const;
+  bool ghosts(const Side& a, const Side& b);
   void preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const;
   void refresh(Regroup& work, const Group& before, double interval);
   void find_fixed_around(const Body& mover);
@@ -286,6 +290,7 @@ class Kernel {
   Draft draft_for(const Body& body, const Key& key, bool new_arc) const;
   void enter_discontinuity(const Key& key, std::vector<Draft>& drafts);
   void treat(const std::vector<Touched>& touched);
+  void stop_fellows(const Key& key, std::vector<Draft>& drafts) const;
   void append_drafts(const Key& key, std::vector<Draft>& drafts);
   void check_finite(Draft& draft) const;
   void note_removed(State& state);

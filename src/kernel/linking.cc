@@ -75,6 +75,22 @@ double Kernel::fusion_speed(const Body& a, const Body& b) const {
   return std::max(1e-9, contact_parameters(a.id(), b.id()).fusion_speed.value_or(by_default));
 }
 
+// The law of a pair in a group with these masses, kg.  The heaviest may lie on any of its contacts: they are
+// never softer than for a thousandth of it (the law hardens by no more), nor stiffer than for
+// a thousand times the lighter one: a bead on a lorry must not stop the clock.
+ContactConstants Kernel::contact_law(const Body& a, const Body& b, double lightest,
+                                     double heaviest) const {
+  constexpr double unequal_masses = 100, most_unequal = 1000;
+  const double size = std::min(a.least_width, b.least_width);
+  const double mass = !a.dynamic()   ? b.mass
+                      : !b.dynamic() ? a.mass
+                                     : std::min(a.mass, b.mass);
+  return contact_constants(contact_parameters(a.id(), b.id()),
+                           std::clamp(heaviest / most_unequal, mass, most_unequal * mass),
+                           size, gravity_magnitude(),
+                           heaviest > unequal_masses * lightest);
+}
+
 LooseContact Kernel::loose_contact(const ManifoldPoint& p, const Side& a, const Side& b,
                                    const ContactConstants& law) const {
   const Side& reference = p.reference_is_a ? a : b;
@@ -113,7 +129,7 @@ bool Kernel::wants_link(const Side& a, const Side& b, bool linked_before, double
     if (linked_before)
       wanted = wanted || p.gap <= law.depth || comes;
     else
-      wanted = wanted || (comes && std::abs(parting) < slow);
+      wanted = wanted || (comes && std::abs(parting) < slow) || (p.gap <= 0 && parting > -slow);
   }
   // what comes fast is for an impact, unless the pair carries a load already
   return wanted && (!fast || (linked_before && touches));
@@ -206,16 +222,22 @@ void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const 
   }
 }
 
+// Whether the two overlap although there is nothing to support: a buried wall or edge of the ground.  Such
+// a pair is linked without contacts, or its collision checks would see an overlap all the time.
+bool Kernel::ghosts(const Side& a, const Side& b) {
+  if (!manifold_points_.empty() || (!a.body->fixed() && !b.body->fixed())) return false;
+  manifold(*a.body->shape_P, a.frame, *b.body->shape_P, b.frame, 0, manifold_points_);
+  const bool overlap = !manifold_points_.empty();
+  manifold_points_.clear();
+  return overlap;
+}
+
 bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, const Group* before,
                   bool must) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const double size = std::min(body_a.least_width, body_b.least_width);
-  const double mass = !body_a.dynamic()   ? body_b.mass
-                      : !body_b.dynamic() ? body_a.mass
-                                          : std::min(body_a.mass, body_b.mass);
-  const ContactConstants law = contact_constants(contact_parameters(body_a.id(), body_b.id()), mass,
-                                                 size, gravity_magnitude(), work.unequal);
+  const ContactConstants law = contact_law(body_a, body_b, work.lightest, work.heaviest);
   const double travel = 2 * (a.surface_speed() + b.surface_speed()) * interval +
                         gravity_magnitude() * interval * interval;
   const double reach = law.depth + std::min(travel, link_margin * size - law.depth);
@@ -232,7 +254,7 @@ bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, 
   for (ManifoldPoint& p : manifold_points_) flatten(p, p.reference_is_a ? a : b, body_b);
   const std::uint64_t pair = pair_id(body_a.id(), body_b.id());
   const bool linked_before = before && before->link(pair);
-  if (!must && !wants_link(a, b, linked_before, interval, law)) return false;
+  if (!must && !wants_link(a, b, linked_before, interval, law) && !ghosts(a, b)) return false;
 
   LooseLink fresh{pair, static_cast<std::uint32_t>(work.contacts.size()),
                   static_cast<std::uint32_t>(manifold_points_.size()), false};

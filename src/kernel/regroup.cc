@@ -84,14 +84,11 @@ void Kernel::collect_old(Regroup& work) const {
     if (!changes_arc(draft, work.key) || !group) continue;
     if (group->leader() == id) work.old.push_back(group);
   }
-  double lightest = never, heaviest = 0;
   for (const Draft& draft : work.drafts) {
     if (!draft.body->dynamic()) continue;
-    lightest = std::min(lightest, draft.body->mass);
-    heaviest = std::max(heaviest, draft.body->mass);
+    work.lightest = std::min(work.lightest, draft.body->mass);
+    work.heaviest = std::max(work.heaviest, draft.body->mass);
   }
-  constexpr double unequal_masses = 100;
-  work.unequal = heaviest > unequal_masses * lightest;
 }
 
 // Links and contacts as they stand, stretches evaluated at the key's time.
@@ -102,6 +99,11 @@ void Kernel::carry(Regroup& work, const Group& group) const {
     const Draft* a = work.draft_of(first_of(link.pair));
     const Draft* b = work.draft_of(second_of(link.pair));
     if ((a && a->placed) || (b && b->placed)) continue;
+    const Body& body_a = *bodies[first_of(link.pair)];
+    const Body& body_b = *bodies[second_of(link.pair)];
+    // between runs somebody may have set them anew
+    const bool renew = work.key.kind == KeyKind::edit;
+    if (renew && !may_collide(body_a, body_b)) continue;
     work.links.push_back({link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count,
                           link.touched});
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
@@ -154,7 +156,7 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   GroupStart start;
   start.time = work.key.time;
   start.end = group.next_check;
-  double size = never;
+  double size = never, lightest = never, heaviest = 0;
   for (const BodyId id : group.members) {
     const Draft& draft = *work.draft_of(id);
     const Body& body = *draft.body;
@@ -162,6 +164,8 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
                              body.mass * d.acceleration, Vec3::Zero()});
     size = std::min(size, body.least_width);
+    lightest = std::min(lightest, body.mass);
+    heaviest = std::max(heaviest, body.mass);
   }
   start.position_tolerance = group_position_tolerance(options.accuracy, size);
   start.velocity_tolerance = group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
@@ -178,8 +182,11 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   };
   for (GroupLink& link : group.links) {
     const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
+    const ContactConstants law = contact_law(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)],
+                                              lightest, heaviest);
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       LooseContact& loose = work.contacts[c];
+      loose.contact.law = law;
       loose.contact.a = index_of(loose.tag.reference);
       loose.contact.b = index_of(loose.tag.other);
       start.contacts.push_back(loose.contact);

@@ -38,7 +38,7 @@ struct Regroup {
   std::vector<LooseLink> links;
   std::vector<LooseContact> contacts;
   std::vector<std::pair<BodyId, std::size_t>> index;  // body, place in drafts; ascending
-  bool unequal = false;          // masses over 100:1 among the drafts
+  double lightest = never, heaviest = 0;  // masses of the drafts, kg
   GroupTally tally;
   Told told;
 

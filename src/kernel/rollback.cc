@@ -47,11 +47,29 @@ void Kernel::check_finite(Draft& draft) const {
   draft.data.error = std::make_exception_ptr(UserError(message, draft.body->info.place));
 }
 
+// An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
+void Kernel::stop_fellows(const Key& key, std::vector<Draft>& drafts) const {
+  const std::exception_ptr error = drafts.front().data.error;
+  const std::size_t count = drafts.size();
+  for (std::size_t i = 0; i < count; ++i)
+    for (const BodyId id : fellows(drafts[i].body->id(), key))
+      if (std::none_of(drafts.begin(), drafts.end(),
+                       [&](const Draft& d) { return d.body->id() == id; }))
+        drafts.push_back(draft_for(*bodies[id], key, false));
+  for (Draft& draft : drafts) draft.data.error = error;
+}
+
 // The drafts give their slots, collisions and errors away.
 void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
+  for (Draft& draft : drafts) check_finite(draft);
+  const auto stopped = std::find_if(drafts.begin(), drafts.end(),
+                                    [](const Draft& d) { return d.data.error != nullptr; });
+  if (stopped != drafts.end()) {
+    const std::exception_ptr error = stopped->data.error;
+    for (Draft& draft : drafts) draft.data.error = error;
+  }
   std::vector<State*> ring;
   for (Draft& draft : drafts) {
-    check_finite(draft);
     // a fixed body without states does not stop: its partner in the impact does
     if (!draft.enters) continue;
     // the process stops here: its arcs end

@@ -133,6 +133,7 @@ BodyId Kernel::add_body(const BodyDef& def) {
   newborn_.push_back(id);
   names[name] = id;
   if (body->unbounded) unbounded.push_back(id);
+  if (body->info.kind == BodyKind::kinematic) kinematic.push_back(id);
   bodies.push_back(std::move(body));
   return id;
 }
@@ -175,7 +176,9 @@ void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
   require_between_runs("contact parameters were set");
   contacts.add(a, b, settings);
   if (settings.collide && !*settings.collide) contacts_may_disable_ = true;
-  if (begun) restart_future();
+  if (!begun) return;
+  restart_future();
+  renew_groups();
 }
 
 // Bodies that no rule names differ by their material alone: one class for each material, one for each
@@ -324,6 +327,17 @@ void Kernel::restart_future() {
   std::vector<Touched> all;
   for (const auto& body : bodies) all.push_back({body->id(), present});
   treat(all);
+}
+
+void Kernel::renew_groups() {
+  for (const auto& body : bodies) {
+    const State* tail = graph.tail(body->id());
+    if (tail->error || !tail->group || tail->group->leader() != body->id()) continue;
+    const Key key = edit_key(body->id());
+    std::vector<Draft> drafts{draft_for(*body, key, true)};
+    regroup_changed(key, drafts);
+    enter_discontinuity(key, drafts);
+  }
 }
 
 // ---- the beginning of a run ----

@@ -17,7 +17,7 @@ inline double group_position_tolerance(double accuracy, double size) { return 25
 
 // m/s: what gravity does to a body of that size within the time of its contact.
 inline double group_velocity_tolerance(double accuracy, double size, double gravity) {
-  return 250 * accuracy * std::sqrt(gravity * size);
+  return 100 * accuracy * std::sqrt(gravity * size);
 }
 
 }  // namespace tw

@@ -65,6 +65,20 @@ TEST(RestingCases, stack_of_ten_stands_still) {
   }
 }
 
+// What starts the group anew keeps the friction's stretch: a box held by it must not slip a little each time.
+TEST(RestingCases, taps_do_not_make_a_box_creep) {
+  World world;
+  const Case c = read_case("creep");
+  fill(world, c);
+  world.advance(1);
+  const Vec3 early = world.state(1).position;
+  for (int i = 1; i <= 40; ++i) {
+    world.edit(1, [&](StateView& box) { box.set_applied_force({0, i % 2 ? 1.0 : -1.0, 0}); });
+    world.advance(1 + 0.05 * i);
+  }
+  EXPECT_LT((world.state(1).position - early).norm(), 1e-6);
+}
+
 // A settled heap costs nothing: no events at all.
 TEST(RestingCases, what_rests_has_no_events) {
   World world;

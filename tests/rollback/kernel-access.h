@@ -30,6 +30,25 @@ class KernelTest {
     kernel_.process_impact(kernel_.find_pair(*kernel_.bodies[a], *kernel_.bodies[b]));
   }
   void process_callback(std::uint32_t number) { kernel_.process_callback(number); }
+  // Processes what is due up to `time`, least key first, and commits nothing.
+  void run_uncommitted(double time) {
+    while (!kernel_.queue.empty() && kernel_.queue.top_priority() <= time)
+      kernel_.policy->go_forward(kernel_);
+  }
+  // Removes the body's states from the key on, as a discontinuity found late would.
+  std::size_t roll_back(BodyId id, const Key& key) {
+    std::vector<Touched> touched;
+    const std::size_t removed = kernel_.graph.rollback(id, key, touched, kernel_.removal());
+    kernel_.treat(touched);
+    return removed;
+  }
+  // The body's states, earliest first.
+  std::vector<const State*> states(BodyId id) const {
+    std::vector<const State*> result;
+    for (const State* s = kernel_.graph.head(id); s; s = s->next) result.push_back(s);
+    return result;
+  }
+  const State& tail(BodyId id) const { return *kernel_.graph.tail(id); }
   std::size_t undelivered() const { return kernel_.undelivered_.size(); }
 
  private:

@@ -288,6 +288,25 @@
     (observe! 'collision (lambda (collision) (add-body! #:shape (sphere 1))))
     (test-message "an observer only looks" "inside a callback or observer" (run! #:until 1))))
 
+;; A ball that comes to lie on the ground is kicked off it: one fusion before, one fission after.
+(in-world ()
+  (let ((ball (add-body! #:name "ball" #:shape (sphere 0.5) #:position #(0 0 0.5001)))
+        (fusions '()) (fissions '()))
+    (ground)
+    (set-contact-parameters! #t #t #:restitution 0)
+    (scene #:group-check-rate 240)
+    (observe! 'fusion (lambda (event) (set! fusions (cons event fusions))))
+    (observe! 'fission (lambda (event) (set! fissions (cons event fissions))))
+    (add-callback! ball (lambda (time view) (set! (velocity view) #(0 0 3)) #f) #:start 0.25)
+    (run! #:until 0.5)
+    (define (bodies-of event) (sort (map body-name (collision-bodies event)) string<?))
+    (test-equal "a fusion is observed" '(("ball" "ground")) (map bodies-of fusions))
+    (test-equal "a fission is observed" '(("ball" "ground")) (map bodies-of fissions))
+    (test-assert "before and after the kick"
+      (< (collision-time (car fusions)) 0.25 (collision-time (car fissions)) 0.3))
+    (test-equal "neither has an impulse" '(0.0 0.0)
+      (map collision-impulse (append fusions fissions)))))
+
 ;; ---- no callbacks, no calls ----
 
 (in-world ()

@@ -88,6 +88,29 @@
             (= (string->number (match:substring m 2)) (* -9.81 0.25))))
       (_ #f))))
 
+;; ---- contact groups ----
+
+(write-file "kick.scm"
+            "(use-modules (timewarp))"
+            "(scene #:duration 0.5 #:group-check-rate 240)"
+            "(add-body! #:name \"floor\" #:shape (half-space #(0 0 1) 0) #:fixed? #t)"
+            "(define ball (add-body! #:name \"ball\" #:shape (sphere 0.1) #:position #(0 0 0.1001)))"
+            "(set-contact-parameters! #t #t #:restitution 0)"
+            "(add-callback! ball (lambda (time view) (set! (velocity view) #(0 0 3)) #f) #:start 0.25)")
+
+(let ((result (run "kick.scm" "--events=kick.csv" "--stats=rate-240.json")))
+  (test-equal "fusion and fission: status 0" 0 (run-status result))
+  (test-equal "--events lists fusions and fissions"
+    '(("fusion" "floor" "ball") ("fission" "floor" "ball"))
+    (map (lambda (row) (list-head (cdr (string-split row #\,)) 3))
+         (cdr (lines-of (read-file "kick.csv"))))))
+
+(define (group-checks file)
+  (string->number (match:substring (string-match "\"group_checks\": *([0-9]+)" (read-file file)) 1)))
+(run "kick.scm" "--group-check-rate=4000" "--stats=rate-4000.json")
+(test-assert "--group-check-rate overrides the scene's #:group-check-rate"
+  (> (group-checks "rate-4000.json") (* 2 (group-checks "rate-240.json"))))
+
 (define (refused pattern . args)
   (let ((result (apply run args)))
     (test-equal (format #f "~a: status 2" args) 2 (run-status result))

@@ -47,6 +47,24 @@ TEST(GroupArc, extending_in_pieces_gives_the_same_bits) {
   }
 }
 
+// ½ kt xi^2 up to the cone; what lies beyond is lost in sliding.
+TEST(GroupArc, stretch_beyond_the_cone_has_no_more_energy) {
+  GroupStart start = stack(1, 0.5, 0.4);
+  start.members[0].x.z() -= 1e-4;
+  GroupContact& c = start.contacts[0];
+  const auto energy = [&](double stretch) {
+    c.stretch = Vec3(stretch, 0, 0);
+    return GroupArc(start).elastic_energy(start.time);
+  };
+  const double kt = c.share * c.law.kt;
+  const double cone = c.law.mu * GroupArc(start).contact_force(0, start.time).normal_force / kt;
+  ASSERT_GT(cone, 0);
+  const double none = energy(0), most = 0.5 * kt * cone * cone;
+  EXPECT_NEAR(energy(0.5 * cone), none + 0.25 * most, 1e-9 * most);
+  EXPECT_NEAR(energy(cone), none + most, 1e-9 * most);
+  EXPECT_NEAR(energy(100 * cone), none + most, 1e-9 * most);
+}
+
 TEST(GroupArc, other_arcs_in_between_change_nothing) {
   const GroupStart start = falling_stack(9), other = falling_stack(2);
   GroupArc alone(start), disturbed(start), disturbing(other);

@@ -1,0 +1,128 @@
+// Heaps, towers, platforms and tiles under every schedule: contact groups roll back, too.
+//
+// Head starts are short beside those of gases: bodies in contact know one another's arcs for a few
+// hundredths of a second, so longer ones only add events.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "determinism/compare-schedules.h"
+#include "support/heap-scenes.h"
+
+namespace tw::test {
+namespace {
+
+// Head starts from 0.01 to 0.5 s, of bodies, of events, or of both.
+Schedule short_adversary(std::uint64_t seed) {
+  Schedule schedule = adversary_schedule(seed);
+  schedule.adversary->head_start = 0.01 * std::pow(50, static_cast<double>(seed % 7) / 6);
+  return schedule;
+}
+
+std::vector<Schedule> short_adversaries(int seeds) {
+  std::vector<Schedule> schedules;
+  for (int seed = 0; seed < seeds; ++seed)
+    schedules.push_back(short_adversary(static_cast<std::uint64_t>(seed)));
+  return schedules;
+}
+
+std::vector<Scene> scenes() {
+  return {heap_scene(long_tests() ? 20 : 12, long_tests() ? 2 : 1.2), tower_scene(4, 1),
+          platform_scene(0.8), tiles_scene(0.8)};
+}
+
+// Many rollbacks, one history.
+void expect_same_under_adversaries(const Scene& scene, int seeds) {
+  const Tally tally = expect_one_history(scene, short_adversaries(long_tests() ? 50 : seeds), 5);
+  EXPECT_GT(tally.rollbacks, 2 * tally.runs) << scene.name << ": the adversaries did nothing";
+}
+
+TEST(Heaps, heap_of_boxes_balls_and_rocks_under_adversaries) {
+  expect_same_under_adversaries(scenes()[0], 50);
+}
+
+TEST(Heaps, tower_hit_by_a_ball_under_adversaries) {
+  expect_same_under_adversaries(scenes()[1], 100);
+}
+
+TEST(Heaps, platform_under_adversaries) {
+  expect_same_under_adversaries(scenes()[2], 100);
+}
+
+TEST(Heaps, tiles_under_adversaries) {
+  expect_same_under_adversaries(scenes()[3], 100);
+}
+
+// GVT intervals, windows, pieces, frames, observers, with and without an adversary.
+TEST(Heaps, settings_of_the_run_have_no_influence) {
+  std::vector<Schedule> schedules(6);
+  for (Schedule& s : schedules) s.observe = true;
+  schedules[0].gvt_interval = 1;
+  schedules[1].gvt_interval = 5000;
+  schedules[2].window_cells = 0.1;
+  schedules[3].window_cells = 3;
+  schedules[4].pieces = 23;
+  schedules[5].fps = 100;
+  for (std::size_t i = 0; i < 6; ++i) {
+    schedules.push_back(schedules[i]);
+    schedules.back().adversary = short_adversary(i + 3).adversary;
+  }
+  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+}
+
+TEST(Heaps, validators_find_nothing_and_have_no_influence) {
+  std::vector<Schedule> schedules = short_adversaries(long_tests() ? 20 : 3);
+  schedules.insert(schedules.begin(), Schedule());
+  for (Schedule& s : schedules) s.check = true;
+  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+}
+
+TEST(Heaps, undoing_and_redoing_every_discontinuity_has_no_influence) {
+  std::vector<Schedule> schedules = short_adversaries(long_tests() ? 20 : 3);
+  schedules.insert(schedules.begin(), Schedule());
+  for (Schedule& s : schedules) s.undo_redo = true;
+  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+}
+
+TEST(Heaps, single_steps_and_slices_have_no_influence) {
+  for (const Scene& scene : scenes()) {
+    const Outcome expected = run(scene, Schedule());
+    World world;
+    apply(world, short_adversary(4));
+    scene.fill(world);
+    for (int i = 0; i < 500 && world.step(scene.duration); ++i) continue;
+    while (world.advance(scene.duration, 0) == RunStatus::slice_over) continue;
+    EXPECT_EQ(world.history_hash(), expected.hash) << scene.name;
+  }
+}
+
+// Fusions and fissions reach their observers in the same order, each once.
+TEST(Heaps, fusions_and_fissions_are_told_alike_under_every_schedule) {
+  const auto told = [](const Scene& scene, const Schedule& schedule) {
+    World world;
+    apply(world, schedule);
+    scene.fill(world);
+    std::vector<std::tuple<int, double, std::uint64_t, double>> rows;
+    for (const CollisionKind kind :
+         {CollisionKind::collision, CollisionKind::fusion, CollisionKind::fission})
+      world.add_collision_observer(
+          [&](const Collision& c) {
+            rows.push_back({static_cast<int>(c.kind), c.time, pair_id(c.body1, c.body2), c.speed});
+          },
+          kind);
+    world.advance(scene.duration);
+    return rows;
+  };
+  for (const Scene& scene : scenes()) {
+    const auto expected = told(scene, Schedule());
+    EXPECT_GT(expected.size(), 10u);
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      Schedule schedule = short_adversary(seed);
+      schedule.gvt_interval = seed % 2 ? 3000 : 1;
+      EXPECT_EQ(told(scene, schedule), expected) << scene.name << ": " << describe(schedule);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tw::test
