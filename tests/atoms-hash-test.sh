@@ -1,68 +1,12 @@
 #!/bin/sh
-# The schedule never changes the answer: one hash of scenes/atoms.scm over everything that may not
-# matter: output, frame rate, validators, pieces, GVT, windows, undoing, and adversary schedulers.
+# The schedule never changes the answer: one hash of scenes/atoms.scm.
 #
 # 2 s of atoms and 4 adversary seeds of two kinds; `make check-long`: 10 s and 50 seeds.  The divider moves
 # within the run.
 # SPDX-License-Identifier: LGPL-3.0-or-later
-if [ -n "$TW_LONG_TESTS" ]; then seconds=10 seeds=50; else seconds=2 seeds=4; fi
+if [ -n "$TW_LONG_TESTS" ]; then seconds=10 seeds=50 checked=1; else seconds=2 seeds=4 checked=0.2; fi
 scene=$TW_SRCDIR/scenes/atoms.scm
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-# hash OPTION...: the last line of the run's output
-hash_of() {
-  "$TIMEWARP" "$scene" --until="$seconds" -D compress-at=0.5 --hash --quiet --stats="$folder/stats.json" "$@" \
-    >"$folder/out" 2>"$folder/err" || { cat "$folder/err"; return 1; }
-  tail -n 1 "$folder/out"
-}
-
-# same NAME OPTION...: the hash must be that of the plain run
-same() {
-  name=$1
-  shift
-  found=$(hash_of "$@")
-  rollbacks=$(sed -n 's/.*"rollbacks": *\([0-9]*\).*/\1/p' "$folder/stats.json")
-  if [ "$found" = "$plain" ]; then
-    echo "ok   $name (rollbacks: $rollbacks)"
-  else
-    echo "FAIL $name: $found, expected $plain"
-    failures=$((failures + 1))
-  fi
-}
-
-plain=$(hash_of) || exit 1
-[ ${#plain} = 64 ] || { echo "no hash: $plain"; exit 1; }
-echo "     $plain"
-
-for fps in 24 30 1000; do
-  same "poses at $fps fps" --fps=$fps --poses="$folder/poses.csv"
-done
-same "events" --events="$folder/events.csv"
-same "seven pieces" --pieces=7
-same "GVT at every event" --gvt-interval=1
-same "GVT every 10,000 events" --gvt-interval=10000
-same "small windows" --window=0.1
-same "large windows" --window=3
-same "undo and redo" --undo-redo
-if "$TIMEWARP" --version | grep -q '^drawing: OSMesa'; then
-  same "drawn" --frames="$folder/frames" --fps=5 --size=160x90 --quality=draft
-fi
-
-seed=1
-rolled_back=0
-while [ $seed -le "$seeds" ]; do
-  same "adversary $seed, bodies ahead" --adversary=$seed,1
-  rolled_back=$((rolled_back + rollbacks))
-  same "adversary $seed, every event" --adversary=$seed,0.5,every
-  rolled_back=$((rolled_back + rollbacks))
-  seed=$((seed + 1))
-done
-[ $rolled_back -gt 0 ] || { echo "FAIL the adversary never rolled back"; failures=$((failures + 1)); }
-
-# the validators after every event are slow: a shorter run
-seconds=$(awk "BEGIN { print $seconds / 10 }")
-plain=$(hash_of)
-same "validators, $seconds s" --check
-exit $((failures > 0))
+parameters="-D compress-at=0.5"
+ahead=1
+spread=0.5
+. "$TW_SRCDIR/tests/same-hash.sh"
