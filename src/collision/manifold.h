@@ -64,7 +64,7 @@ struct SeamNeighbour {
 // only where the face is denied all around the point too (an inner wall, not the bottom of a valley).
 //
 // `size` (m) is that of the bodies in contact: points within 1e-5 of it are the same point, and normals
-// within `angle` (rad) the same normal.  Source of the problem: doc/numerics.md, "Internal edges".
+// within `angle` (rad) the same normal.  Source of the problem: doc/numerics.md, "Contact points".
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
                  const std::vector<SeamNeighbour>& neighbours, double size, double angle = 1e-4);
 
