@@ -439,8 +439,6 @@ void Kernel::pursue(std::uint32_t index) {
         queue.withdraw(pair.event);
         return;
       }
-    }
-    if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
       const double to = std::min(until, piece.end.time);
       if (apart_throughout(pair, piece, to)) {
         if (to == piece.end.time) {

@@ -30,7 +30,7 @@ struct Counters {
   std::uint64_t largest_group_bodies = 0, largest_group_contacts = 0;
 
   // committed
-  std::uint64_t fusions = 0, fissions = 0, contact_changes = 0, rests = 0;
+  std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
   double kinematic_work = 0;          // J, by kinematic bodies on dynamic ones
   double max_penetration = 0;         // m, deepest overlap seen at an impact

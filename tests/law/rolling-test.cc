@@ -44,7 +44,7 @@ TEST(Rolling, ball_slips_down_a_steep_slope) {
   const double spin = 5.0 / 2 * mu * g * std::cos(angle) / 0.2;
   const Descent run = run_down(make_sphere(0.2), 0.2, angle, mu, 2);
   EXPECT_NEAR(run.speed, 2 * a, 1e-4 * 2 * a);
-  EXPECT_NEAR(run.spin, 2 * spin, 1e-3 * 2 * spin);
+  EXPECT_NEAR(run.spin, 2 * spin, 1e-4 * 2 * spin);
 }
 
 TEST(Rolling, cylinder_rolls_down_a_slope) {
