@@ -191,7 +191,7 @@ ContactForce GroupArc::contact_force(int contact, double time) {
   return force;
 }
 
-double GroupArc::elastic_energy(double time) {
+double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) {
   extend(time);
   const Data& d = *data_;
   const double at = d.at(time);
@@ -202,7 +202,9 @@ double GroupArc::elastic_energy(double time) {
   for (int p = 0; p < d.system.packs(); ++p) {
     const ContactPack& pack = d.system.contact_packs().packs[static_cast<std::size_t>(p)];
     evaluate_pack(pack, s.bodies.data(), d.record.stretch(p, at), d.record.side(p, at), state);
-    energy += sum(pack_energy(pack, state));
+    const Lanes each = pack_energy(pack, state);
+    for (int i = 0; i < pack.count; ++i)
+      if (counted[static_cast<std::size_t>(pack.contact[i])]) energy += each[i];
   }
   return energy;
 }

@@ -143,8 +143,11 @@ class GroupArc {
   double step_end(double time);
   Vec3 stretch(int contact, double time);  // a's frame
   ContactForce contact_force(int contact, double time);
-  // Of normal springs, and of stretches as far as friction holds them, J.
-  double elastic_energy(double time);
+  // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which contacts.
+  double elastic_energy(double time, const std::vector<bool>& counted);
+  double elastic_energy(double time) {
+    return elastic_energy(time, std::vector<bool>(start().contacts.size(), true));
+  }
   // The step that the controller would take after the arc's end, s: for the next arc's first_step.
   double next_step() const;
   const GroupCounts& counts() const;

@@ -36,7 +36,7 @@ Aabb group_bounds(const Body& body, const StateData& arc, double from, double to
 
 }  // namespace
 
-double natural_end(const StateData& arc) { return arc.group ? arc.group->end() : never; }
+double natural_end(const StateData& arc) { return arc.group ? arc.group->end(arc.member) : never; }
 
 const FreeRotation& rotation_of(const Body& body, const StateData& arc) {
   if (!arc.rotation_ready) {

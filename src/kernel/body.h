@@ -41,7 +41,7 @@ struct Body {
   std::vector<std::uint32_t> pairs;      // active pair records
   std::vector<std::uint32_t> callbacks;  // that receive its states
   EventQueue::Handle advance = EventQueue::none;
-  EventQueue::Handle group_check = EventQueue::none;  // of the group that this body leads
+  EventQueue::Handle group_check = EventQueue::none;  // of the group that this body is in
   double head_start = 0;           // adversary scheduler
   bool placed = false;             // has claimed: has a box in the hash unless it is unbounded
 

@@ -70,19 +70,14 @@ void Kernel::process_callback(std::uint32_t number) {
       schedule_callback(number);
       return;
     }
-  for (const BodyId target : callback.def.targets)
-    for (const BodyId id : fellows(target, key)) {
-      Body& body = *bodies[id];
-      while (!body.fixed() && body.claim.time < key.time && !graph.tail(id)->error) {
-        const State& tail = *graph.tail(id);
-        if (body.claim.time >= natural_end(tail)) {
-          // first the group check that stands before the call
-          process_group_check(tail.group->leader());
-          return;
-        }
-        claim_window(body);
-      }
-    }
+  std::vector<BodyId> hit;
+  for (const BodyId id : callback.def.targets) {
+    if (!await(id, key)) return;
+    if (bodies[id]->dynamic()) hit.push_back(id);
+  }
+  std::sort(hit.begin(), hit.end());
+  hit.erase(std::unique(hit.begin(), hit.end()), hit.end());
+  if (!await(region_of(key, hit, false), key)) return;
   if (!(callback.next == key)) return;
 
   // drafts that carry the old arcs, and views of them
@@ -125,8 +120,8 @@ void Kernel::process_callback(std::uint32_t number) {
   for (Draft& draft : drafts) draft.data.changed = any_changed;
   if (drafts.front().data.error)
     stop_fellows(key, drafts);
-  else
-    regroup_changed(key, drafts);
+  else if (touches_groups(key, drafts) && !regroup(key, drafts, {}))
+    return;
 
   // the next call, then the states (a rollback through them rewinds it again)
   callback.next = callback.def.period

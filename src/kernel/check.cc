@@ -179,13 +179,8 @@ Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
 }
 
 bool Kernel::linked(const Piece& piece) const {
-  const Group* a = piece.a->group.get();
-  const Group* b = piece.b->group.get();
-  if (!a && !b) return false;
-  if (a && b) return a == b && a->link(pair_id(piece.a->process, piece.b->process));
-  const State* other = a ? piece.b : piece.a;
-  if (bodies[other->process]->dynamic()) return false;
-  return (a ? a : b)->link(pair_id(piece.a->process, piece.b->process));
+  const Group* judge = governing(*piece.a, *piece.b);
+  return judge && judge->link(pair_id(piece.a->process, piece.b->process));
 }
 
 // Whether the two are in contact from `from` on as far as is known.

@@ -62,7 +62,7 @@ void Kernel::make_ready(Body& body, const Key& key) {
 double Kernel::window_end(const Body& body) const {
   const State& tail = *graph.tail(body.id());
   const double start = body.claim.time;
-  if (tail.group) return tail.group->end();
+  if (tail.group) return natural_end(tail);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, body.lonely_claims - patience));
@@ -104,7 +104,7 @@ void Kernel::claim_window(Body& body) {
   ++counters.claims;
   if (const auto& group = graph.tail(body.id())->group; group && !group->end_tested) {
     test_group_end(*group);
-    schedule_group_check(*bodies[group->leader()]);
+    schedule_group_checks(*group);
   }
   const Key before = body.claim;
   if (graph.tail(body.id())->error || body.claim.time >= natural_end(*graph.tail(body.id()))) {

@@ -22,6 +22,12 @@ namespace {
 // share of its size.
 constexpr double unseen_depth = 0.5, default_depth = 2.5e-4;
 
+// A pair whose contacts do not tell the truth beyond this time, s.
+struct EarlyEnd {
+  double time = 0;
+  std::uint64_t pair = 0;
+};
+
 // A pair of bodies along the arc.
 struct Pairing {
   Group& group;
@@ -33,11 +39,16 @@ struct Pairing {
 
   Frame frame(const Body& body, double when) const {
     const auto at = std::lower_bound(group.members.begin(), group.members.end(), body.id());
-    if (at == group.members.end() || *at != body.id()) return Frame(body.motion->pose(when));
+    if (at == group.members.end() || *at != body.id()) return Frame(outside_motion(body).pose(when));
     Vec3 x;
     Quat q;
     group.arc->pose(static_cast<int>(at - group.members.begin()), when, x, q);
     return Frame(q.toRotationMatrix(), x);
+  }
+  const Motion& outside_motion(const Body& body) const {
+    if (!body.dynamic()) return *body.motion;
+    const auto at = std::find(group.outside.begin(), group.outside.end(), body.id());
+    return *group.arc->start().outside[static_cast<std::size_t>(at - group.outside.begin())];
   }
   // The depth of the deepest point, m, as a negative gap; 0: none.  `at_seams`: ghosts left out.
   double deepest(double when, bool at_seams) const {
@@ -64,8 +75,14 @@ struct Pairing {
     double sum = 0;
     for (const Body* body : {&a, &b}) {
       const auto at = std::lower_bound(group.members.begin(), group.members.end(), body->id());
-      if (at == group.members.end() || *at != body->id()) continue;
       const double from = group.arc->start().time, to = group.next_check;
+      if (at == group.members.end() || *at != body->id()) {
+        if (!body->dynamic() || link.count == 0) continue;
+        const Motion& motion = outside_motion(*body);
+        sum += motion.path_bounds(from, to).size().norm() +
+               motion.angular_speed_bound(from, to) * (to - from) * body->radius;
+        continue;
+      }
       const GroupBounds bounds =
           group.arc->bounds(static_cast<int>(at - group.members.begin()), from, to);
       sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
@@ -101,32 +118,54 @@ void Kernel::test_group_end(Group& group) {
   if (group.end_tested || group.at_rest) return;
   group.end_tested = true;
   group.arc->extend(group.next_check);
-  double end = group.next_check;
+  std::vector<EarlyEnd> early_ends;
   for (const GroupLink& link : group.links) {
-    const Body& a = *bodies[link.pair >> 32];
-    const Body& b = *bodies[link.pair & 0xffffffffu];
-    Pairing pair{group, link, a, b, {}, {}, manifold_points_};
-    const double allowed = unseen_depth * default_depth * std::min(a.least_width, b.least_width);
-    if (pair.travel() <= allowed) continue;
-    double known = never;
-    for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
-      const double last = group.arc->contact_force(static_cast<int>(c), group.next_check).gap;
-      known = std::min(known, last);
-      end = std::min(end, fast_touch(*group.arc, static_cast<int>(c), group.gaps[c], last,
-                                     fusion_speed(pair.a, pair.b)));
-    }
-    if (!(std::min(known, 0.0) - pair.deepest(group.next_check, false) > allowed)) continue;
-    if (!a.dynamic() || !b.dynamic()) {
-      find_fixed_around(a.dynamic() ? a : b);
-      pair.around_a = around(a);
-      pair.around_b = around(b);
-    }
-    end = std::min(end, unseen_touch(pair, allowed));
+    const double end = early_end(group, link);
+    if (end < group.next_check) early_ends.push_back({end, link.pair});
   }
+  if (early_ends.empty()) return;
+  ++counters.early_ends;
+
   // no shorter than the spacing of checks on the grid of collisions
-  end = std::max(end, std::min(group.next_check, group.arc->start().time + check_grid));
-  if (end < group.next_check) ++counters.early_ends;
-  group.next_check = end;
+  const double least = std::min(group.next_check, group.arc->start().time + check_grid);
+  for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
+  if (group.members.size() < least_divided) {
+    for (const EarlyEnd& early : early_ends)
+      group.next_check = std::min(group.next_check, early.time);
+    return;
+  }
+  group.ends.assign(group.members.size(), group.next_check);
+  for (const EarlyEnd& early : early_ends)
+    for (const std::uint64_t side : {early.pair >> 32, early.pair & 0xffffffffu}) {
+      const auto at = std::lower_bound(group.members.begin(), group.members.end(), side);
+      if (at == group.members.end() || *at != side) continue;
+      double& end = group.ends[static_cast<std::size_t>(at - group.members.begin())];
+      end = std::min(end, early.time);
+    }
+}
+
+// When the contacts of a link stop telling the truth; the next check if they do not.
+double Kernel::early_end(Group& group, const GroupLink& link) {
+  double end = group.next_check;
+  const Body& a = *bodies[link.pair >> 32];
+  const Body& b = *bodies[link.pair & 0xffffffffu];
+  Pairing pair{group, link, a, b, {}, {}, manifold_points_};
+  const double allowed = unseen_depth * default_depth * std::min(a.least_width, b.least_width);
+  if (pair.travel() <= allowed) return end;
+  double known = never;
+  for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
+    const double last = group.arc->contact_force(static_cast<int>(c), group.next_check).gap;
+    known = std::min(known, last);
+    end = std::min(end, fast_touch(*group.arc, static_cast<int>(c), group.gaps[c], last,
+                                   fusion_speed(pair.a, pair.b)));
+  }
+  if (!(std::min(known, 0.0) - pair.deepest(group.next_check, false) > allowed)) return end;
+  if (a.fixed() || b.fixed()) {
+    find_fixed_around(a.dynamic() ? a : b);
+    pair.around_a = around(a);
+    pair.around_b = around(b);
+  }
+  return std::min(end, unseen_touch(pair, allowed));
 }
 
 }  // namespace tw

@@ -14,8 +14,8 @@
 
 namespace tw {
 
-// What an event is for; `subject` numbers a body (of a group check: the group's leader), a pair record
-// or a callback.
+// What an event is for; `subject` numbers a body (of a group check: a member), a pair record or a
+// callback.
 enum class EventKind : std::uint8_t { advance, pair, callback, group_check };
 
 struct Event {

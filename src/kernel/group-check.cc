@@ -44,22 +44,28 @@ void tell_fission(Regroup& work, const Group& group, const GroupLink& link) {
 
 }  // namespace
 
-Key Kernel::group_check_key(const Group& group) const {
-  const bool starts_now = group.key.time == group.next_check;
-  return {group.next_check, 1 + (starts_now ? group.key.microstep : 0), KeyKind::group_check,
-          group.leader()};
+// Just before what happens to a group at `when`.
+Key Kernel::group_check_key(const Group& group, double when) const {
+  const bool starts_now = group.key.time == when;
+  return {when, 1 + (starts_now ? group.key.microstep : 0), KeyKind::group_check, 0};
 }
 
-// The event of the group that the body leads, if it does.
+// Every member of a moving group waits for the end of its arc; who comes first acts for all.
 void Kernel::schedule_group_check(Body& body) {
   const State* tail = graph.tail(body.id());
-  const Group* group = tail && !tail->error ? tail->group.get() : nullptr;
-  if (!group || group->leader() != body.id() || group->next_check == never) {
+  const double end = tail && !tail->error ? natural_end(*tail) : never;
+  if (end == never) {
     queue.withdraw(body.group_check);
     return;
   }
-  queue.schedule(body.group_check, make_event(group_check_key(*group), EventKind::group_check,
-                                              body.id(), body.head_start));
+  Key key = group_check_key(*tail->group, end);
+  key.id = body.id();
+  queue.schedule(body.group_check, make_event(key, EventKind::group_check, body.id(), body.head_start));
+}
+
+void Kernel::schedule_group_checks(const Group& group) {
+  for (const BodyId id : group.members)
+    if (graph.tail(id)->group.get() == &group) schedule_group_check(*bodies[id]);
 }
 
 double Kernel::check_interval(const Regroup& work, const std::vector<BodyId>& members) const {
@@ -99,8 +105,12 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
     const bool smooth = before.arc->start().contacts[c].law.law == FrictionLaw::smooth;
     if (f.normal_force > 0 && f.slipping && !smooth) quiet = false;
   }
-  for (const BodyId other : before.outside)
-    if (!bodies[other]->fixed()) quiet = false;
+  for (const BodyId other : before.outside) {
+    const Draft* border = bodies[other]->dynamic() ? work.draft_of(other) : nullptr;
+    const bool still = bodies[other]->fixed() ||
+                       (border && !work.changes(border) && border->data.group && border->data.group->at_rest);
+    if (!still) quiet = false;
+  }
   if (!quiet) return false;
 
   // gets faster: not at rest, but perhaps from here on
@@ -119,58 +129,94 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
 void Kernel::note_changes(Regroup& work) const {
   bool changed = false;
   std::size_t lasting = 0;
-  for (const auto& group : work.old)
-    for (const GroupLink& link : group->links) {
-      const auto at = std::lower_bound(
-          work.links.begin(), work.links.end(), link.pair,
-          [](const LooseLink& l, std::uint64_t pair) { return l.pair < pair; });
-      const bool stands = at != work.links.end() && at->pair == link.pair;
-      if (stands) {
-        ++lasting;
-        changed = changed || at->count != link.count;
-      } else if (link.touched && work.tally.fissions > 0 && observed(CollisionKind::fission)) {
-        tell_fission(work, *group, link);
-      }
-      changed = changed || !stands;
+  for (const OldLink& old : work.before) {
+    const auto at = std::lower_bound(
+        work.links.begin(), work.links.end(), old.pair,
+        [](const LooseLink& l, std::uint64_t pair) { return l.pair < pair; });
+    const bool stands = at != work.links.end() && at->pair == old.pair;
+    if (stands) {
+      ++lasting;
+      changed = changed || at->count != old.link->count;
+    } else if (old.link->touched && work.tally.fissions > 0 && observed(CollisionKind::fission)) {
+      tell_fission(work, *old.group, *old.link);
     }
+    changed = changed || !stands;
+  }
   changed = changed || lasting != work.links.size();
   work.tally.contact_changes = changed;
 }
 
-void Kernel::process_group_check(BodyId leader) {
-  const State& tail = *graph.tail(leader);
-  TW_ASSERT(tail.group && tail.group->leader() == leader, "group check of nobody");
+// All that hangs together with the group and is checked at the same time: the parts of a group that blows
+// have divided.
+std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Key& key) const {
+  std::vector<std::shared_ptr<Group>> groups{group};
+  std::vector<BodyId> all;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const std::vector<BodyId> there = remaining(*groups[i], key);
+    all.insert(all.end(), there.begin(), there.end());
+    for (const GroupLink& link : groups[i]->links)
+      for (const std::uint64_t side : {link.pair >> 32, link.pair & 0xffffffffu}) {
+        const auto id = static_cast<BodyId>(side);
+        if (!bodies[id]->dynamic()) continue;
+        const State& state = *graph.last_before(id, key);
+        if (!state.group || state.error || state.group->next_check != group->next_check) continue;
+        if (std::find(groups.begin(), groups.end(), state.group) == groups.end())
+          groups.push_back(state.group);
+      }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+// Those whose contacts end at `when`, before the check of their group.
+std::vector<BodyId> Kernel::early_bodies(const Group& group, double when, const Key& key) const {
+  std::vector<BodyId> all;
+  for (const BodyId id : remaining(group, key)) {
+    const auto member = std::lower_bound(group.members.begin(), group.members.end(), id) - group.members.begin();
+    if (group.end(static_cast<std::uint32_t>(member)) == when) all.push_back(id);
+  }
+  return all;
+}
+
+void Kernel::process_group_check(BodyId id) {
+  const State& tail = *graph.tail(id);
+  TW_ASSERT(tail.group && !tail.group->at_rest, "group check of nobody");
   const std::shared_ptr<Group> group = tail.group;
   if (!group->end_tested) {
     test_group_end(*group);
-    schedule_group_check(*bodies[leader]);
+    schedule_group_checks(*group);
     return;
   }
-  const Key key = group_check_key(*group);
+  const double when = natural_end(tail);
+  Key key = group_check_key(*group, when);
   ++counters.group_checks;
 
-  // only after the members' claims, and those of kinematic bodies, have reached its time
+  // only after the claims of kinematic bodies, and those of all that take part, have reached its time
   bool claimed = false;
-  for (const BodyId id : kinematic)
-    for (; bodies[id]->claim.time < key.time; claimed = true) claim_window(*bodies[id]);
-  for (const BodyId id : group->members)
-    for (; bodies[id]->claim.time < key.time; claimed = true) claim_window(*bodies[id]);
-  // these may have found something that comes first
+  for (const BodyId mover : kinematic)
+    for (; bodies[mover]->claim.time < key.time; claimed = true) claim_window(*bodies[mover]);
   if (claimed) return;
+  const bool early = when < group->next_check;
+  const std::vector<BodyId> concerned = early ? early_bodies(*group, when, key) : family(group, key);
+  bool all_known = true;
+  for (const BodyId member : concerned) all_known = await(member, key) && all_known;
+  if (!all_known) return;
 
+  key.id = concerned.front();
   std::vector<Draft> drafts;
-  drafts.reserve(group->members.size());
-  group->arc->extend(key.time);
-  for (const BodyId id : group->members) drafts.push_back(draft_for(*bodies[id], key, true));
-  if (!group->arc->failure().empty()) {
-    const UserError error(group_failure(*group), bodies[leader]->info.place);
+  drafts.reserve(concerned.size());
+  const Group* failed = nullptr;
+  for (const BodyId member : concerned) {
+    const Group& theirs = *graph.last_before(member, key)->group;
+    theirs.arc->extend(key.time);
+    if (!theirs.arc->failure().empty()) failed = &theirs;
+    drafts.push_back(draft_for(*bodies[member], key, true));
+  }
+  if (failed) {
+    const UserError error(group_failure(*failed), bodies[key.id]->info.place);
     for (Draft& draft : drafts) draft.data.error = std::make_exception_ptr(error);
-  } else {
-    Regroup work(key, drafts);
-    collect_old(work);
-    refresh(work, *group, check_interval(work, group->members));
-    pass_on(work);
-    finish(work);
+  } else if (!regroup(key, drafts, {.look = true, .blow = true})) {
+    return;
   }
   enter_discontinuity(key, drafts);
 }

@@ -7,6 +7,10 @@
 // Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs are
 // constant until something touches one of them.
 //
+// Not all members of a group need leave it at once: what a blow does to a heap dies away within a few
+// bodies, so only these get new arcs, in a group of their own.  It meets the others at its border, where
+// they follow the arcs that they have, and joins them again at the check that was due (region.cc).
+//
 // Source: the paper, section 4.4; doc/architecture.md, "Contact groups".
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -41,26 +45,31 @@ struct Group {
   Key key;                         // of the discontinuity that made it
   double birth = 0;                // when this set of members came together, s
   double next_check = never;
-  bool end_tested = false;         // next_check takes what end-test.cc found into account
+  bool end_tested = false;         // next_check and ends are as end-test.cc found them
   bool at_rest = false;
   double quiet_since = never;      // s: slow, and nothing slips; `never`: not so
   double quiet_speed = 0;          // m/s, at that time
   double first_step = 0;           // of the arc, s; 0: chosen
+  double lightest = never, heaviest = 0;  // kg, of all that hung together when it was made
   std::vector<std::uint32_t> members;   // body ids, ascending
-  std::vector<std::uint32_t> outside;   // body ids of arc->start().outside
+  std::vector<std::uint32_t> outside;   // body ids of arc->start().outside: fixed, kinematic, border
+  bool has_border = false;         // some of them are dynamic
   std::vector<GroupLink> links;         // ascending pairs
   std::vector<ContactTag> tags;         // of arc->start().contacts
   std::vector<double> gaps;             // m, of arc->start().contacts, at the start
+  std::vector<double> ends;             // of each member's arc, s; empty: all at next_check
   std::unique_ptr<GroupArc> arc;
 
-  std::uint32_t leader() const { return members.front(); }
+  bool contains(std::uint32_t body) const {
+    return std::binary_search(members.begin(), members.end(), body);
+  }
   const GroupLink* link(std::uint64_t pair) const {
     const auto at = std::lower_bound(links.begin(), links.end(), pair,
                                      [](const GroupLink& l, std::uint64_t p) { return l.pair < p; });
     return at != links.end() && at->pair == pair ? &*at : nullptr;
   }
-  // Where the arcs of its members end by themselves, s.
-  double end() const { return next_check; }
+  // Where the arc of a member ends by itself, s.
+  double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
 };
 
 // What a discontinuity did to groups: statistics.

@@ -283,20 +283,17 @@ void Kernel::process_impact(std::uint32_t index) {
   Body& body_a = *bodies[pairs[index].a];
   Body& body_b = *bodies[pairs[index].b];
 
-  // only after the receivers' claims have reached its time
-  bool all_ready = true;
+  // only after the claims of the receivers, and of those they touch, have reached its time
+  std::vector<BodyId> hit;
   for (const BodyId id : {body_a.id(), body_b.id()})
-    for (const BodyId member : fellows(id, key)) {
-      if (ready(*bodies[member], key)) continue;
-      make_ready(*bodies[member], key);
-      all_ready = false;
-    }
-  if (!all_ready) return;
+    if (bodies[id]->dynamic()) hit.push_back(id);
+  bool all_known = true;
+  for (const BodyId id : {body_a.id(), body_b.id()}) all_known = await(id, key) && all_known;
+  if (!all_known || !await(region_of(key, hit, false), key)) return;
 
   std::vector<Draft> drafts;
   drafts.push_back(draft_for(body_a, key, body_a.dynamic()));
   drafts.push_back(draft_for(body_b, key, body_b.dynamic()));
-  gather(key, drafts);
   std::optional<Collision> collision;
   const bool soft = compute_impact(key, drafts[0], drafts[1], collision);
 
@@ -315,36 +312,11 @@ void Kernel::process_impact(std::uint32_t index) {
     (drafts[0].enters ? drafts[0] : drafts[1]).data.told =
         std::make_shared<const Told>(Told{*collision});
   if (drafts[0].data.error)
-    for (Draft& draft : drafts) draft.data.error = drafts[0].data.error;
-  else
-    regroup_impact(key, drafts, soft);
+    stop_fellows(key, drafts);
+  else if ((soft || drafts[0].data.group || drafts[1].data.group) &&
+           !regroup(key, drafts, {.fusion = soft, .blow = !soft}))
+    return;
   enter_discontinuity(key, drafts);
-}
-
-// The members of the body's group just below the key; itself alone if it is isolated.
-std::vector<BodyId> Kernel::fellows(BodyId id, const Key& key) const {
-  const State* state = graph.last_before(id, key);
-  if (state && state->group) return state->group->members;
-  return {id};
-}
-
-// The groups after an impact of the first two drafts.
-void Kernel::regroup_impact(const Key& key, std::vector<Draft>& drafts, bool soft) {
-  if (!soft && !drafts[0].data.group && !drafts[1].data.group) return;
-  Regroup work(key, drafts);
-  collect_old(work);
-  for (const auto& group : work.old) carry(work, *group);
-  if (soft) {
-    std::vector<BodyId> movers;
-    for (const Draft& draft : drafts)
-      if (draft.body->dynamic()) movers.push_back(draft.body->id());
-    find_fixed_around(drafts[0].body->dynamic() ? *drafts[0].body : *drafts[1].body);
-    link(work, side_of(drafts[0]), side_of(drafts[1]), check_interval(work, movers), nullptr, true);
-    work.tally.fusions = 1;
-  } else {
-    pass_on(work);
-  }
-  finish(work);
 }
 
 }  // namespace tw

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/cpu-clock.h"
 
@@ -128,14 +129,27 @@ ArcPoint Kernel::point_at(BodyId id, double when) const {
 
 double Kernel::total_energy(double when) const {
   double energy = 0;
+  const auto by_key = [](const Group* x, const Group* y) {
+    return x->key < y->key || (x->key == y->key && x->members < y->members);
+  };
+  std::set<const Group*, decltype(by_key)> groups(by_key);
   for (const auto& body : bodies) {
     if (!body->dynamic()) continue;
     const ArcPoint p = point_at(body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
-    // the springs of a group once
     const State* state = state_at(body->id(), when);
-    if (state->group && state->member == 0)
-      energy += state->group->arc->elastic_energy(state->group->at_rest ? state->group->key.time : when);
+    if (state->group) groups.insert(state->group.get());
+  }
+  // the springs of a link in the group that has the say in it
+  for (const Group* group : groups) {
+    std::vector<bool> counted(group->tags.size(), false);
+    for (const GroupLink& link : group->links) {
+      const State* a = state_at(static_cast<BodyId>(link.pair >> 32), when);
+      const State* b = state_at(static_cast<BodyId>(link.pair & 0xffffffffu), when);
+      if (governing(*a, *b) != group) continue;
+      std::fill_n(counted.begin() + link.first, link.count, true);
+    }
+    energy += group->arc->elastic_energy(group->at_rest ? group->key.time : when, counted);
   }
   return energy;
 }

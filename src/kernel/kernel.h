@@ -8,8 +8,8 @@
 // Redraws and observers need no events: they are served at commit (commit.cc).
 //
 // The subject is spread over files by what it does: claim.cc, check.cc, impact.cc, callbacks.cc,
-// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: regroup.cc, linking.cc,
-// group-check.cc, pass-on.cc.
+// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: region.cc, regroup.cc,
+// linking.cc, group-check.cc, end-test.cc, pass-on.cc.
 //
 // Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT is
 // touched; a committed state is never removed.  Under --check also every validator of validate.cc.
@@ -35,6 +35,7 @@
 #include "kernel/event-queue.h"
 #include "kernel/pair.h"
 #include "kernel/policy.h"
+#include "kernel/region.h"
 #include "kernel/regroup.h"
 #include "kernel/side.h"
 #include "kernel/state-graph.h"
@@ -221,11 +222,9 @@ class Kernel {
   void process_impact(std::uint32_t index);
   // True: the impact is soft, and the two stay in contact.
   bool compute_impact(const Key& key, Draft& a, Draft& b, std::optional<Collision>& collision);
-  std::vector<BodyId> fellows(BodyId id, const Key& key) const;
   void find_impact_points(const Draft& a, const Draft& b);
   bool drop_ghosts(const Draft& a, const Draft& b);
   bool is_soft(const Key& key, Draft& a, Draft& b, double fastest) const;
-  void regroup_impact(const Key& key, std::vector<Draft>& drafts, bool soft);
   void run_collision_callbacks(const Collision& collision, Draft& a, Draft& b);
   bool wants_collision(const Body& a, const Body& b) const;
   bool observed(CollisionKind kind) const;
@@ -237,32 +236,48 @@ class Kernel {
   Key first_tick(const CallbackRecord& callback, const Key& key) const;
 
   // ---- regroup.cc ----
-  // Adds drafts of all bodies that are in a group with one of the drafts whose arcs change.
-  void gather(const Key& key, std::vector<Draft>& drafts) const;
   void collect_old(Regroup& work) const;
-  void carry(Regroup& work, const Group& group) const;
+  void carry(Regroup& work, const OldLink& old) const;
   // Cuts the drafts into groups and isolated bodies.
   void finish(Regroup& work);
   std::shared_ptr<Group> make_group(Regroup& work, const std::vector<BodyId>& members);
   void start_arc_of(Group& group, Regroup& work) const;
   void share_out(Regroup& work) const;
   void tell(Regroup& work) const;
-  // After a callback or edit changed drafts: their groups go on from there, contacts and all.
-  void regroup_changed(const Key& key, std::vector<Draft>& drafts);
+  void count_group(const Group& group);
+  std::size_t count_pieces(const Regroup& work, const std::vector<std::uint64_t>& linked) const;
+  void count_fissions(Regroup& work, const std::vector<bool>& held) const;
+
+  // ---- region.cc ----
+  const Group* governing(const State& a, const State& b) const;
+  std::vector<BodyId> remaining(const Group& group, const Key& key) const;
+  template <class Visit>
+  void visit_neighbours(const std::vector<BodyId>& inside, const Key& key, Visit visit) const;
+  Region region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const;
+  void complete(Region& region, const Key& key, bool whole) const;
+  bool await(BodyId id, const Key& key);
+  bool await(const Region& region, const Key& key);
+  double deviation(const Group& group, BodyId id) const;
+  std::vector<BodyId> reached_beyond(const Regroup& work) const;
+  void discard(const Regroup& work);
+  std::vector<Draft> drafts_of(const Region& region, const Key& key,
+                               const std::vector<Draft>& given) const;
+  bool touches_groups(const Key& key, const std::vector<Draft>& drafts) const;
+  bool regroup(const Key& key, std::vector<Draft>& drafts, const Occasion& occasion);
+  void regroup_edited(const Key& key, std::vector<Draft>& drafts);
 
   // ---- linking.cc ----
   // Links the pair if it touches or may touch before the next check; `must`: in any case.
-  bool link(Regroup& work, const Side& a, const Side& b, double interval, const Group* before,
-            bool must);
+  bool link(Regroup& work, const Side& a, const Side& b, double interval, bool must);
   bool wants_link(const Side& a, const Side& b, bool linked_before, double interval,
                   const ContactConstants& law) const;
   ContactConstants contact_law(const Body& a, const Body& b, double lightest, double heaviest) const;
   LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
                              const ContactConstants& law) const;
-  void match_stretches(Regroup& work, const LooseLink& link, const Group& before) const;
+  void match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const;
   bool ghosts(const Side& a, const Side& b);
   void preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const;
-  void refresh(Regroup& work, const Group& before, double interval);
+  void refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at, double interval);
   void find_fixed_around(const Body& mover);
   std::vector<SeamNeighbour> around(const Body& body) const;
   Side side_of(const Draft& draft) const;
@@ -271,9 +286,12 @@ class Kernel {
   double fusion_speed(const Body& a, const Body& b) const;
 
   // ---- group-check.cc ----
-  Key group_check_key(const Group& group) const;
+  Key group_check_key(const Group& group, double when) const;
   void schedule_group_check(Body& body);
-  void process_group_check(BodyId leader);
+  void schedule_group_checks(const Group& group);
+  std::vector<BodyId> family(const std::shared_ptr<Group>& group, const Key& key) const;
+  std::vector<BodyId> early_bodies(const Group& group, double when, const Key& key) const;
+  void process_group_check(BodyId id);
   double check_interval(const Regroup& work, const std::vector<BodyId>& members) const;
   double next_check_time(double birth, double now, double interval) const;
   bool comes_to_rest(Regroup& work, Group& after, const Group& before) const;
@@ -282,9 +300,10 @@ class Kernel {
 
   // ---- end-test.cc ----
   void test_group_end(Group& group);
+  double early_end(Group& group, const GroupLink& link);
 
   // ---- pass-on.cc ----
-  void pass_on(Regroup& work) const;
+  std::vector<BodyId> pass_on(Regroup& work) const;
 
   // ---- rollback.cc ----
   Draft draft_for(const Body& body, const Key& key, bool new_arc) const;

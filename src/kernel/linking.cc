@@ -136,9 +136,9 @@ bool Kernel::wants_link(const Side& a, const Side& b, bool linked_before, double
 }
 
 // Each new contact takes the stretch of the nearest old one; equal features count as half as far.
-void Kernel::match_stretches(Regroup& work, const LooseLink& link, const Group& before) const {
-  const GroupLink* old = before.link(link.pair);
-  if (!old) return;
+void Kernel::match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const {
+  const GroupLink* old = was_linked.link;
+  const Group& before = *was_linked.group;
   GroupArc& arc = *before.arc;
   const double now = before.at_rest ? arc.start().time : work.key.time;
   const auto size_of = [&](std::uint64_t id) { return bodies[id]->least_width; };
@@ -232,8 +232,7 @@ bool Kernel::ghosts(const Side& a, const Side& b) {
   return overlap;
 }
 
-bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, const Group* before,
-                  bool must) {
+bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, bool must) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const double size = std::min(body_a.least_width, body_b.least_width);
@@ -253,15 +252,15 @@ bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, 
                     around(body_b), reach, size, manifold_points_, choice);
   for (ManifoldPoint& p : manifold_points_) flatten(p, p.reference_is_a ? a : b, body_b);
   const std::uint64_t pair = pair_id(body_a.id(), body_b.id());
-  const bool linked_before = before && before->link(pair);
-  if (!must && !wants_link(a, b, linked_before, interval, law) && !ghosts(a, b)) return false;
+  const OldLink* before = work.link_before(pair);
+  if (!must && !wants_link(a, b, before, interval, law) && !ghosts(a, b)) return false;
 
   LooseLink fresh{pair, static_cast<std::uint32_t>(work.contacts.size()),
                   static_cast<std::uint32_t>(manifold_points_.size()), false};
   for (const ManifoldPoint& p : manifold_points_)
     work.contacts.push_back(loose_contact(p, a, b, law));
-  if (linked_before) {
-    fresh.touched = before->link(pair)->touched;
+  if (before) {
+    fresh.touched = before->link->touched;
     match_stretches(work, fresh, *before);
   }
   if (must) preload(work, fresh, a, b);
@@ -297,15 +296,23 @@ std::vector<SeamNeighbour> Kernel::around(const Body& body) const {
   return result;
 }
 
-// All links of the members of one group anew.
-void Kernel::refresh(Regroup& work, const Group& before, double interval) {
-  for (const BodyId id : before.members) {
+// All links of some of the bodies with new arcs, anew; those of the others as they stand.
+void Kernel::refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at, double interval) {
+  const auto looked_at = [&](BodyId id) {
+    return std::binary_search(bodies_looked_at.begin(), bodies_looked_at.end(), id);
+  };
+  for (const BodyId id : bodies_looked_at) {
     const Body& body = *bodies[id];
     if (!body.shape_P) continue;
     candidates_.clear();
     const auto consider = [&](BodyId other) {
       const Body& partner = *bodies[other];
-      if (partner.dynamic() && (other < id || !work.draft_of(other))) return;
+      if (partner.dynamic()) {
+        if (other < id && looked_at(other)) return;
+        // with others new contacts are found by collision checks
+        const Draft* draft = work.draft_of(other);
+        if (!draft || (!work.changes(draft) && !work.link_before(pair_id(id, other)))) return;
+      }
       if (contacts_may_disable_ && !may_collide(body, partner)) return;
       candidates_.push_back(other);
     };
@@ -319,9 +326,13 @@ void Kernel::refresh(Regroup& work, const Group& before, double interval) {
       const Draft* draft = work.draft_of(other);
       const Side theirs = draft ? side_of(*draft) : outside_side(*bodies[other], work.key.time);
       const bool straight = id < other;
-      link(work, straight ? mine : theirs, straight ? theirs : mine, interval, &before, false);
+      link(work, straight ? mine : theirs, straight ? theirs : mine, interval, false);
     }
   }
+  for (const OldLink& old : work.before)
+    if (!looked_at(static_cast<BodyId>(old.pair >> 32)) &&
+        !looked_at(static_cast<BodyId>(old.pair & 0xffffffffu)))
+      carry(work, old);
 }
 
 }  // namespace tw

@@ -47,7 +47,7 @@ struct Mover {
     frame = Frame(point.q.toRotationMatrix(), point.x);
     motion.pose_rates(member, when, point.v, point.w);
     const double until = std::max(when, motion.step_end(when));
-    if (until < arc.group->end()) horizon = until;
+    if (until < arc.group->end(arc.member)) horizon = until;
     const GroupBounds bounds = motion.bounds(member, when, until);
     turn_bound = bounds.turn;
     bend = bounds.turn_change + bounds.turn * bounds.turn;

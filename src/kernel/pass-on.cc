@@ -20,7 +20,9 @@ constexpr double touching = 1e-3;
 
 }  // namespace
 
-void Kernel::pass_on(Regroup& work) const {
+// Bodies at the border that an impulse would reach; then nothing is as it should be.
+std::vector<BodyId> Kernel::pass_on(Regroup& work) const {
+  std::vector<BodyId> at_border;
   // the bodies at the links: drafts, and outside ones at this instant
   std::map<BodyId, Resolved> resolved;
   std::deque<ArcPoint> outside_points;
@@ -29,7 +31,9 @@ void Kernel::pass_on(Regroup& work) const {
     const Draft* draft = work.draft_of(id);
     if (!draft) outside_points.push_back(outside_side(*bodies[id], work.key.time).point);
     const ArcPoint& point = draft ? draft->point : outside_points.back();
-    return resolved.try_emplace(id, *bodies[id], point).first->second;
+    Resolved& body = resolved.try_emplace(id, *bodies[id], point).first->second;
+    if (!work.changes(draft)) body.hold();
+    return body;
   };
   const auto parting = [&](const LooseContact& c) {
     return (body_at(c.tag.other).velocity_at(c.point) - body_at(c.tag.reference).velocity_at(c.point))
@@ -55,6 +59,9 @@ void Kernel::pass_on(Regroup& work) const {
     const Vec3 impulse =
         impact_impulse(reference.compliance(worst->point) + other.compliance(worst->point),
                        worst->normal, u, 0, worst->contact.law.mu);
+    for (const BodyId id : {worst->tag.reference, worst->tag.other})
+      if (bodies[id]->dynamic() && !work.changes(work.draft_of(id))) at_border.push_back(id);
+    if (!at_border.empty()) return at_border;
     reference.apply(-impulse, worst->point);
     other.apply(impulse, worst->point);
   }
@@ -73,6 +80,7 @@ void Kernel::pass_on(Regroup& work) const {
     }
     return fast && !touches;
   });
+  return at_border;
 }
 
 }  // namespace tw

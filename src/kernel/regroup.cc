@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernel/group-motion.h"
 #include "kernel/kernel.h"
 #include "kernel/tolerances.h"
 
@@ -39,10 +40,6 @@ void stop(Draft& draft) {
   draft.point.v = draft.point.w = draft.data.v = draft.data.L = Vec3::Zero();
 }
 
-bool changes_arc(const Draft& draft, const Key& key) {
-  return draft.body->dynamic() && draft.data.arc_key == key;
-}
-
 }  // namespace
 
 Draft* Regroup::draft_of(BodyId id) const {
@@ -56,63 +53,68 @@ void Regroup::update_index() {
   std::sort(index.begin(), index.end());
 }
 
-void Kernel::gather(const Key& key, std::vector<Draft>& drafts) const {
-  std::vector<BodyId> wanted;
-  for (const Draft& draft : drafts)
-    if (changes_arc(draft, key) && draft.data.group)
-      wanted.insert(wanted.end(), draft.data.group->members.begin(),
-                    draft.data.group->members.end());
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-
-  // those that are there but were only read start a new arc too
-  for (Draft& draft : drafts) {
-    const auto at = std::lower_bound(wanted.begin(), wanted.end(), draft.body->id());
-    if (at == wanted.end() || *at != draft.body->id()) continue;
-    if (draft.data.arc_key != key) start_new_arc(draft, key);
-    wanted.erase(at);
-  }
-  drafts.reserve(drafts.size() + wanted.size());
-  for (const BodyId id : wanted) drafts.push_back(draft_for(*bodies[id], key, true));
+const OldLink* Regroup::link_before(std::uint64_t pair) const {
+  const auto at = std::lower_bound(before.begin(), before.end(), pair,
+                                   [](const OldLink& l, std::uint64_t p) { return l.pair < p; });
+  return at != before.end() && at->pair == pair ? &*at : nullptr;
 }
 
+// The groups that the drafts come from, and the links of those that get new arcs.
 void Kernel::collect_old(Regroup& work) const {
   work.update_index();
+  std::vector<std::shared_ptr<Group>> all;
+  const auto add_once = [](std::vector<std::shared_ptr<Group>>& list, const std::shared_ptr<Group>& group) {
+    if (group && std::find(list.begin(), list.end(), group) == list.end()) list.push_back(group);
+  };
   for (const auto& [id, i] : work.index) {
     const Draft& draft = work.drafts[i];
-    const std::shared_ptr<Group>& group = draft.data.group;
-    if (!changes_arc(draft, work.key) || !group) continue;
-    if (group->leader() == id) work.old.push_back(group);
-  }
-  for (const Draft& draft : work.drafts) {
     if (!draft.body->dynamic()) continue;
+    add_once(all, draft.data.group);
+    if (!work.changes(&draft)) {
+      work.has_border = work.has_border || draft.data.group;
+      continue;
+    }
+    add_once(work.old, draft.data.group);
     work.lightest = std::min(work.lightest, draft.body->mass);
     work.heaviest = std::max(work.heaviest, draft.body->mass);
   }
+  if (work.has_border)
+    for (const auto& group : all) {
+      work.lightest = std::min(work.lightest, group->lightest);
+      work.heaviest = std::max(work.heaviest, group->heaviest);
+    }
+
+  for (const auto& group : all)
+    for (const GroupLink& link : group->links) {
+      const BodyId a = first_of(link.pair), b = second_of(link.pair);
+      if (!work.changes(work.draft_of(a)) && !work.changes(work.draft_of(b))) continue;
+      if (governing(*graph.last_before(a, work.key), *graph.last_before(b, work.key)) == group.get())
+        work.before.push_back({link.pair, group, &link});
+    }
+  std::sort(work.before.begin(), work.before.end(),
+            [](const OldLink& x, const OldLink& y) { return x.pair < y.pair; });
 }
 
-// Links and contacts as they stand, stretches evaluated at the key's time.
-void Kernel::carry(Regroup& work, const Group& group) const {
+// A link and its contacts as they stand, stretches evaluated at the key's time.
+void Kernel::carry(Regroup& work, const OldLink& old) const {
+  const GroupLink& link = *old.link;
+  const Group& group = *old.group;
   GroupArc& arc = *group.arc;
   const double now = group.at_rest ? arc.start().time : work.key.time;
-  for (const GroupLink& link : group.links) {
-    const Draft* a = work.draft_of(first_of(link.pair));
-    const Draft* b = work.draft_of(second_of(link.pair));
-    if ((a && a->placed) || (b && b->placed)) continue;
-    const Body& body_a = *bodies[first_of(link.pair)];
-    const Body& body_b = *bodies[second_of(link.pair)];
-    // between runs somebody may have set them anew
-    const bool renew = work.key.kind == KeyKind::edit;
-    if (renew && !may_collide(body_a, body_b)) continue;
-    work.links.push_back({link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count,
-                          link.touched});
-    for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
-      const int number = static_cast<int>(c);
-      const ContactForce f = arc.contact_force(number, now);
-      LooseContact loose{arc.start().contacts[c], group.tags[c], f.gap, f.normal, f.point};
-      loose.contact.stretch = arc.stretch(number, now);
-      work.contacts.push_back(loose);
-    }
+  const Draft* a = work.draft_of(first_of(link.pair));
+  const Draft* b = work.draft_of(second_of(link.pair));
+  if ((a && a->placed) || (b && b->placed)) return;
+  // between runs somebody may have set them anew
+  const bool renew = work.key.kind == KeyKind::edit;
+  if (renew && !may_collide(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)])) return;
+  work.links.push_back({link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count,
+                        link.touched});
+  for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
+    const int number = static_cast<int>(c);
+    const ContactForce f = arc.contact_force(number, now);
+    LooseContact loose{arc.start().contacts[c], group.tags[c], f.gap, f.normal, f.point};
+    loose.contact.stretch = arc.stretch(number, now);
+    work.contacts.push_back(loose);
   }
 }
 
@@ -156,7 +158,7 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   GroupStart start;
   start.time = work.key.time;
   start.end = group.next_check;
-  double size = never, lightest = never, heaviest = 0;
+  double size = never;
   for (const BodyId id : group.members) {
     const Draft& draft = *work.draft_of(id);
     const Body& body = *draft.body;
@@ -164,8 +166,6 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
                              body.mass * d.acceleration, Vec3::Zero()});
     size = std::min(size, body.least_width);
-    lightest = std::min(lightest, body.mass);
-    heaviest = std::max(heaviest, body.mass);
   }
   start.position_tolerance = group_position_tolerance(options.accuracy, size);
   start.velocity_tolerance = group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
@@ -177,13 +177,15 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     const auto known = std::find(group.outside.begin(), group.outside.end(), id);
     if (known != group.outside.end()) return ~static_cast<int>(known - group.outside.begin());
     group.outside.push_back(id);
-    start.outside.push_back(bodies[id]->motion);
+    const StateData* other = bodies[id]->dynamic() ? &work.draft_of(id)->data : nullptr;
+    start.outside.push_back(other ? make_group_motion(other->group, static_cast<int>(other->member))
+                                  : bodies[id]->motion);
     return ~static_cast<int>(group.outside.size() - 1);
   };
   for (GroupLink& link : group.links) {
     const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
     const ContactConstants law = contact_law(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)],
-                                              lightest, heaviest);
+                                              group.lightest, group.heaviest);
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       LooseContact& loose = work.contacts[c];
       loose.contact.law = law;
@@ -204,19 +206,39 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
   auto group = std::make_shared<Group>();
   group->key = work.key;
   group->members = members;
+  const double now = work.key.time;
+
+  // its links, and how long those at its border know where they go
+  double border_end = never;
+  for (const LooseLink& link : work.links) {
+    const bool has_first = group->contains(first_of(link.pair));
+    if (!has_first && !group->contains(second_of(link.pair))) continue;
+    group->links.push_back({link.pair, link.first, link.count, link.touched});
+    const Draft* other = work.draft_of(has_first ? second_of(link.pair) : first_of(link.pair));
+    if (!other || !other->body->dynamic() || work.changes(other)) continue;
+    group->has_border = true;
+    border_end = std::min(border_end, other->data.group->next_check);
+  }
+  for (const BodyId id : members) {
+    group->lightest = std::min(group->lightest, bodies[id]->mass);
+    group->heaviest = std::max(group->heaviest, bodies[id]->mass);
+  }
+  if (group->has_border) {
+    group->lightest = work.lightest;
+    group->heaviest = work.heaviest;
+  }
+
+  // checks stay on the grid they are on, so that those of neighbours meet
   const auto same = std::find_if(work.old.begin(), work.old.end(),
                                  [&](const auto& old) { return old->members == members; });
   const Group* before = same != work.old.end() ? same->get() : nullptr;
-  const double now = work.key.time;
   group->birth = before ? before->birth : now;
-  for (const LooseLink& link : work.links) {
-    const BodyId id = bodies[first_of(link.pair)]->dynamic() ? first_of(link.pair) : second_of(link.pair);
-    if (std::binary_search(members.begin(), members.end(), id))
-      group->links.push_back({link.pair, link.first, link.count, link.touched});
-  }
+  if (!before && group->has_border)
+    for (const auto& old : work.old)
+      if (!old->at_rest) group->birth = std::min(group->birth, old->birth);
 
   // the check that is due stays due, unless this is it
-  group->next_check = next_check_time(group->birth, now, check_interval(work, members));
+  group->next_check = std::min(border_end, next_check_time(group->birth, now, check_interval(work, members)));
   const bool is_check = work.key.kind == KeyKind::group_check;
   if (before && !is_check && before->next_check >= now)
     group->next_check = std::min(group->next_check, before->next_check);
@@ -229,11 +251,42 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
     }
   }
   start_arc_of(*group, work);
-  ++counters.groups;
-  counters.largest_group_bodies = std::max<std::uint64_t>(counters.largest_group_bodies, members.size());
-  counters.largest_group_contacts =
-      std::max<std::uint64_t>(counters.largest_group_contacts, group->tags.size());
   return group;
+}
+
+// How many pieces the drafts and their links make; what lies beyond the border is one.
+std::size_t Kernel::count_pieces(const Regroup& work, const std::vector<std::uint64_t>& linked) const {
+  const std::size_t rest = work.drafts.size();
+  Components components(rest + 1);
+  const auto place = [&](BodyId id) {
+    const Draft* draft = work.draft_of(id);
+    return work.changes(draft) ? static_cast<std::size_t>(draft - work.drafts.data()) : rest;
+  };
+  std::size_t joints = 0;
+  for (const std::uint64_t pair : linked) {
+    const BodyId a = first_of(pair), b = second_of(pair);
+    if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
+    const std::size_t i = place(a), j = place(b);
+    if (components.root(i) == components.root(j)) continue;
+    components.join(i, j);
+    ++joints;
+  }
+  return rest + 1 - joints;
+}
+
+// Bodies that came apart, and those that left the ground alone.
+void Kernel::count_fissions(Regroup& work, const std::vector<bool>& held) const {
+  std::vector<std::uint64_t> before, after;
+  for (const OldLink& link : work.before) before.push_back(link.pair);
+  for (const LooseLink& link : work.links) after.push_back(link.pair);
+  const std::size_t pieces_before = count_pieces(work, before), pieces = count_pieces(work, after);
+  std::size_t parted = pieces > pieces_before ? pieces - pieces_before : 0;
+  for (std::size_t i = 0; i < work.drafts.size(); ++i) {
+    const Draft& draft = work.drafts[i];
+    if (work.changes(&draft) && !held[i] && draft.data.group && draft.data.group->members.size() == 1)
+      ++parted;
+  }
+  work.tally.fissions = static_cast<std::uint16_t>(parted);
 }
 
 void Kernel::finish(Regroup& work) {
@@ -250,42 +303,32 @@ void Kernel::finish(Regroup& work) {
     const Draft* a = work.draft_of(first_of(link.pair));
     const Draft* b = work.draft_of(second_of(link.pair));
     const auto place = [&](const Draft* d) { return static_cast<std::size_t>(d - work.drafts.data()); };
-    const bool moves_a = a && a->body->dynamic(), moves_b = b && b->body->dynamic();
+    const bool moves_a = work.changes(a), moves_b = work.changes(b);
     if (moves_a) held[place(a)] = true;
     if (moves_b) held[place(b)] = true;
     if (moves_a && moves_b) components.join(place(a), place(b));
   }
+  count_fissions(work, held);
 
   // one group a component, by ascending members
   std::vector<std::vector<BodyId>> groups(count);
-  std::size_t before = work.old.size(), after = 0, freed = 0, lone = 0;
-  for (const auto& [id, i] : work.index) {
-    Draft& draft = work.drafts[i];
-    if (!changes_arc(draft, work.key)) continue;
-    if (held[i]) {
-      groups[components.root(i)].push_back(id);
-      continue;
-    }
-    freed += draft.data.group != nullptr;
-    lone += draft.data.group && draft.data.group->members.size() == 1;
-    draft.data.group.reset();
-    draft.data.member = 0;
-  }
-  for (const auto& members : groups) {
-    if (members.empty()) continue;
-    ++after;
-    const std::shared_ptr<Group> group = make_group(work, members);
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      Draft& draft = *work.draft_of(members[m]);
-      draft.data.group = group;
-      draft.data.member = static_cast<std::uint32_t>(m);
-    }
-  }
-  // a lone body that leaves the ground is a fission too
-  if (after + freed + lone > before && before > 0)
-    work.tally.fissions = static_cast<std::uint16_t>(after + freed + lone - before);
+  for (const auto& [id, i] : work.index)
+    if (held[i]) groups[components.root(i)].push_back(id);
+  std::vector<std::shared_ptr<Group>> made(count);
+  for (std::size_t root = 0; root < count; ++root)
+    if (!groups[root].empty()) work.made.push_back(made[root] = make_group(work, groups[root]));
+
   note_changes(work);
   tell(work);
+  for (std::size_t i = 0; i < count; ++i) {
+    Draft& draft = work.drafts[i];
+    if (!work.changes(&draft)) continue;
+    const std::size_t root = components.root(i);
+    draft.data.group = made[root];
+    const auto& members = groups[root];
+    const auto at = std::lower_bound(members.begin(), members.end(), draft.body->id());
+    draft.data.member = held[i] ? static_cast<std::uint32_t>(at - members.begin()) : 0;
+  }
 }
 
 // On the first state that enters the graph.
@@ -301,16 +344,12 @@ void Kernel::tell(Regroup& work) const {
   }
 }
 
-void Kernel::regroup_changed(const Key& key, std::vector<Draft>& drafts) {
-  const bool any = std::any_of(drafts.begin(), drafts.end(), [&](const Draft& d) {
-    return changes_arc(d, key) && d.data.group;
-  });
-  if (!any) return;
-  gather(key, drafts);
-  Regroup work(key, drafts);
-  collect_old(work);
-  for (const auto& group : work.old) carry(work, *group);
-  finish(work);
+void Kernel::count_group(const Group& group) {
+  ++counters.groups;
+  counters.largest_group_bodies =
+      std::max<std::uint64_t>(counters.largest_group_bodies, group.members.size());
+  counters.largest_group_contacts =
+      std::max<std::uint64_t>(counters.largest_group_contacts, group.tags.size());
 }
 
 }  // namespace tw

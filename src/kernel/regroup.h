@@ -1,9 +1,9 @@
 // Making groups: what a discontinuity leaves of links and contacts, and the groups that follow.
 //
-// A discontinuity that touches groups collects drafts of all their bodies, then the links and contacts
-// that hold from there on (carried along, refreshed or new), and then cuts the drafts into connected
-// components: each is a group, a body without links is isolated.  Kinematic and fixed bodies link
-// nothing together.
+// A discontinuity that touches groups chooses the bodies that get new arcs (region.cc), collects drafts of
+// them and of those at their border, then the links and contacts that hold from there on (carried along,
+// refreshed or new), and then cuts the drafts into connected components: each is a group, a body without
+// links is isolated.  Kinematic and fixed bodies and those at the border link nothing together.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -31,14 +31,32 @@ struct LooseLink {
   bool touched = false;
 };
 
+// A link before the discontinuity, in the group that has the say in it.
+struct OldLink {
+  std::uint64_t pair = 0;
+  std::shared_ptr<Group> group;
+  const GroupLink* link = nullptr;
+};
+
+// What a discontinuity does to the contacts of the bodies it concerns.
+struct Occasion {
+  bool whole = false;            // their fellows all get new arcs too
+  bool fusion = false;           // the first two come to touch
+  bool look = false;             // their contacts are found anew: a group check
+  bool blow = false;             // impulses are passed on
+};
+
 struct Regroup {
   Key key;
-  std::vector<Draft>& drafts;
-  std::vector<std::shared_ptr<Group>> old;  // whose members the drafts are, each once
+  std::vector<Draft>& drafts;    // with new arcs: the bodies concerned; else those at the border
+  std::vector<std::shared_ptr<Group>> old;  // whose members get new arcs, each once
+  std::vector<OldLink> before;   // of bodies with new arcs, ascending pairs
+  bool has_border = false;
   std::vector<LooseLink> links;
   std::vector<LooseContact> contacts;
+  std::vector<std::shared_ptr<Group>> made;
   std::vector<std::pair<BodyId, std::size_t>> index;  // body, place in drafts; ascending
-  double lightest = never, heaviest = 0;  // masses of the drafts, kg
+  double lightest = never, heaviest = 0;  // kg, of the drafts and, at a border, of their groups
   GroupTally tally;
   Told told;
 
@@ -46,6 +64,12 @@ struct Regroup {
   // The draft of a body; null if there is none.
   Draft* draft_of(BodyId id) const;
   void update_index();
+  // Whether the discontinuity gives it a new arc.
+  bool changes(const Draft* draft) const {
+    return draft && draft->body->dynamic() && draft->data.arc_key == key;
+  }
+  // Null if the pair was not linked.
+  const OldLink* link_before(std::uint64_t pair) const;
 };
 
 }  // namespace tw

@@ -23,6 +23,12 @@ struct Resolved {
     inverse_mass = 1 / b.mass;
     inverse_inertia = inverse_inertia_world(b, p.q);
   }
+  // As if it had no end of mass.
+  void hold() {
+    moves = false;
+    inverse_mass = 0;
+    inverse_inertia.setZero();
+  }
   Vec3 velocity_at(const Vec3& where) const { return v + w.cross(where - point.x); }
   Mat3 compliance(const Vec3& where) const {
     if (!moves) return Mat3::Zero();

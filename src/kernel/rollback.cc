@@ -50,9 +50,13 @@ void Kernel::check_finite(Draft& draft) const {
 // An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
 void Kernel::stop_fellows(const Key& key, std::vector<Draft>& drafts) const {
   const std::exception_ptr error = drafts.front().data.error;
-  const std::size_t count = drafts.size();
-  for (std::size_t i = 0; i < count; ++i)
-    for (const BodyId id : fellows(drafts[i].body->id(), key))
+  std::vector<BodyId> ids;
+  for (const Draft& draft : drafts)
+    if (draft.body->dynamic()) ids.push_back(draft.body->id());
+  std::sort(ids.begin(), ids.end());
+  const Region region = region_of(key, ids, true);
+  for (const std::vector<BodyId>* side : {&region.inside, &region.border})
+    for (const BodyId id : *side)
       if (std::none_of(drafts.begin(), drafts.end(),
                        [&](const Draft& d) { return d.body->id() == id; }))
         drafts.push_back(draft_for(*bodies[id], key, false));

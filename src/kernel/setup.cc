@@ -273,8 +273,9 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 Key Kernel::edit_key(BodyId id) {
   std::uint32_t microstep = 1;
   // after whatever its group has done at this instant
-  std::vector<BodyId> all{id};
-  if (const auto& group = graph.tail(id)->group) all = group->members;
+  const Region region = region_of(last_key, {id}, true);
+  std::vector<BodyId> all = region.inside;
+  all.insert(all.end(), region.border.begin(), region.border.end());
   for (const BodyId member : all)
     for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
       if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
@@ -291,7 +292,7 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   const Quat q_before = drafts[0].point.q;
   DraftView view(drafts[0], key, true, options.gravity);
   change(view);
-  regroup_changed(key, drafts);
+  regroup_edited(key, drafts);
   enter_discontinuity(key, drafts);
   if (begun && (drafts[0].point.x != x_before || drafts[0].point.q.coeffs() != q_before.coeffs()))
     check_overlaps(body);
@@ -311,7 +312,7 @@ void Kernel::set_gravity(const Vec3& gravity) {
     const Key key = edit_key(body->id());
     std::vector<Draft> drafts{draft_for(*body, key, true)};
     drafts[0].data.acceleration = gravity + drafts[0].data.force / body->mass;
-    regroup_changed(key, drafts);
+    regroup_edited(key, drafts);
     enter_discontinuity(key, drafts);
   }
 }
@@ -330,12 +331,15 @@ void Kernel::restart_future() {
 }
 
 void Kernel::renew_groups() {
+  const std::uint64_t first = edits_;
   for (const auto& body : bodies) {
     const State* tail = graph.tail(body->id());
-    if (tail->error || !tail->group || tail->group->leader() != body->id()) continue;
+    if (tail->error || !tail->group || 
+        (tail->group->key.kind == KeyKind::edit && tail->group->key.id >= first))
+      continue;
     const Key key = edit_key(body->id());
     std::vector<Draft> drafts{draft_for(*body, key, true)};
-    regroup_changed(key, drafts);
+    regroup_edited(key, drafts);
     enter_discontinuity(key, drafts);
   }
 }

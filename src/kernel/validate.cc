@@ -33,7 +33,7 @@ std::string Kernel::validate_event_queue() const {
       case EventKind::group_check: {
         const State* tail = graph.tail(event.subject);
         if (bodies[event.subject]->group_check != handle) return "group check of nobody";
-        if (!tail->group || tail->group->leader() != event.subject) return "group check of a dead group";
+        if (!tail->group || tail->group->at_rest) return "group check of a dead group";
         break;
       }
       case EventKind::callback:
@@ -84,16 +84,16 @@ std::string Kernel::validate_residences() const {
       if (s->member >= group.members.size() || group.members[s->member] != body->id())
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
-      if (!group.at_rest && group.next_check < s->key.time) return "state past a group check: " + where;
-      if (s->committed) continue;
+      if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
+      if (s->committed || s->key != group.key) continue;
       for (const BodyId other : group.members) {
         const State* t = graph.last_at_or_before(other, s->key);
         if (!t || t->group != s->group) return "a member is elsewhere: " + where;
       }
     }
     const State* tail = graph.tail(body->id());
-    const bool leads = tail->group && !tail->error && tail->group->leader() == body->id();
-    if (leads && !tail->group->at_rest && body->group_check == EventQueue::none)
+    const bool waits = tail->group && !tail->error && !tail->group->at_rest;
+    if (waits && body->group_check == EventQueue::none)
       return "a group without a check: " + body->info.name;
   }
   return "";
