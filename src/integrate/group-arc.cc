@@ -3,6 +3,7 @@
 #include "integrate/group-arc.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <sstream>
 
@@ -18,6 +19,12 @@ struct GroupArc::Data {
   GroupCounts counts;
   std::string failure;
   int failed_contact = -1;
+  const std::uint64_t serial = next_serial();  // no two arcs of a program share one
+
+  static std::uint64_t next_serial() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
 
   explicit Data(GroupStart given)
       : start(std::move(given)),
@@ -29,6 +36,14 @@ struct GroupArc::Data {
   // kinematics of all slots at a time that is reached
   void set_bodies(double time, GroupScratch& s) const;
   void set_slot(int slot, double time, GroupScratch& s) const;
+  struct KeptPack {
+    std::uint64_t arc = 0;
+    int pack = -1;
+    double time = 0;
+    PackState state;
+    Vec3 center_b[lane_count];
+  };
+  const KeptPack& pack_at(int number, double at) const;
   int strongest_contact() const;
   void fail();
 };
@@ -60,7 +75,6 @@ void GroupArc::Data::fail() {
 }
 
 void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
-  if (slot >= system.members()) return;
   Vec3 v, L;
   record.velocities(slot, time, v, L);
   system.set_member(slot, record.position(slot, time), record.attitude(slot, time), v, L,
@@ -161,27 +175,40 @@ Vec3 GroupArc::stretch(int contact, double time) {
   return {s.x[place.lane], s.y[place.lane], s.z[place.lane]};
 }
 
+// The pack of the contact at one instant.  Neighbours in a link are asked for one after the other, and mostly
+// share a pack: the last one is kept.
+const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
+  thread_local KeptPack kept;
+  if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;
+  GroupScratch& s = stepper.scratch();
+  const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(number)];
+  for (int i = 0; i < pack.count; ++i)
+    for (const int slot : {pack.a[i], pack.b[i]})
+      if (slot < system.members())
+        set_slot(slot, at, s);
+      else
+        system.set_outside_slot(slot, at, s.bodies);
+  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.side(number, at), kept.state);
+  for (int i = 0; i < pack.count; ++i) {
+    const double* x = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
+    kept.center_b[i] = Vec3(x[0], x[1], x[2]);
+  }
+  kept.arc = serial;
+  kept.pack = number;
+  kept.time = at;
+  return kept;
+}
+
 ContactForce GroupArc::contact_force(int contact, double time) {
   extend(time);
   const Data& d = *data_;
-  const double at = d.at(time);
-  GroupScratch& s = d.stepper.scratch();
   const ContactPlace place = d.system.contact_packs().places[static_cast<std::size_t>(contact)];
-  const ContactPack& pack = d.system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
-  d.system.set_outside(at, s.bodies);
-  for (int i = 0; i < pack.count; ++i) {
-    d.set_slot(pack.a[i], at, s);
-    d.set_slot(pack.b[i], at, s);
-  }
-  PackState state;
-  evaluate_pack(pack, s.bodies.data(), d.record.stretch(place.pack, at),
-                d.record.side(place.pack, at), state);
-
+  const Data::KeptPack& kept = d.pack_at(place.pack, d.at(time));
+  const PackState& state = kept.state;
   const int i = place.lane;
   const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
-  const double* xb = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
   ContactForce force;
-  force.point = Vec3(xb[0], xb[1], xb[2]) + lane(state.sb);
+  force.point = kept.center_b[i] + lane(state.sb);
   force.normal = lane(state.n);
   force.gap = state.gap[i];
   force.normal_force = state.N[i];

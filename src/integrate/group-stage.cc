@@ -33,10 +33,10 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
 
   // outside bodies move by their velocities; accelerations (-3 u0 + 4 u1 - u2)/(2 d)
   const double d = step / 32;
-  for (std::size_t i = 0; i < outside_.size(); ++i) {
-    BodyChange& change = s.changes[index(members_) + i];
+  for (const int slot : moving_slots_) {
+    BodyChange& change = s.changes[index(slot)];
     Vec3 v[3], w[3];
-    for (int j = 0; j < 3; ++j) outside_[i]->velocity(time + j * d, v[j], w[j]);
+    for (int j = 0; j < 3; ++j) outside_[index(slot - members_)]->velocity(time + j * d, v[j], w[j]);
     vec(change.x) = v[0];
     vec(change.th) = w[0];
     vec(change.v) = (4 * (v[1] - v[0]) - (v[2] - v[0])) / (2 * d);

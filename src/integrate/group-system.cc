@@ -40,13 +40,19 @@ GroupSystem::GroupSystem(const GroupStart& start)
     member_.push_back(member);
   }
   size_ = 12 * (start.members.size() + packs_.packs.size());
-  for (const MotionPtr& motion : outside_)
-    moved_from_outside_ |= motion->speed_bound(start.time, start.end) > 0 ||
-                           motion->angular_speed_bound(start.time, start.end) > 0;
+
+  // what stands still is placed once
+  std::vector<BodyKinematics> bodies(index(packs_.slots));
+  for (int i = 0; i < static_cast<int>(outside_.size()); ++i) {
+    const Motion& motion = *outside_[index(i)];
+    if (motion.speed_bound(start.time, start.end) > 0 ||
+        motion.angular_speed_bound(start.time, start.end) > 0)
+      moving_slots_.push_back(members_ + i);
+    place_outside(members_ + i, start.time, bodies[index(members_ + i)]);
+  }
+  outside_at_start_.assign(bodies.begin() + members_, bodies.end());
 
   // the sides at the start
-  std::vector<BodyKinematics> bodies(index(packs_.slots));
-  set_outside(start.time, bodies);
   for (int i = 0; i < members_; ++i) {
     const GroupMember& m = start.members[index(i)];
     set_member(i, m.x, m.q, m.v, m.L, bodies[index(i)]);
@@ -69,24 +75,38 @@ void GroupSystem::set_member(int member, const Vec3& x, const Quat& q, const Vec
 }
 
 void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) const {
+  std::copy(outside_at_start_.begin(), outside_at_start_.end(), bodies.begin() + members_);
+  set_moving(time, bodies);
+}
+
+void GroupSystem::set_outside_slot(int slot, double time, std::vector<BodyKinematics>& bodies) const {
+  if (std::binary_search(moving_slots_.begin(), moving_slots_.end(), slot))
+    place_outside(slot, time, bodies[index(slot)]);
+  else
+    bodies[index(slot)] = outside_at_start_[index(slot - members_)];
+}
+
+void GroupSystem::set_moving(double time, std::vector<BodyKinematics>& bodies) const {
+  for (const int slot : moving_slots_) place_outside(slot, time, bodies[index(slot)]);
+}
+
+void GroupSystem::place_outside(int slot, double time, BodyKinematics& body) const {
   // the arc ends before a corner at its end: velocities from the left there
   const double inside = time < end_ ? time : std::nextafter(end_, end_ - 1);
-  for (std::size_t i = 0; i < outside_.size(); ++i) {
-    BodyKinematics& body = bodies[index(members_) + i];
-    const Pose pose = outside_[i]->pose(time);
-    Vec3 v, w;
-    outside_[i]->velocity(inside, v, w);
-    vec(body.x) = pose.p;
-    vec(body.v) = v;
-    vec(body.w) = w;
-    store_rotation(pose.q.toRotationMatrix(), body.R);
-  }
+  const Motion& motion = *outside_[index(slot - members_)];
+  const Pose pose = motion.pose(time);
+  Vec3 v, w;
+  motion.velocity(inside, v, w);
+  vec(body.x) = pose.p;
+  vec(body.v) = v;
+  vec(body.w) = w;
+  store_rotation(pose.q.toRotationMatrix(), body.R);
 }
 
 template <bool with_derivative>
 void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, double* slope) const {
   // bodies
-  if (moved_from_outside_) set_outside(time, s.bodies);
+  set_moving(time, s.bodies);
   for (int i = 0; i < members_; ++i) {
     const double* from = y + 12 * i;
     double* to = slope + 12 * i;

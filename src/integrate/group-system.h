@@ -36,7 +36,7 @@ class GroupSystem {
   int packs() const { return static_cast<int>(packs_.packs.size()); }
   std::size_t size() const { return size_; }
   const ContactPacks& contact_packs() const { return packs_; }
-  bool moved_from_outside() const { return moved_from_outside_; }
+  bool moved_from_outside() const { return !moving_slots_.empty(); }
   std::uint64_t factorizations() const { return matrix_.factorizations(); }
 
   // Attitude of a member at the step's start.
@@ -66,6 +66,7 @@ class GroupSystem {
   void set_member(int member, const Vec3& x, const Quat& q, const Vec3& v, const Vec3& L,
                   BodyKinematics& out) const;
   void set_outside(double time, std::vector<BodyKinematics>& bodies) const;
+  void set_outside_slot(int slot, double time, std::vector<BodyKinematics>& bodies) const;
 
  private:
   struct Member {
@@ -81,13 +82,17 @@ class GroupSystem {
   void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
+  void place_outside(int slot, double time, BodyKinematics& body) const;
+  // Outside bodies that move; the others are where set_outside put them.
+  void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
   LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
 
   int members_;
   std::size_t size_;
   double end_;
-  bool moved_from_outside_ = false;
   std::vector<MotionPtr> outside_;
+  std::vector<BodyKinematics> outside_at_start_;
+  std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;
   ContactPacks packs_;
   std::vector<LaneVec> sides_;

@@ -254,6 +254,7 @@ class Kernel {
   template <class Visit>
   void visit_neighbours(const std::vector<BodyId>& inside, const Key& key, Visit visit) const;
   Region region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const;
+  void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);

@@ -111,15 +111,18 @@ void Kernel::visit_neighbours(const std::vector<BodyId>& inside, const Key& key,
 Region Kernel::region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const {
   Region region;
   region.inside = hit;
-  if (!whole) {
-    std::vector<BodyId> next;
-    visit_neighbours(hit, key, [&](const Group& judge, const GroupLink& link, BodyId other) {
-      if (carries(judge, link, key.time)) next.push_back(other);
-    });
-    for (const BodyId id : next) insert(region.inside, id);
-  }
+  if (!whole) add_neighbours(region, key);
   complete(region, key, whole);
   return region;
+}
+
+// Those that touch the region.
+void Kernel::add_neighbours(Region& region, const Key& key) const {
+  std::vector<BodyId> next;
+  visit_neighbours(region.inside, key, [&](const Group& judge, const GroupLink& link, BodyId other) {
+    if (!holds(region.inside, other) && carries(judge, link, key.time)) next.push_back(other);
+  });
+  for (const BodyId id : next) insert(region.inside, id);
 }
 
 // Small groups whole, and the border.  What this depends on stands in states of the region and its border:
@@ -305,6 +308,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     }
     discard(work);
     for (const BodyId id : more) insert(region.inside, id);
+    add_neighbours(region, key);
     complete(region, key, false);
   }
 }
