@@ -148,8 +148,20 @@ void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) {
 GroupBounds GroupArc::bounds(int member, double from, double to) {
   extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
   if (data_->record.steps() > 0) {
-    const double end = data_->at(to);
-    return data_->record.bounds(member, std::min(data_->at(from), end), end);
+    // a body is asked for the same stretch by each of its neighbours: the last answers are kept
+    struct Kept {
+      std::uint64_t arc = 0;
+      int member = 0;
+      double from = 0, to = 0;
+      GroupBounds bounds;
+    };
+    constexpr std::size_t places = 512;
+    thread_local std::vector<Kept> table(places);
+    const double end = data_->at(to), begin = std::min(data_->at(from), end);
+    Kept& kept = table[(data_->serial * 61 + static_cast<std::uint64_t>(member)) % places];
+    if (kept.arc != data_->serial || kept.member != member || kept.from != begin || kept.to != end)
+      kept = {data_->serial, member, begin, end, data_->record.bounds(member, begin, end)};
+    return kept.bounds;
   }
   // it stands at its start
   const GroupSample sample = evaluate(member, from);

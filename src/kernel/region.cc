@@ -67,6 +67,27 @@ Vec3 force_on(BodyId body, const Group& group, const GroupLink& link, double whe
   return sum;
 }
 
+// What `group` gives a body at its border and the body's own group does not know of, N s: Simpson's rule over
+// the steps.
+Vec3 missed_impulse(BodyId body, const Group& group, const GroupLink& link, const Group& theirs) {
+  const GroupLink* known = theirs.link(link.pair);
+  const auto missed = [&](double when) {
+    const Vec3 force = force_on(body, group, link, when);
+    return known ? Vec3(force - force_on(body, theirs, *known, when)) : force;
+  };
+  Vec3 sum = Vec3::Zero();
+  double from = group.arc->start().time;
+  Vec3 first = missed(from);
+  while (from < group.arc->reached()) {
+    const double to = group.arc->step_end(from);
+    const Vec3 middle = missed(0.5 * (from + to)), last = missed(to);
+    sum += (to - from) / 6 * (first + 4 * middle + last);
+    from = to;
+    first = last;
+  }
+  return sum;
+}
+
 }  // namespace
 
 // The group whose links tell whether two bodies in these states are in contact; null: they are not.
@@ -200,7 +221,9 @@ std::vector<BodyId> Kernel::reached_beyond(const Regroup& work) const {
         if ((force_on(other, *group, link, end) - before).norm() > wake_share * weight) more.push_back(other);
         continue;
       }
-      if (carries(*group, link, end) && deviation(*group, mine) > group->arc->start().velocity_tolerance)
+      const double tolerance = group->arc->start().velocity_tolerance;
+      if (deviation(*group, mine) > tolerance &&
+          missed_impulse(other, *group, link, *theirs).norm() > tolerance * bodies[other]->mass)
         more.push_back(other);
     }
   }
