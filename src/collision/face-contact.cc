@@ -12,8 +12,8 @@ namespace {
 // cut at every corner by rounding
 constexpr double on_side = 1e-12;
 
-// Names of points: a vertex by its number; a crossing by the ends of the incident edge and the side;
-// a corner of the reference face by its two sides.
+// A vertex by its number; a crossing by the ends of the incident edge and the side; a corner of the
+// reference face by its two sides.
 std::uint64_t vertex_key(int vertex) { return static_cast<std::uint64_t>(vertex); }
 
 std::uint64_t pair_key(std::uint64_t kind, int first, int second, int third) {
@@ -23,19 +23,19 @@ std::uint64_t pair_key(std::uint64_t kind, int first, int second, int third) {
 
 std::uint64_t corner_key(const Polyhedron& p, const Polyhedron::Face& incident, int before,
                          int after) {
-  if (before < 0 && after < 0) return pair_key(2, 0, ~before, ~after);
+  if (before < 0 && after < 0) return pair_key(face_corner, 0, ~before, ~after);
   const int edge = before < 0 ? after : before;
   const int tail = p.corner(incident.first + edge);
   const int head = p.corner(incident.first + (edge + 1) % incident.count);
   // two edges of the incident face meet in the tail of the second
   if (before >= 0 && after >= 0) return vertex_key(p.corner(incident.first + after));
-  return pair_key(1, std::min(tail, head), std::max(tail, head), ~std::min(before, after));
+  return pair_key(edge_crossing, std::min(tail, head), std::max(tail, head), ~std::min(before, after));
 }
 
 // Adds a point unless it coincides with one that is there: of two vertices or two others the deeper
 // stays, of a vertex and another the vertex.
 void add_point(std::vector<FacePoint>& points, const FacePoint& fresh, double slack) {
-  const auto is_vertex = [](const FacePoint& p) { return p.key >> 60 == 0; };
+  const auto is_vertex = [](const FacePoint& p) { return p.key >> 60 == vertex_point; };
   for (FacePoint& old : points)
     if (old.key == fresh.key || (old.point - fresh.point).squaredNorm() <= slack * slack) {
       const bool better = is_vertex(old) == is_vertex(fresh) ? fresh.gap < old.gap

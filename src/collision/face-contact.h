@@ -23,6 +23,10 @@ struct FacePoint {
   std::uint64_t key = 0;      // names the point; vertices have the least keys
 };
 
+// Names of points, by key >> 60: a vertex of the incident body; where an edge of it, from vertex key >> 40
+// to key >> 20 (20 bits each), crosses a side of the reference face; a corner of that face.
+inline constexpr std::uint64_t vertex_point = 0, edge_crossing = 1, face_corner = 2;
+
 // A corner of a polygon that is being clipped.  `next` is what the polygon follows from here: its own
 // edge k as k, side number j as ~j.
 struct ClipCorner {

@@ -1,6 +1,7 @@
 // Contact manifolds of two polyhedra, and of a polyhedron and a half-space.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include "collision/face-contact.h"
 #include "collision/manifold-parts.h"
@@ -65,9 +66,29 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
   out.push_back(p);
 }
 
-// A face of one as reference; `reference_is_a` says of which.
-void add_face(const CorePair& cores, bool reference_is_a, int face, int incident_face,
-              const NearestFeatures& near, double reach, int pair,
+// A face that slides along an edge of the ground takes its border along: where the edge leaves the face, the
+// point belongs to the face, and the normal stands on the edge, so that sliding does not part them.
+// Tilted faces (sine of the angle with the edge) only touch it in passing.
+constexpr double along_edge = 0.05;
+
+// `p` as a point of the face's border on the edge that its name holds.
+void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& face_normal,
+                 const Frame& world, std::uint64_t key, ManifoldPoint& p) {
+  const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
+                    incident.vertex(static_cast<int>(key >> 40 & 0xfffff));
+  const Vec3 edge = placed.R * ends.normalized();
+  const double sine = edge.dot(face_normal);
+  if (std::abs(sine) > along_edge) return;
+  const Vec3 normal = world.R * (face_normal - sine * edge).normalized();
+  std::swap(p.core_point, p.reference_point);
+  p.gap *= normal.dot(p.normal);
+  p.normal = -normal;
+  p.reference_is_a = !p.reference_is_a;
+}
+
+// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is ground.
+void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, int face,
+              int incident_face, const NearestFeatures& near, double reach, int pair,
               std::vector<ManifoldPoint>& out) {
   thread_local std::vector<FacePoint> points;
   const Polyhedron& reference = reference_is_a ? cores.a : cores.b;
@@ -87,17 +108,19 @@ void add_face(const CorePair& cores, bool reference_is_a, int face, int incident
     add_corners(cores, near, pair, out);
   }
 
-  ManifoldPoint p;
-  p.reference_is_a = reference_is_a;
-  p.normal = world.R * reference.face(face).normal;
-  p.pair = pair;
   for (const FacePoint& found : points) {
+    ManifoldPoint p;
+    p.reference_is_a = reference_is_a;
+    p.normal = world.R * reference.face(face).normal;
+    p.pair = pair;
     p.core_point = world * found.point;
     p.gap = found.gap;
     p.reference_point = p.core_point - found.gap * p.normal;
     p.feature = feature_name(pair, FeatureMode::face,
                              {static_cast<std::uint64_t>(face),
                               static_cast<std::uint64_t>(reference_is_a), found.key});
+    if (edges_stay && found.key >> 60 == edge_crossing)
+      follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
     out.push_back(p);
   }
 }
@@ -115,7 +138,8 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
   const bool reference_is_a =
       of_a &&
       !(of_b && prefers_b(cores.a.face(face_a.number), cores.b.face(face_b.number), choice));
-  add_face(cores, reference_is_a, reference_is_a ? face_a.number : face_b.number,
+  const bool edges_stay = choice == (reference_is_a ? ReferenceChoice::of_b : ReferenceChoice::of_a);
+  add_face(cores, reference_is_a, edges_stay, reference_is_a ? face_a.number : face_b.number,
            reference_is_a ? face_b.number : face_a.number, near, reach, pair, out);
 }
 

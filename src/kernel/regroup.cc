@@ -16,6 +16,9 @@ namespace {
 
 // Contacts of one body with several fixed ones share one stiffness where their normals agree to this, rad.
 constexpr double coplanar = 1e-3;
+// Where a corner crosses the edge between two faces that meet at a small angle, both hold it for a moment:
+// as far as they are at one place (share of the size) with one normal (cosine), they hold it together.
+constexpr double same_place = 1e-2, same_normal = 0.95;
 
 BodyId first_of(std::uint64_t pair) { return static_cast<BodyId>(pair >> 32); }
 BodyId second_of(std::uint64_t pair) { return static_cast<BodyId>(pair & 0xffffffffu); }
@@ -140,15 +143,21 @@ void Kernel::share_out(Regroup& work) const {
     for (j = i; j < on_ground.size() && on_ground[j].first == on_ground[i].first;) ++j;
     for (std::size_t k = i; k < j; ++k) {
       LooseContact& mine = work.contacts[on_ground[k].second];
-      int count = 0;
+      double count = 0;
       for (std::size_t l = i; l < j; ++l) {
         const LooseContact& other = work.contacts[on_ground[l].second];
+        if (!near(other)) continue;
         // seen from the ground both normals point the same way
         const double sign = (mine.tag.reference == on_ground[i].first) ==
                                     (other.tag.reference == on_ground[i].first) ? 1 : -1;
-        count += near(other) && sign * mine.normal.dot(other.normal) > 1 - 0.5 * coplanar * coplanar;
+        const double cosine = sign * mine.normal.dot(other.normal);
+        const double radius = same_place * bodies[on_ground[i].first]->least_width;
+        if (cosine > 1 - 0.5 * coplanar * coplanar)
+          ++count;
+        else if (cosine > same_normal)
+          count += std::max(0.0, 1 - (mine.point - other.point).norm() / radius);
       }
-      mine.contact.share = 1.0 / std::max(1, count);
+      mine.contact.share = 1.0 / std::max(1.0, count);
     }
   }
 }
