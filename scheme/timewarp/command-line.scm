@@ -62,7 +62,7 @@
   (filter-map (lambda (pair) (and (eq? (car pair) key) (cdr pair))) options))
 
 (define override-keys
-  '(accuracy seed fps size quality hash check undo-redo gvt-interval window
+  '(accuracy seed fps size quality contacts hash check undo-redo gvt-interval window
     group-check-rate adversary))
 
 (define (take-overrides! options)

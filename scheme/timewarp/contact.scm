@@ -1,10 +1,13 @@
-;; Contact parameters, and which pairs collide.
+;; Contact parameters, which pairs collide, and the contacts at present.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp contact)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
-  #:export (set-contact-parameters! contact-parameters disable-collisions! enable-collisions!))
+  #:use-module (srfi srfi-9)
+  #:export (set-contact-parameters! contact-parameters disable-collisions! enable-collisions!
+            contacts contact? contact-bodies contact-point contact-normal contact-gap contact-force
+            contact-friction contact-slipping?))
 
 (define-keyword-procedure
   (set-contact-parameters! a b #:key restitution friction stiffness damping fusion-speed
@@ -33,3 +36,58 @@ earlier.  Defaults: restitution 0.3, friction 0.5."
 (define (enable-collisions! a b)
   "Let A and B collide again; each is a body, a material, or #t for all."
   (%set-contact! (current-world) a b '((collide? . #t))))
+
+;; ---- contacts at present ----
+
+(define-record-type <contact>
+  (make-contact bodies point normal gap force friction slipping?)
+  a-contact?
+  (bodies bodies-of)
+  (point point-of)
+  (normal normal-of)
+  (gap gap-of)
+  (force force-of)
+  (friction friction-of)
+  (slipping? slipping-of?))
+
+(define (contacts)
+  "Return a list of the contacts of all contact groups at world-time, by pairs of bodies in the order in
+which they were added; faces that meet have several.  Impacts of bodies that don't stay together are no
+contacts; a contact whose force is 0 is about to touch, or has just lost touch."
+  (map (lambda (parts) (apply make-contact parts)) (%contacts (current-world))))
+
+(define (contact? object)
+  "Return #t if OBJECT is a contact, as `contacts' lists them."
+  (a-contact? object))
+
+(define (part contact part-of)
+  (unless (a-contact? contact) (bad-value "the contact" contact "one that `contacts' lists"))
+  (part-of contact))
+
+(define (contact-bodies contact)
+  "Return the list of the two bodies A and B of CONTACT; A was added first."
+  (part contact bodies-of))
+
+(define (contact-point contact)
+  "Return the point at which the force of CONTACT acts, world frame, m."
+  (part contact point-of))
+
+(define (contact-normal contact)
+  "Return the unit normal of CONTACT from A to B, world frame."
+  (part contact normal-of))
+
+(define (contact-gap contact)
+  "Return the gap of CONTACT, m: negative where the contact spring is compressed by so much."
+  (part contact gap-of))
+
+(define (contact-force contact)
+  "Return the normal force of CONTACT, N: never negative; it pushes B along the normal, and A back."
+  (part contact force-of))
+
+(define (contact-friction contact)
+  "Return the friction of CONTACT on B, a vector in the world frame, N."
+  (part contact friction-of))
+
+(define (contact-slipping? contact)
+  "Return #t where CONTACT touches with its friction at the limit, #f where it sticks or doesn't touch."
+  (part contact slipping-of?))

@@ -32,6 +32,9 @@
       (bad-value "quality" quality "'draft, 'normal or 'best"))
     quality))
 
+(define (draw-contacts? contacts?)
+  (->bool (or contacts? (override 'contacts))))
+
 (define (looks world)
   (list (world-ref world 'camera '()) (world-ref world 'light '()) (world-ref world 'sky '())))
 
@@ -42,10 +45,11 @@
     (lambda (width height)
       (%open-frames frames width height (picture-quality quality)))))
 
-(define (attach-frames! world drawer fps)
-  "Let WORLD feed DRAWER with FPS frames per second."
+(define (attach-frames! world drawer fps contacts?)
+  "Let WORLD feed DRAWER with FPS frames per second, its contacts drawn if CONTACTS? is true."
   (world-set! world 'drawer drawer)
-  (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)))
+  (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)
+                   (draw-contacts? contacts?)))
 
 (define (close-frames! world drawer)
   "Wait until all frames are on disk."
@@ -57,12 +61,13 @@
   (let ((drawer (world-ref world 'drawer #f)))
     (and drawer (%frames-written drawer))))
 
-(define-keyword-procedure (render! file #:key size quality)
+(define-keyword-procedure (render! file #:key size quality contacts?)
   "Draw the current world as it is now into FILE (PNG).  Size is (WIDTH HEIGHT), 1280 by 720 unless
-given; quality 'draft, 'normal or 'best."
+given; quality 'draft, 'normal or 'best.  With contacts? a line along the normal shows each contact that
+carries load, its length by the logarithm of the force, its colour whether it sticks or slips."
   (require-drawing "render!")
   (let ((world (current-world)))
     (call-with-values (lambda () (picture-size size))
       (lambda (width height)
         (%render! world (scene-file file) width height (picture-quality quality)
-                  (looks world) (world-ref world 'title #f))))))
+                  (looks world) (world-ref world 'title #f) (draw-contacts? contacts?))))))

@@ -87,6 +87,7 @@
     (fps ("fps") "N" ,positive "frames per second (30)")
     (size ("size") "WxH" ,size "size of the pictures (1280x720)")
     (quality ("quality") "QUALITY" ,quality "draft, normal or best (normal)")
+    (contacts ("contacts") #f #f "draw contacts into the pictures: a line along the normal of each")
     (movie (#\m "movie") "FILE" ,(later "the movie writer") "not there yet")
     (record (#\o "record") "FILE" ,(later "the recording format") "not there yet")
     (poses ("poses") "FILE.csv" ,text "write the poses of moving bodies at every frame time")

@@ -18,9 +18,9 @@
     (cons (lambda () (%flush-recorder! recorder))
           (lambda () (%close-recorder! world recorder)))))
 
-(define (start-frames! world frames size quality)
+(define (start-frames! world frames size quality contacts?)
   (let ((drawer (open-frames frames size quality)))
-    (at-first-run! world (lambda () (attach-frames! world drawer (world-fps world))))
+    (at-first-run! world (lambda () (attach-frames! world drawer (world-fps world) contacts?)))
     (cons (lambda () #f)
           (lambda () (close-frames! world drawer)))))
 
@@ -43,12 +43,12 @@
                (lambda () (close) failure)
                (lambda args (or failure args))))))))
 
-(define* (call-with-recorders world thunk #:key frames size quality poses events)
+(define* (call-with-recorders world thunk #:key frames size quality contacts? poses events)
   "Call THUNK while WORLD is recorded: frames to pictures, poses and events to CSV files."
   (let ((recorders
          (append (if poses (list (start-csv! world %open-poses poses)) '())
                  (if events (list (start-csv! world %open-events events)) '())
-                 (if frames (list (start-frames! world frames size quality)) '()))))
+                 (if frames (list (start-frames! world frames size quality contacts?)) '()))))
     (call-with-values
         (lambda ()
           (catch #t

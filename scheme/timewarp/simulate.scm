@@ -8,10 +8,12 @@
   #:use-module (timewarp recorders)
   #:export (simulate!))
 
-(define-keyword-procedure (simulate! #:key until frames movie record poses events size quality)
+(define-keyword-procedure (simulate! #:key until frames movie record poses events size quality
+                                    contacts?)
   "Run the current world to the time `until' (by default the scene's duration) and write frames (a
-folder or a pattern like out/%05d.png; size (WIDTH HEIGHT), quality 'draft, 'normal or 'best), poses and
-events (CSV files) on the way.  File names are relative to the scene's file."
+folder or a pattern like out/%05d.png; size (WIDTH HEIGHT), quality 'draft, 'normal or 'best; with
+contacts? they show the contacts as render! does), poses and events (CSV files) on the way.  File names
+are relative to the scene's file."
   (when movie (not-there-yet "#:movie" "the movie writer"))
   (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))
@@ -20,6 +22,7 @@ events (CSV files) on the way.  File names are relative to the scene's file."
       #:frames (and frames (scene-file frames))
       #:size size
       #:quality quality
+      #:contacts? contacts?
       #:poses (and poses (scene-file poses))
       #:events (and events (scene-file events)))
     (if #f #f)))

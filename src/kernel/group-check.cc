@@ -154,15 +154,20 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::vector<BodyId> there = remaining(*groups[i], key);
     all.insert(all.end(), there.begin(), there.end());
-    for (const GroupLink& link : groups[i]->links)
-      for (const std::uint64_t side : {link.pair >> 32, link.pair & 0xffffffffu}) {
-        const auto id = static_cast<BodyId>(side);
-        if (!bodies[id]->dynamic()) continue;
-        const State& state = *graph.last_before(id, key);
-        if (!state.group || state.error || state.group->next_check != group->next_check) continue;
-        if (std::find(groups.begin(), groups.end(), state.group) == groups.end())
-          groups.push_back(state.group);
+    for (const GroupLink& link : groups[i]->links) {
+      const auto a = static_cast<BodyId>(link.pair >> 32), b = static_cast<BodyId>(link.pair & 0xffffffffu);
+      if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
+      // seen from either side, or two checks of one time would take each other back
+      const State& state_a = *graph.last_before(a, key);
+      const State& state_b = *graph.last_before(b, key);
+      const Group* judge = governing(state_a, state_b);
+      if (!judge || !judge->link(link.pair)) continue;
+      for (const State* state : {&state_a, &state_b}) {
+        if (!state->group || state->error || state->group->next_check != group->next_check) continue;
+        if (std::find(groups.begin(), groups.end(), state->group) == groups.end())
+          groups.push_back(state->group);
       }
+    }
   }
   std::sort(all.begin(), all.end());
   return all;
@@ -215,7 +220,7 @@ void Kernel::process_group_check(BodyId id) {
   if (failed) {
     const UserError error(group_failure(*failed), bodies[key.id]->info.place);
     for (Draft& draft : drafts) draft.data.error = std::make_exception_ptr(error);
-  } else if (!regroup(key, drafts, {.look = true, .blow = true})) {
+  } else if (!regroup(key, drafts, {.look = true, .early = early, .blow = true})) {
     return;
   }
   enter_discontinuity(key, drafts);

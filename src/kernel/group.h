@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "integrate/group-arc.h"
+#include "kernel/calm.h"
 #include "kernel/key.h"
 
 namespace tw {
@@ -47,6 +48,7 @@ struct Group {
   double next_check = never;
   bool end_tested = false;         // next_check and ends are as end-test.cc found them
   bool at_rest = false;
+  bool provisional = false;        // at rest for the time being (calm.cc)
   double quiet_since = never;      // s: slow, and nothing slips; `never`: not so
   double quiet_speed = 0;          // m/s, at that time
   double first_step = 0;           // of the arc, s; 0: chosen
@@ -57,6 +59,7 @@ struct Group {
   std::vector<GroupLink> links;         // ascending pairs
   std::vector<ContactTag> tags;         // of arc->start().contacts
   std::vector<double> gaps;             // m, of arc->start().contacts, at the start
+  std::vector<Calm> calm;               // of each member
   std::vector<double> ends;             // of each member's arc, s; empty: all at next_check
   std::unique_ptr<GroupArc> arc;
 

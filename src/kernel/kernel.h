@@ -9,7 +9,7 @@
 //
 // The subject is spread over files by what it does: claim.cc, check.cc, impact.cc, callbacks.cc,
 // rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: region.cc, regroup.cc,
-// linking.cc, group-check.cc, end-test.cc, pass-on.cc.
+// linking.cc, group-check.cc, calm.cc, end-test.cc, pass-on.cc.
 //
 // Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT is
 // touched; a committed state is never removed.  Under --check also every validator of validate.cc.
@@ -106,6 +106,7 @@ class Kernel {
   ArcPoint point_at(BodyId id, double when) const;
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
+  ContactSurvey survey_contacts(double when) const;  // contacts.cc
   Vec3 total_momentum(double when) const;
   std::string history_hash() const;
   StatisticsTable statistics() const;
@@ -241,8 +242,10 @@ class Kernel {
   // Cuts the drafts into groups and isolated bodies.
   void finish(Regroup& work);
   std::shared_ptr<Group> make_group(Regroup& work, const std::vector<BodyId>& members);
+  MotionPtr outside_motion(const Regroup& work, BodyId id) const;
   void start_arc_of(Group& group, Regroup& work) const;
   void share_out(Regroup& work) const;
+  void share_ground(const std::vector<LooseContact*>& points, BodyId mover) const;
   void tell(Regroup& work) const;
   void count_group(const Group& group);
   std::size_t count_pieces(const Regroup& work, const std::vector<std::uint64_t>& linked) const;
@@ -256,6 +259,7 @@ class Kernel {
   Region region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const;
   void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
+  std::vector<BodyId> all_provisional(std::vector<BodyId> ids, const Key& key) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);
   double deviation(const Group& group, BodyId id) const;
@@ -298,6 +302,11 @@ class Kernel {
   bool comes_to_rest(Regroup& work, Group& after, const Group& before) const;
   void note_changes(Regroup& work) const;
   std::string group_failure(const Group& group) const;
+
+  // ---- calm.cc ----
+  Calm watched(const Draft& draft, const Key& key) const;
+  std::vector<bool> sleepers(const Regroup& work, const std::vector<Calm>& calm) const;
+  std::vector<BodyId> provisional_around(const Regroup& work) const;
 
   // ---- end-test.cc ----
   void test_group_end(Group& group);

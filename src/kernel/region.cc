@@ -94,6 +94,8 @@ Vec3 missed_impulse(BodyId body, const Group& group, const GroupLink& link, cons
 const Group* Kernel::governing(const State& a, const State& b) const {
   if (!bodies[b.process]->dynamic()) return a.group.get();
   if (!bodies[a.process]->dynamic()) return b.group.get();
+  // of one discontinuity: the one that moves
+  if (a.arc_key == b.arc_key) return (a.group && !a.group->at_rest ? a : b).group.get();
   return (a.arc_key < b.arc_key ? b : a).group.get();
 }
 
@@ -137,13 +139,31 @@ Region Kernel::region_of(const Key& key, const std::vector<BodyId>& hit, bool wh
   return region;
 }
 
-// Those that touch the region.
+// Those that touch the region and move; what rests wakes where it notices (reached_beyond).
 void Kernel::add_neighbours(Region& region, const Key& key) const {
   std::vector<BodyId> next;
   visit_neighbours(region.inside, key, [&](const Group& judge, const GroupLink& link, BodyId other) {
-    if (!holds(region.inside, other) && carries(judge, link, key.time)) next.push_back(other);
+    const auto& theirs = graph.last_before(other, key)->group;
+    const bool rests = theirs && theirs->at_rest;
+    if (!rests && !holds(region.inside, other) && carries(judge, link, key.time)) next.push_back(other);
   });
   for (const BodyId id : next) insert(region.inside, id);
+}
+
+// These, and all provisional sleepers that hang together with them.
+std::vector<BodyId> Kernel::all_provisional(std::vector<BodyId> ids, const Key& key) const {
+  std::vector<BodyId> all, next;
+  for (const BodyId id : ids) insert(all, id);
+  for (next = all; !next.empty();) {
+    std::vector<BodyId> found;
+    visit_neighbours(next, key, [&](const Group&, const GroupLink&, BodyId other) {
+      const State& state = *graph.last_before(other, key);
+      if (state.group && state.group->provisional && !holds(all, other)) insert(found, other);
+    });
+    for (const BodyId id : found) insert(all, id);
+    next = found;
+  }
+  return all;
 }
 
 // Small groups whole, and the border.  What this depends on stands in states of the region and its border:
@@ -308,6 +328,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     if (!between_runs && !await(region, key)) return false;
     std::vector<Draft> all = drafts_of(region, key, drafts);
     Regroup work(key, all);
+    work.may_sleep = occasion.look && !occasion.early;
     collect_old(work);
     if (occasion.look)
       refresh(work, hit, check_interval(work, hit));
@@ -323,6 +344,8 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     if (more.empty()) {
       finish(work);
       more = reached_beyond(work);
+      if (const std::vector<BodyId> waking = all_provisional(provisional_around(work), key); !waking.empty())
+        more.insert(more.end(), waking.begin(), waking.end());
     }
     if (more.empty()) {
       for (const auto& group : work.made) count_group(*group);

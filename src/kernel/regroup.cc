@@ -43,6 +43,12 @@ void stop(Draft& draft) {
   draft.point.v = draft.point.w = draft.data.v = draft.data.L = Vec3::Zero();
 }
 
+// How much of a point counts: all of it to the depth that one weight makes, less and less to twice that
+// above the surface.  Nothing jumps where a point comes near.
+double presence(const LooseContact& c) {
+  return std::clamp(2 - c.gap / c.contact.law.depth, 0.0, 1.0);
+}
+
 }  // namespace
 
 Draft* Regroup::draft_of(BodyId id) const {
@@ -122,44 +128,61 @@ void Kernel::carry(Regroup& work, const OldLink& old) const {
 }
 
 // Each point's share of its pair's stiffness: 1 / (points that touch or nearly do), those on coplanar
-// neighbours of the ground taken together.
+// neighbours of the ground taken together, and points at one place taken for one.
 void Kernel::share_out(Regroup& work) const {
-  const auto near = [](const LooseContact& c) { return c.gap <= c.contact.law.depth; };
   std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
   for (const LooseLink& link : work.links) {
     const bool both = bodies[first_of(link.pair)]->dynamic() && bodies[second_of(link.pair)]->dynamic();
     const BodyId mover = bodies[first_of(link.pair)]->dynamic() ? first_of(link.pair) : second_of(link.pair);
-    int count = 0;
+    double count = 0;
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       if (!both) on_ground.push_back({mover, c});
-      count += near(work.contacts[c]);
+      count += presence(work.contacts[c]);
     }
     for (std::uint32_t c = link.first; both && c < link.first + link.count; ++c)
-      work.contacts[c].contact.share = 1.0 / std::max(1, count);
+      work.contacts[c].contact.share = 1 / std::max(1.0, count);
   }
 
   std::sort(on_ground.begin(), on_ground.end());
   for (std::size_t i = 0, j = 0; i < on_ground.size(); i = j) {
     for (j = i; j < on_ground.size() && on_ground[j].first == on_ground[i].first;) ++j;
-    for (std::size_t k = i; k < j; ++k) {
-      LooseContact& mine = work.contacts[on_ground[k].second];
-      double count = 0;
-      for (std::size_t l = i; l < j; ++l) {
-        const LooseContact& other = work.contacts[on_ground[l].second];
-        if (!near(other)) continue;
-        // seen from the ground both normals point the same way
-        const double sign = (mine.tag.reference == on_ground[i].first) ==
-                                    (other.tag.reference == on_ground[i].first) ? 1 : -1;
-        const double cosine = sign * mine.normal.dot(other.normal);
-        const double radius = same_place * bodies[on_ground[i].first]->least_width;
-        if (cosine > 1 - 0.5 * coplanar * coplanar)
-          ++count;
-        else if (cosine > same_normal)
-          count += std::max(0.0, 1 - (mine.point - other.point).norm() / radius);
-      }
-      mine.contact.share = 1.0 / std::max(1.0, count);
-    }
+    std::vector<LooseContact*> points;
+    for (std::size_t k = i; k < j; ++k) points.push_back(&work.contacts[on_ground[k].second]);
+    share_ground(points, on_ground[i].first);
   }
+}
+
+// With m_i the points at the place of i, itself among them, and n_i the places in its plane: 1 / (n_i m_i).
+void Kernel::share_ground(const std::vector<LooseContact*>& points, BodyId mover) const {
+  const double radius = same_place * bodies[mover]->least_width;
+  // seen from the ground all normals point the same way
+  const auto cosine = [&](const LooseContact& x, const LooseContact& y) {
+    const double sign = (x.tag.reference == mover) == (y.tag.reference == mover) ? 1 : -1;
+    return sign * x.normal.dot(y.normal);
+  };
+  std::vector<double> here(points.size(), 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (i == j || !(cosine(*points[i], *points[j]) > same_normal)) continue;
+      const double distance = (points[i]->point - points[j]->point).norm();
+      here[i] += presence(*points[j]) * std::max(0.0, 1 - distance / radius);
+    }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double places = 0;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (i == j || cosine(*points[i], *points[j]) > 1 - 0.5 * coplanar * coplanar)
+        places += presence(*points[j]) / here[j];
+    points[i]->contact.share = 1 / std::max(1.0, places * here[i]);
+  }
+}
+
+// The motion of a body that a group meets.
+MotionPtr Kernel::outside_motion(const Regroup& work, BodyId id) const {
+  if (!bodies[id]->dynamic()) return bodies[id]->motion;
+  const Draft& draft = *work.draft_of(id);
+  // laid to rest by this discontinuity, or, seen from there, what goes on: it is not asked for long
+  if (work.changes(&draft)) return make_fixed_motion({draft.point.x, draft.point.q});
+  return make_group_motion(draft.data.group, static_cast<int>(draft.data.member));
 }
 
 // Bodies, outside bodies and contacts as the integrator wants them.
@@ -186,9 +209,7 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     const auto known = std::find(group.outside.begin(), group.outside.end(), id);
     if (known != group.outside.end()) return ~static_cast<int>(known - group.outside.begin());
     group.outside.push_back(id);
-    const StateData* other = bodies[id]->dynamic() ? &work.draft_of(id)->data : nullptr;
-    start.outside.push_back(other ? make_group_motion(other->group, static_cast<int>(other->member))
-                                  : bodies[id]->motion);
+    start.outside.push_back(outside_motion(work, id));
     return ~static_cast<int>(group.outside.size() - 1);
   };
   for (GroupLink& link : group.links) {
@@ -224,9 +245,9 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
     if (!has_first && !group->contains(second_of(link.pair))) continue;
     group->links.push_back({link.pair, link.first, link.count, link.touched});
     const Draft* other = work.draft_of(has_first ? second_of(link.pair) : first_of(link.pair));
-    if (!other || !other->body->dynamic() || work.changes(other)) continue;
+    if (!other || !other->body->dynamic() || group->contains(other->body->id())) continue;
     group->has_border = true;
-    border_end = std::min(border_end, other->data.group->next_check);
+    if (!work.changes(other)) border_end = std::min(border_end, other->data.group->next_check);
   }
   for (const BodyId id : members) {
     group->lightest = std::min(group->lightest, bodies[id]->mass);
@@ -258,6 +279,16 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
       group->next_check = never;
       for (const BodyId id : members) stop(*work.draft_of(id));
     }
+  }
+  for (const BodyId id : members) {
+    const auto place = static_cast<std::size_t>(work.draft_of(id) - work.drafts.data());
+    group->calm.push_back(work.calm[place]);
+    group->provisional = work.asleep[place];
+  }
+  if (group->provisional) {
+    group->at_rest = true;
+    group->next_check = never;
+    for (const BodyId id : members) stop(*work.draft_of(id));
   }
   start_arc_of(*group, work);
   return group;
@@ -304,8 +335,14 @@ void Kernel::finish(Regroup& work) {
             [](const LooseLink& x, const LooseLink& y) { return x.pair < y.pair; });
   share_out(work);
 
-  // who hangs together, and who has a link at all
+  // who lies still
   const std::size_t count = work.drafts.size();
+  work.calm.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    if (work.changes(&work.drafts[i])) work.calm[i] = watched(work.drafts[i], work.key);
+  work.asleep = work.may_sleep ? sleepers(work, work.calm) : std::vector<bool>(count, false);
+
+  // who hangs together, and who has a link at all
   Components components(count);
   std::vector<bool> held(count, false);
   for (const LooseLink& link : work.links) {
@@ -315,7 +352,8 @@ void Kernel::finish(Regroup& work) {
     const bool moves_a = work.changes(a), moves_b = work.changes(b);
     if (moves_a) held[place(a)] = true;
     if (moves_b) held[place(b)] = true;
-    if (moves_a && moves_b) components.join(place(a), place(b));
+    if (moves_a && moves_b && work.asleep[place(a)] == work.asleep[place(b)])
+      components.join(place(a), place(b));
   }
   count_fissions(work, held);
 

@@ -43,6 +43,7 @@ struct Occasion {
   bool whole = false;            // their fellows all get new arcs too
   bool fusion = false;           // the first two come to touch
   bool look = false;             // their contacts are found anew: a group check
+  bool early = false;            // before that of their groups
   bool blow = false;             // impulses are passed on
 };
 
@@ -52,6 +53,9 @@ struct Regroup {
   std::vector<std::shared_ptr<Group>> old;  // whose members get new arcs, each once
   std::vector<OldLink> before;   // of bodies with new arcs, ascending pairs
   bool has_border = false;
+  bool may_sleep = false;        // the check of whole groups
+  std::vector<Calm> calm;        // of the drafts
+  std::vector<bool> asleep;      // of the drafts: laid to rest provisionally
   std::vector<LooseLink> links;
   std::vector<LooseContact> contacts;
   std::vector<std::shared_ptr<Group>> made;

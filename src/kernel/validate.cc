@@ -137,6 +137,7 @@ std::uint64_t Kernel::state_checksum(const State& s) const {
   if (s.group && s.member == 0) {
     h.add(s.group->next_check);
     h.add(s.group->quiet_since);
+    for (const Calm& calm : s.group->calm) h.add(calm.since), h.add(calm.peak);
     for (const GroupContact& c : s.group->arc->start().contacts)
       for (int i = 0; i < 3; ++i) h.add(c.stretch[i]);
   }

@@ -125,6 +125,7 @@ void World::restore(const Checkpoint& checkpoint) { kernel_->restore(checkpoint)
 
 std::vector<QueuedState> World::state_queue(BodyId id) const { return kernel_->state_queue(id); }
 double World::total_energy() const { return kernel_->total_energy(kernel_->time); }
+ContactSurvey World::survey_contacts(double when) const { return kernel_->survey_contacts(when); }
 Vec3 World::total_momentum() const { return kernel_->total_momentum(kernel_->time); }
 
 std::string World::history_hash() const {

@@ -109,6 +109,23 @@ struct QueuedState {
   BodyState state;
 };
 
+// A contact of a group at one instant.
+struct ContactReading {
+  BodyId body1 = 0, body2 = 0;    // body1 < body2
+  Vec3 point = Vec3::Zero();      // where the force acts, world, m
+  Vec3 normal = Vec3::UnitZ();    // unit, world, from body1 to body2
+  double gap = 0;                 // m; negative: depth
+  double force = 0;               // N, on body2 along the normal, >= 0; 0: not in touch just now
+  Vec3 friction = Vec3::Zero();   // N, on body2, world
+  bool slipping = false;          // in touch, with the friction at its limit
+};
+
+struct ContactSurvey {
+  std::vector<ContactReading> contacts;  // by pair of bodies, then in the group's own order
+  std::size_t groups = 0;
+  std::size_t bodies_at_rest = 0;
+};
+
 class World {
  public:
   World();
@@ -176,6 +193,8 @@ class World {
   void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;
   double total_energy() const;              // kinetic, gravity, contact springs, J, at time()
+  // Contacts of all groups.  `when`: time(), or the time of the frame that a sink is being handed.
+  ContactSurvey survey_contacts(double when) const;
   Vec3 total_momentum() const;              // linear, kg m/s, dynamic bodies, at time()
   // SHA-256, 64 hexadecimal digits, of the committed history and of every body's state at time().
   // Needs set_hash(true) before the first run.

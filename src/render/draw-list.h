@@ -12,6 +12,7 @@
 
 #include "geometry/shape.h"
 #include "math/vec.h"
+#include "render/hud.h"
 
 namespace tw {
 
@@ -55,12 +56,21 @@ struct DrawScene {
   Sky sky;
 };
 
+// A line over the picture, its middle at `point`.
+struct DrawContact {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();         // unit
+  double length = 0;                   // m
+  bool slipping = false;               // else it sticks: another colour
+};
+
 struct DrawFrame {
   double time = 0;
   std::vector<Pose> poses;             // by body; bodies past its end keep the pose they had
   std::vector<DrawBody> added;         // registered before this frame is drawn
   std::optional<Camera> camera;        // from this frame on
-  std::vector<std::string> hud;        // lines below the time, UTF-8 (Latin-1 is drawn)
+  std::vector<HudLine> hud;            // lines below the time, UTF-8 (Latin-1 is drawn)
+  std::vector<DrawContact> contacts;   // drawn over the picture
 };
 
 enum class Quality {

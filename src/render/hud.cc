@@ -16,19 +16,11 @@ struct Box {
   int x, y, width, height;
 };
 
-// channel <- channel + coverage (ink - channel), coverage 0..255
-void blend(std::uint8_t* channel, int ink, int coverage) {
-  const int value = *channel + ((ink - *channel) * coverage + (ink > *channel ? 127 : -127)) / 255;
-  *channel = static_cast<std::uint8_t>(value);
-}
-
-void blend_box(Image& image, const Box& box, int ink, int coverage) {
+void blend_box(Image& image, const Box& box, const Ink& ink, int coverage) {
   const int x_end = std::min(box.x + box.width, image.width);
   const int y_end = std::min(box.y + box.height, image.height);
   for (int y = std::max(box.y, 0); y < y_end; ++y)
-    for (int x = std::max(box.x, 0); x < x_end; ++x)
-      for (int channel = 0; channel < 3; ++channel)
-        blend(image.pixel(x, y) + channel, ink, coverage);
+    for (int x = std::max(box.x, 0); x < x_end; ++x) blend(image.pixel(x, y), ink, coverage);
 }
 
 // Letters of `scale` times the font's size, their baseline's left end at (x, y).
@@ -43,7 +35,8 @@ struct Text {
   }
   int line_height() const { return scale * (font.size() * 4 / 3); }
 
-  void draw_glyph(Image& image, const Glyph& glyph, int x, int y, int ink, int strength) const {
+  void draw_glyph(Image& image, const Glyph& glyph, int x, int y, const Ink& ink,
+                  int strength) const {
     for (int row = 0; row < glyph.height; ++row)
       for (int column = 0; column < glyph.width; ++column) {
         const int coverage =
@@ -55,12 +48,13 @@ struct Text {
       }
   }
 
-  // white, on a soft shadow so that it reads on any ground
-  void draw(Image& image, const std::u32string& text, int x, int y) const {
+  // on a soft shadow so that it reads on any ground
+  void draw(Image& image, const std::u32string& text, int x, int y,
+            const Ink& ink = white_ink) const {
     for (const char32_t c : text) {
       const Glyph& glyph = font.glyph(c);
-      draw_glyph(image, glyph, x + scale, y + scale, 0, 110);
-      draw_glyph(image, glyph, x, y, 255, 245);
+      draw_glyph(image, glyph, x + scale, y + scale, black_ink, 110);
+      draw_glyph(image, glyph, x, y, ink, 245);
       x += scale * glyph.advance;
     }
   }
@@ -88,20 +82,20 @@ void draw_panel(Image& image, const Hud& hud, const Layout& layout) {
   std::vector<std::u32string> lines;
   // a width that does not jitter as digits change
   int width = layout.large.width(time);
-  for (const std::string& line : hud.lines) {
-    lines.push_back(decode_utf8(line));
+  for (const HudLine& line : hud.lines) {
+    lines.push_back(decode_utf8(line.text));
     width = std::max(width, layout.small.width(lines.back()));
   }
   const int height = layout.large.line_height() +
                      static_cast<int>(lines.size()) * layout.small.line_height();
   blend_box(image, {layout.margin, layout.margin, width + 2 * layout.padding,
-                    height + 2 * layout.padding - layout.padding / 2}, 24, 140);
+                    height + 2 * layout.padding - layout.padding / 2}, {24, 24, 24}, 140);
   const int x = layout.margin + layout.padding;
   int y = layout.margin + layout.padding / 2 + layout.large.line_height() * 7 / 8;
   layout.large.draw(image, time, x, y);
-  for (const std::u32string& line : lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     y += layout.small.line_height();
-    layout.small.draw(image, line, x, y);
+    layout.small.draw(image, lines[i], x, y, hud.lines[i].ink);
   }
 }
 
@@ -119,8 +113,8 @@ void draw_scale_bar(Image& image, const Hud& hud, const Layout& layout) {
   const int width = static_cast<int>(std::lround(length * hud.pixels_per_metre));
   const int thickness = std::max(1, layout.margin / 6);
   const int y = image.height - layout.margin - thickness;
-  blend_box(image, {layout.margin + 1, y + 1, width, thickness}, 0, 110);
-  blend_box(image, {layout.margin, y, width, thickness}, 255, 235);
+  blend_box(image, {layout.margin + 1, y + 1, width, thickness}, black_ink, 110);
+  blend_box(image, {layout.margin, y, width, thickness}, white_ink, 235);
   char text[64];
   std::snprintf(text, sizeof text, "%g m", length);
   layout.small.draw(image, decode_utf8(text), layout.margin, y - layout.margin / 3);

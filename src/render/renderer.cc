@@ -326,6 +326,16 @@ Image Renderer::read_picture() const {
   return image;
 }
 
+DepthPicture Renderer::read_depth() const {
+  DepthPicture picture{surface_width_, surface_height_, {}};
+  picture.depth.resize(static_cast<std::size_t>(surface_width_) *
+                       static_cast<std::size_t>(surface_height_));
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, surface_buffer_);
+  gl_->ReadPixels(0, 0, surface_width_, surface_height_, GL_DEPTH_COMPONENT, GL_FLOAT,
+                  picture.depth.data());
+  return picture;
+}
+
 void Renderer::finish_hud(Image& image, const DrawFrame& frame) const {
   if (!settings_.hud) return;
   draw_hud(image, {frame.time, frame.hud, settings_.footer, view_.pixels_per_metre()});
@@ -347,6 +357,8 @@ Image Renderer::draw(const DrawFrame& frame) {
   light_picture();
   smooth_edges();
   Image image = read_picture();
+  if (!frame.contacts.empty())
+    draw_contacts(image, frame.contacts, view_, read_depth(), 2 * body_size_);
   TW_REQUIRE(gl_->GetError() == GL_NO_ERROR, "drawing failed: OpenGL ran out of memory");
   finish_hud(image, frame);
   return image;

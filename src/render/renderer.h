@@ -1,7 +1,7 @@
 // Draws frames of one scene into pictures in memory.
 //
 // Passes: two shadow maps (sun; straight above), surfaces (colour, normal, depth), light with sky
-// and fog, smoothing of edges.  Light is computed once per pixel, not per triangle, since llvmpipe
+// and fog, smoothing of edges; then, in memory, contacts and the HUD.  Light is computed once per pixel, not per triangle, since llvmpipe
 // shades whole blocks of pixels for each triangle.  Depth is reversed (1 at the near plane, 0 at
 // infinity) in 32-bit floats: two planes 2 cm apart stay apart at 5 km.
 //
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "render/body-drawer.h"
+#include "render/contact-overlay.h"
 #include "render/draw-list.h"
 #include "render/gl-context.h"
 #include "render/half-space-polygon.h"
@@ -68,6 +69,7 @@ class Renderer {
   void smooth_edges();
   void set_rays(const GlProgram& program) const;
   Image read_picture() const;
+  DepthPicture read_depth() const;
   void finish_hud(Image& image, const DrawFrame& frame) const;
 
   RenderSettings settings_;

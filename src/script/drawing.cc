@@ -131,7 +131,7 @@ long first_frame(const World& world, double fps) {
   return k;
 }
 
-std::vector<std::string> hud_lines(SCM title) {
+std::vector<HudLine> hud_lines(SCM title) {
   if (!scm_is_string(title)) return {};
   return {text_of(title)};
 }
@@ -149,13 +149,14 @@ TW_PRIMITIVE(open_frames, "%open-frames", (SCM frames, SCM width, SCM height, SC
 }
 
 TW_PRIMITIVE(attach_frames, "%attach-frames!",
-             (SCM world, SCM object, SCM fps, SCM looks, SCM title),
+             (SCM world, SCM object, SCM fps, SCM looks, SCM title, SCM contacts),
              "Let a world feed the drawer.") {
   World& w = to_world(world);
   DrawerBox& box = to_drawer(object);
   const double rate = to_real(fps, "fps");
   box.settings.first_frame = first_frame(w, rate);
-  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(w, looks), hud_lines(title));
+  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(w, looks), hud_lines(title),
+                                             to_bool(contacts));
   w.add_frame_sink(box.drawer, rate);
   return SCM_UNSPECIFIED;
 }
@@ -180,7 +181,8 @@ TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object),
 }
 
 TW_PRIMITIVE(render, "%render!",
-             (SCM world, SCM file, SCM width, SCM height, SCM quality, SCM looks, SCM title),
+             (SCM world, SCM file, SCM width, SCM height, SCM quality, SCM looks, SCM title,
+              SCM contacts),
              "Draw the world as it is now.") {
   require_outside_callbacks("render!");
   const World& w = to_world(world);
@@ -189,6 +191,7 @@ TW_PRIMITIVE(render, "%render!",
   frame.time = w.time();
   for (const DrawBody& body : scene.bodies) frame.poses.push_back(body.pose);
   frame.hud = hud_lines(title);
+  if (to_bool(contacts)) add_contacts(frame, w);
   render_image(to_string(file, "the picture's file"), to_render_settings(width, height, quality),
                scene, frame);
   return SCM_UNSPECIFIED;

@@ -31,8 +31,12 @@ static std::vector<Pose> poses_of(const DrawScene& scene) {
 }
 
 FrameDrawer::FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
-                         std::vector<std::string> hud)
-    : world_(world), poses_(poses_of(scene)), hud_(std::move(hud)), pipeline_(settings, scene) {}
+                         std::vector<HudLine> hud, bool contacts)
+    : world_(world),
+      poses_(poses_of(scene)),
+      hud_(std::move(hud)),
+      contacts_(contacts),
+      pipeline_(settings, scene) {}
 
 void FrameDrawer::frame(long, double frame_time, std::span<const BodyPose> poses) {
   ++frames_;
@@ -47,6 +51,7 @@ void FrameDrawer::frame(long, double frame_time, std::span<const BodyPose> poses
   frame.time = frame_time;
   frame.poses = poses_;
   frame.hud = hud_;
+  if (contacts_) add_contacts(frame, world_);
   pipeline_.submit(std::move(frame));
 }
 

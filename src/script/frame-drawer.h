@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "kernel/world.h"
@@ -13,9 +12,9 @@ namespace tw {
 
 class FrameDrawer : public FrameSink {
  public:
-  // Opens the drawing library.  `scene` holds the world's bodies at present.
+  // Opens the drawing library.  `scene` holds the world's bodies at present; `contacts`: they are drawn.
   FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
-              std::vector<std::string> hud);
+              std::vector<HudLine> hud, bool contacts);
 
   void frame(long index, double frame_time, std::span<const BodyPose> poses) override;
   FramePipeline& pipeline() { return pipeline_; }
@@ -25,7 +24,8 @@ class FrameDrawer : public FrameSink {
  private:
   const World& world_;
   std::vector<Pose> poses_;  // by body, as last known
-  std::vector<std::string> hud_;
+  std::vector<HudLine> hud_;
+  bool contacts_;
   long frames_ = 0;
   FramePipeline pipeline_;
 };
@@ -33,5 +33,9 @@ class FrameDrawer : public FrameSink {
 // All bodies of a world as they are now; camera, light and sky are the defaults.
 DrawScene draw_scene(const World& world);
 DrawBody draw_body(const World& world, BodyId id);
+
+// Adds the contacts of a world to a frame of its present, or of the time of the frame that a sink is being
+// handed: a line for each that carries load, and lines of the HUD.
+void add_contacts(DrawFrame& frame, const World& world);
 
 }  // namespace tw

@@ -17,6 +17,7 @@ void define_states();
 void define_contact();
 void define_callbacks();
 void define_collisions();
+void define_contacts();
 void define_worlds();
 void define_motions();
 void define_recorder_type();
@@ -36,6 +37,7 @@ extern "C" void tw_init_guile() {
   tw::define_contact();
   tw::define_callbacks();
   tw::define_collisions();
+  tw::define_contacts();
   tw::define_worlds();
   tw::define_motions();
   tw::define_recorder_type();

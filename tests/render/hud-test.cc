@@ -45,6 +45,15 @@ TEST(Hud, lines_a_footer_and_a_scale_bar_appear) {
   EXPECT_EQ(bar, 40);
 }
 
+TEST(Hud, a_line_has_its_own_colour) {
+  Image image = grey(320, 240);
+  draw_hud(image, {3, {HudLine("slipping", {255, 0, 0})}, "", 0});
+  bool red_letters = false;
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 160; ++x) red_letters |= red(image, x, y) > 100 + green(image, x, y);
+  EXPECT_TRUE(red_letters);
+}
+
 TEST(Hud, what_does_not_fit_is_cut_off) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(20, 60), std::pair(600, 48)}) {
     Image image = grey(width, height);

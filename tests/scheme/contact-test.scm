@@ -42,4 +42,50 @@
 (test-assert "a ball bounces off the ground" (> (fall #f) 0.5))
 (test-assert "unless collisions are disabled" (close? (fall #t) -2.905 1e-12))
 
+;; ---- contacts at present ----
+
+(in-world ()
+  (let* ((floor (ground))
+         (box (add-body! #:name "box" #:shape (box 0.2 0.2 0.2) #:mass 5 #:position #(0 0 0.1))))
+    (test-equal "before the run there are no contacts" '() (contacts))
+    (run! #:until 1)
+    (let ((all (contacts)))
+      (test-equal "a box on the ground has four" 4 (length all))
+      (test-assert "they are contacts" (every contact? all))
+      (test-assert "nothing else is" (not (any contact? (list 1 "a" '() floor #f))))
+      (test-assert "between ground and box" (every (lambda (c) (equal? (contact-bodies c) (list floor box))) all))
+      (test-assert "normals point up, from the ground to the box"
+        (every (lambda (c) (close? (contact-normal c) #(0 0 1) 1e-9)) all))
+      (test-assert "at its lower corners"
+        (every (lambda (c)
+                 (match (contact-point c)
+                   (#(x y z) (and (close? (abs x) 0.1 1e-4) (close? (abs y) 0.1 1e-4) (close? z 0 1e-4)))))
+               all))
+      (test-assert "their forces carry the weight, N"
+        (close? (apply + (map contact-force all)) (* 5 9.81) 0.01))
+      (test-assert "their springs are compressed" (every (lambda (c) (< -1e-3 (contact-gap c) 0)) all))
+      (test-assert "no friction on the level" (every (lambda (c) (close? (contact-friction c) #(0 0 0) 1e-3)) all))
+      (test-assert "nothing slips" (not (any contact-slipping? all))))
+    (test-message "a contact of the wrong type" "the contact is 5; expected one that" (contact-force 5))
+    (set! (velocity box) #(0 0 3))
+    (run-for! 0.1)
+    (test-equal "in the air it has none" '() (contacts))))
+
+(in-world ()
+  (ground)
+  (set-contact-parameters! #t #t #:friction 0.3)
+  (add-body! #:shape (box 0.4 0.4 0.1) #:position #(0 0 0.05) #:velocity #(2 0 0))
+  (run! #:until 0.3)
+  (let ((loaded (filter (lambda (c) (positive? (contact-force c))) (contacts))))
+    (test-assert "a sliding box slips" (and (pair? loaded) (every contact-slipping? loaded)))
+    (test-assert "its friction is mu N against the motion"
+      (every (lambda (c)
+               (close? (vector-ref (contact-friction c) 0) (* -0.3 (contact-force c)) 1e-3))
+             loaded))))
+
+(in-world ()
+  (let ((ball (add-body! #:shape (sphere 1))))
+    (add-callback! ball (lambda (time ball) (contacts)) #:period 1)
+    (test-message "inside a callback" "contacts was used inside a callback" (run! #:until 1))))
+
 (test-end "contact")

@@ -32,7 +32,8 @@
    on-collision! collision-time collision-point collision-normal collision-speed collision-impulse
    position orientation velocity angular-velocity kinetic-energy slot slot? applied-force
    applied-torque body-name random-real! observe! run! run-for! step! simulate! statistics
-   show-statistics state-queue checkpoint restore! total-energy total-momentum camera light sky render!))
+   contacts contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
+   contact-slipping? show-statistics state-queue checkpoint restore! total-energy total-momentum camera light sky render!))
 
 (test-equal "no private name is exported" '()
   (filter (lambda (name) (string-prefix? "%" (symbol->string name))) (map car (exports '(timewarp)))))

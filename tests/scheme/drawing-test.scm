@@ -41,6 +41,13 @@
 (define (hash-of . options)
   (last (lines-of (run-output (apply run "ball.scm" "--quiet" "--hash" options)))))
 
+(define (box-frames folder . options)
+  (apply run "box.scm" "--quiet" "--hash" "--until=0.5" "--fps=2" "--size=320x180" "--quality=draft"
+         (string-append "--frames=" folder) options))
+
+(define (bytes name)
+  (call-with-input-file (in-folder name) get-string-all #:encoding "ISO-8859-1"))
+
 (cond
  ((%drawing?)
   (let ((result (run "ball.scm" "--frames=out" "--fps=4" "--size=160x90" "--quality=draft" "--stats=s.json")))
@@ -65,6 +72,26 @@
     (test-assert "render! draws one picture" (png? "shot.png"))
     (test-equal "simulate! draws frames" '(#t #t #t #t #f)
       (map (lambda (k) (png? (format #f "own/0000~a.png" k))) (iota 5))))
+  (write-file "box.scm"
+              "(use-modules (timewarp))"
+              "(add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)"
+              "(add-body! #:shape (box 1 1 1) #:position #(0 0 0.5))"
+              "(camera #:eye #(2 -3 1) #:target #(0 0 0.4))")
+  (test-equal "--contacts doesn't change the history"
+    (run-output (box-frames "bare"))
+    (run-output (box-frames "lines" "--contacts")))
+  (test-assert "but the pictures" (not (equal? (bytes "bare/00001.png") (bytes "lines/00001.png"))))
+  (write-file "box-shots.scm"
+              "(load \"box.scm\")"
+              "(define (shot file contacts?) (render! file #:size '(320 180) #:quality 'draft #:contacts? contacts?))"
+              "(simulate! #:until 0.5 #:frames \"own-lines\" #:size '(320 180) #:quality 'draft #:contacts? #t)"
+              "(shot \"bare.png\" #f) (shot \"lines.png\" #t)")
+  (test-equal "#:contacts? is taken by render! and simulate!" 0
+    (run-status (run "box-shots.scm" "--quiet" "--until=0" "--fps=2")))
+  (test-assert "render! draws contacts if asked to"
+    (and (equal? (bytes "bare.png") (bytes "bare/00001.png"))
+         (equal? (bytes "lines.png") (bytes "lines/00001.png"))))
+  (test-equal "and so does simulate!" (bytes "lines/00001.png") (bytes "own-lines/00001.png"))
   (let ((result (run "ball.scm" "--frames=out" "--size=99999x10")))
     (test-equal "a picture too large: status 2" 2 (run-status result)))
   (write-file "bad-size.scm" "(use-modules (timewarp))" "(render! \"x.png\" #:size 5)")

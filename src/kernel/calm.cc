@@ -1,0 +1,118 @@
+// Sleepers: members of a moving group that stand still provisionally.
+//
+// One stone that rocks keeps a heap awake, for rest is decided for whole groups.  So at the check of a large
+// group those of its members that hardly move are laid to rest for the time being: groups at rest of their
+// own, in which the others see still bodies at their border (region.cc), and which wake where the forces on
+// them change.  What still moves comes to rest only together with its provisional neighbours, all awake
+// again and watched by the rule for whole groups (group-check.cc): nothing is frozen in the end that would
+// have moved.
+//
+// A member is laid to rest when it was slow for a while without getting faster or away (so neither a tower
+// that begins to tip nor a ball that creeps), no loaded contact of it slips, and everything it touches is
+// slow or still, too.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/calm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+// Calm: slower than this share of sqrt(g size).
+constexpr double calm_share = 5e-4;
+// s; the second half's peak must not exceed the first's by more, and the way made by this share of it.
+constexpr double watch = 0.5, growth = 1.1, drift = 0.1;
+// Fewer are not worth a group of their own: a number, and a share of the group.
+constexpr std::size_t least_sleepers = 8;
+constexpr double least_share = 0.25;
+
+double fastest_point(const Side& side) {
+  return side.surface_speed() + side.point.w.norm() * side.body->radius;
+}
+
+bool stays(const Calm& calm, const Side& side, double now) {
+  const double way = std::max(calm.early_peak, calm.peak) * (now - calm.since);
+  const double turned = side.point.q.angularDistance(calm.q) * side.body->radius;
+  return calm.peak <= growth * calm.early_peak &&
+         (side.point.x - calm.x).norm() + turned <= drift * way;
+}
+
+}  // namespace
+
+// The books of one body at a discontinuity.
+Calm Kernel::watched(const Draft& draft, const Key& key) const {
+  const Side side = side_of(draft);
+  const double speed = fastest_point(side);
+  if (speed >= calm_share * std::sqrt(gravity_magnitude() * side.body->least_width)) return {};
+  const Group* group = draft.data.group.get();
+  const Calm known = group && !group->at_rest ? group->calm[draft.data.member] : Calm();
+  const double age = key.time - known.since;
+  if (known.since == never || (age > watch && !stays(known, side, key.time)))
+    return {key.time, speed, 0, side.point.x, side.point.q};
+  Calm calm = known;
+  (age < 0.5 * watch ? calm.early_peak : calm.peak) =
+      std::max(age < 0.5 * watch ? calm.early_peak : calm.peak, speed);
+  return calm;
+}
+
+// Which of the drafts are laid to rest provisionally, at the check of whole groups.
+std::vector<bool> Kernel::sleepers(const Regroup& work, const std::vector<Calm>& calm) const {
+  const std::size_t count = work.drafts.size();
+  std::vector<bool> asleep(count, false);
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Draft& draft = work.drafts[i];
+    if (!work.changes(&draft)) continue;
+    ++moving;
+    const double age = work.key.time - calm[i].since;
+    asleep[i] = age > watch && stays(calm[i], side_of(draft), work.key.time);
+  }
+  const auto too_few = [&] {
+    const auto number = static_cast<std::size_t>(std::count(asleep.begin(), asleep.end(), true));
+    return number < least_sleepers || static_cast<double>(number) < least_share * static_cast<double>(moving);
+  };
+  if (too_few()) return std::vector<bool>(count, false);
+
+  // what touches something that moves, or slips, stays awake
+  const auto place = [&](const Draft* d) { return static_cast<std::size_t>(d - work.drafts.data()); };
+  const auto disturbs = [&](BodyId id) {
+    const Draft* draft = work.draft_of(id);
+    if (!bodies[id]->dynamic()) return !bodies[id]->fixed();
+    if (work.changes(draft)) return calm[place(draft)].since == never;
+    return !draft->data.group || !draft->data.group->at_rest;
+  };
+  for (const OldLink& old : work.before) {
+    const auto a = static_cast<BodyId>(old.pair >> 32), b = static_cast<BodyId>(old.pair & 0xffffffffu);
+    const Draft *da = work.draft_of(a), *db = work.draft_of(b);
+    const bool lies_a = work.changes(da) && asleep[place(da)], lies_b = work.changes(db) && asleep[place(db)];
+    if (!lies_a && !lies_b) continue;
+    bool slips = false;
+    const double when = old.group->at_rest ? old.group->arc->start().time : work.key.time;
+    for (std::uint32_t c = old.link->first; c < old.link->first + old.link->count && !slips; ++c) {
+      const ContactForce f = old.group->arc->contact_force(static_cast<int>(c), when);
+      slips = f.normal_force > 0 && f.slipping;
+    }
+    if (lies_a && (slips || (old.link->count > 0 && disturbs(b)))) asleep[place(da)] = false;
+    if (lies_b && (slips || (old.link->count > 0 && disturbs(a)))) asleep[place(db)] = false;
+  }
+  if (too_few()) return std::vector<bool>(count, false);
+  return asleep;
+}
+
+// All that lie provisionally at rest around groups that would come to rest now: they wake instead.
+std::vector<BodyId> Kernel::provisional_around(const Regroup& work) const {
+  std::vector<BodyId> around;
+  for (const auto& group : work.made)
+    if (group->at_rest && !group->provisional)
+      for (const BodyId id : group->outside) {
+        const Draft* draft = bodies[id]->dynamic() ? work.draft_of(id) : nullptr;
+        if (draft && !work.changes(draft) && draft->data.group->provisional) around.push_back(id);
+      }
+  return around;
+}
+
+}  // namespace tw
