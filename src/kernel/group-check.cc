@@ -157,9 +157,11 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
     for (const GroupLink& link : groups[i]->links) {
       const auto a = static_cast<BodyId>(link.pair >> 32), b = static_cast<BodyId>(link.pair & 0xffffffffu);
       if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
-      // seen from either side, or two checks of one time would take each other back
+      // seen from either side, or two checks of one time would take each other back: so links of those that
+      // have left do not count
       const State& state_a = *graph.last_before(a, key);
       const State& state_b = *graph.last_before(b, key);
+      if (state_a.group != groups[i] && state_b.group != groups[i]) continue;
       const Group* judge = governing(state_a, state_b);
       if (!judge || !judge->link(link.pair)) continue;
       for (const State* state : {&state_a, &state_b}) {
