@@ -60,7 +60,8 @@ Calm Kernel::watched(const Draft& draft, const Key& key) const {
 }
 
 // Which of the drafts are laid to rest provisionally, at the check of whole groups.
-std::vector<bool> Kernel::sleepers(const Regroup& work, const std::vector<Calm>& calm) const {
+std::vector<bool> Kernel::sleepers(const Regroup& work) const {
+  const std::vector<Calm>& calm = work.calm;
   const std::size_t count = work.drafts.size();
   std::vector<bool> asleep(count, false);
   std::size_t moving = 0;

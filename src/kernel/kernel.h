@@ -305,7 +305,7 @@ class Kernel {
 
   // ---- calm.cc ----
   Calm watched(const Draft& draft, const Key& key) const;
-  std::vector<bool> sleepers(const Regroup& work, const std::vector<Calm>& calm) const;
+  std::vector<bool> sleepers(const Regroup& work) const;
   std::vector<BodyId> provisional_around(const Regroup& work) const;
 
   // ---- end-test.cc ----

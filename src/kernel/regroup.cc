@@ -340,7 +340,7 @@ void Kernel::finish(Regroup& work) {
   work.calm.resize(count);
   for (std::size_t i = 0; i < count; ++i)
     if (work.changes(&work.drafts[i])) work.calm[i] = watched(work.drafts[i], work.key);
-  work.asleep = work.may_sleep ? sleepers(work, work.calm) : std::vector<bool>(count, false);
+  work.asleep = work.may_sleep ? sleepers(work) : std::vector<bool>(count, false);
 
   // who hangs together, and who has a link at all
   Components components(count);

@@ -41,6 +41,18 @@ TEST(Heaps, heap_of_boxes_balls_and_rocks_under_adversaries) {
   expect_same_under_adversaries(scenes()[0], 50);
 }
 
+// Large enough that blows divide its groups (kernel/region.cc).
+TEST(Heaps, large_heap_in_regions_under_adversaries) {
+  std::vector<Schedule> schedules;
+  for (std::uint64_t seed = 0; seed < (long_tests() ? 30u : 6u); ++seed) {
+    Schedule schedule = adversary_schedule(seed);
+    schedule.adversary->head_start = 0.01;
+    schedules.push_back(schedule);
+  }
+  const Tally tally = expect_one_history(heap_scene(40, 1), schedules, 3);
+  EXPECT_GT(tally.rollbacks, 20 * tally.runs);
+}
+
 TEST(Heaps, tower_hit_by_a_ball_under_adversaries) {
   expect_same_under_adversaries(scenes()[1], 100);
 }
