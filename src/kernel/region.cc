@@ -3,14 +3,14 @@
 // What happens to one body of a heap moves others the less the farther away they are: the next few feel it,
 // the hundredth does not before the next group check.  So a discontinuity gives new arcs to the bodies it
 // concerns and to those that touch them.  What these meet at their border follows the arcs that it has; but
-// where the new motion differs from the old by more than a step of the integrator may be wrong by, the next
-// ones are taken in too, until nobody at the border would notice.  At the group check that was due all join
-// again.
+// where it would miss an impulse that changes its velocity by more than a step of the integrator may be wrong
+// by (at rest: a force of a share of its weight), it is taken in too, until nobody at the border would
+// notice.  At the group check that was due all join again.
 //
 // Both arcs of a border's contact hold the same features; the group that was made last has the say in it.
 // States at the border are recorded, so that a rollback of theirs takes those back that relied on them.
 //
-// Measured (doc/performance.md): a blow on a heap of 90 sliding rocks moves 4 to 6 of them by more than
+// Measured: a blow on a heap of 90 sliding rocks moves 4 to 6 of them by more than
 // 1 mm/s before the next check.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -225,6 +225,9 @@ double Kernel::deviation(const Group& group, BodyId id) const {
 std::vector<BodyId> Kernel::reached_beyond(const Regroup& work) const {
   std::vector<BodyId> more;
   const auto lies_beyond = [&](BodyId id) { return bodies[id]->dynamic() && !work.changes(work.draft_of(id)); };
+  const auto wakes = [&](BodyId id, const Vec3& change) {
+    return change.norm() > wake_share * (gravity_magnitude() * bodies[id]->mass);
+  };
   for (const auto& group : work.made) {
     if (!group->has_border) continue;
     if (!group->at_rest) group->arc->extend(group->next_check);
@@ -237,10 +240,10 @@ std::vector<BodyId> Kernel::reached_beyond(const Regroup& work) const {
       if (theirs->at_rest) {
         const GroupLink* known = theirs->link(link.pair);
         const Vec3 before = known ? force_on(other, *theirs, *known, end) : Vec3(Vec3::Zero());
-        const double weight = gravity_magnitude() * bodies[other]->mass;
-        if ((force_on(other, *group, link, end) - before).norm() > wake_share * weight) more.push_back(other);
+        if (wakes(other, force_on(other, *group, link, end) - before)) more.push_back(other);
         continue;
       }
+      // the impulse only where the neighbour's motion could have changed it
       const double tolerance = group->arc->start().velocity_tolerance;
       if (deviation(*group, mine) > tolerance &&
           missed_impulse(other, *group, link, *theirs).norm() > tolerance * bodies[other]->mass)
@@ -258,8 +261,7 @@ std::vector<BodyId> Kernel::reached_beyond(const Regroup& work) const {
                                        [&](const LooseLink& l) { return l.pair == old.pair; });
     const GroupLink* known = theirs->link(old.pair);
     if (standing != work.links.end() || !known) continue;
-    const double weight = gravity_magnitude() * bodies[other]->mass;
-    if (force_on(other, *theirs, *known, 0).norm() > wake_share * weight) more.push_back(other);
+    if (wakes(other, force_on(other, *theirs, *known, 0))) more.push_back(other);
   }
   return more;
 }
@@ -344,8 +346,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     if (more.empty()) {
       finish(work);
       more = reached_beyond(work);
-      if (const std::vector<BodyId> waking = all_provisional(provisional_around(work), key); !waking.empty())
-        more.insert(more.end(), waking.begin(), waking.end());
+      for (const BodyId id : all_provisional(provisional_around(work), key)) more.push_back(id);
     }
     if (more.empty()) {
       for (const auto& group : work.made) count_group(*group);
