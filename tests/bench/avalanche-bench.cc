@@ -1,6 +1,7 @@
 // Avalanches to their ends: one row of a Markdown table for each scene written by dump-bodies.scm.
 //
-//   avalanche-bench FILE... [--until=SECONDS]    default 45 s; fails where a row has a verdict but ok
+//   avalanche-bench FILE... [--until=SECONDS] [--accuracy=EPS]    default 45 s, as the scene;
+//                                                 fails where a row has a verdict but ok
 //
 // - CPU: of the kernel (`cpu_seconds`); reading states and measuring depths is not in it
 // - integration, rollback: a moving body's, over the duration; integration beyond the duration
@@ -31,6 +32,8 @@ constexpr double most_rise = 1e-6;         // of the energy at the start
 constexpr double most_integration = 0.2;   // beyond the duration
 constexpr double most_rollback = 0.16;     // of the duration
 
+constexpr double scene_accuracy = 1e-5;    // that of scenes/avalanche.scm
+
 struct Outcome {
   std::string error;          // empty: none
   double reached = 0;         // s
@@ -47,7 +50,7 @@ struct Outcome {
 
 class AvalancheRun {
  public:
-  explicit AvalancheRun(const OtherScene& scene);
+  AvalancheRun(const OtherScene& scene, double accuracy);
   // Goes on to `until` or to the first error, frame by frame.
   Outcome run(double until);
   const World& world() const { return world_; }
@@ -64,9 +67,9 @@ class AvalancheRun {
   Outcome outcome_;
 };
 
-AvalancheRun::AvalancheRun(const OtherScene& scene)
+AvalancheRun::AvalancheRun(const OtherScene& scene, double accuracy)
     : scene_(scene), meter_(scene), states_(first_states(scene)) {
-  world_.set_accuracy(1e-5);  // as scenes/avalanche.scm
+  world_.set_accuracy(accuracy);
   world_.set_gravity(scene.gravity);
   ContactSettings contact;
   contact.restitution = scene.restitution;
@@ -170,9 +173,9 @@ std::string verdict(const Outcome& o, double beyond, double rollback) {
 }
 
 // Returns whether all is well.
-bool run_row(const std::string& file, double until) {
+bool run_row(const std::string& file, double until, double accuracy) {
   const OtherScene scene = read_scene(file);
-  AvalancheRun run(scene);
+  AvalancheRun run(scene, accuracy);
   const Outcome o = run.run(until);
   const auto value = [&](const char* name) { return statistic(run.world(), name); };
   const double duration = o.reached > 0 ? o.reached : 1;
@@ -195,7 +198,7 @@ bool run_row(const std::string& file, double until) {
 }
 
 [[noreturn]] void usage(const char* program) {
-  std::fprintf(stderr, "usage: %s FILE... [--until=SECONDS]     FILE is written by dump-bodies.scm\n",
+  std::fprintf(stderr, "usage: %s FILE... [--until=SECONDS] [--accuracy=EPS]     FILE is written by dump-bodies.scm\n",
                program);
   std::exit(2);
 }
@@ -206,14 +209,16 @@ bool run_row(const std::string& file, double until) {
 int main(int argc, char** argv) {
   using namespace tw::bench;
   double until = 45;  // s
+  double accuracy = scene_accuracy;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument.rfind("--until=", 0) == 0) until = std::atof(argument.c_str() + 8);
+    else if (argument.rfind("--accuracy=", 0) == 0) accuracy = std::atof(argument.c_str() + 11);
     else if (argument[0] == '-') usage(argv[0]);
     else files.push_back(argument);
   }
-  if (files.empty() || !(until > 0)) usage(argv[0]);
+  if (files.empty() || !(until > 0) || !(accuracy > 0)) usage(argv[0]);
 
   std::printf("%g s; depths at every frame\n\n", until);
   std::puts("| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
@@ -224,7 +229,7 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   bool good = true;
   try {
-    for (const std::string& file : files) good = run_row(file, until) && good;
+    for (const std::string& file : files) good = run_row(file, until, accuracy) && good;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
