@@ -39,7 +39,15 @@ class SpatialHash {
   template <class Visit>
   void overlapping(std::uint32_t id, Visit&& visit) const {
     for (const Level& level : levels_)
-      if (level.count > 0) overlapping_on(level, id, visit);
+      if (level.count > 0) overlapping_on(level, boxes_[id], entries_[id], id, visit);
+  }
+  // The same for any box.
+  template <class Visit>
+  void overlapping(const Aabb& box, Visit&& visit) const {
+    Entry rough;
+    set_rough(rough, box);
+    for (const Level& level : levels_)
+      if (level.count > 0) overlapping_on(level, box, rough, nobody, visit);
   }
 
   std::size_t size() const { return count_; }
@@ -93,10 +101,9 @@ class SpatialHash {
   void grow_table(Level& level);
 
   template <class Visit>
-  void overlapping_on(const Level& level, std::uint32_t id, Visit&& visit) const {
-    const Aabb& box = boxes_[id];
+  void overlapping_on(const Level& level, const Aabb& box, const Entry wanted, std::uint32_t id,
+                      Visit&& visit) const {
     const Entry* const entries = entries_.data();
-    const Entry wanted = entries[id];
     const std::uint64_t mask = level.mask();
     std::array<std::uint64_t, 3> first, count;
     for (int i = 0; i < 3; ++i) {

@@ -87,7 +87,7 @@ std::vector<bool> Kernel::sleepers(const Regroup& work) const {
     return !draft->data.group || !draft->data.group->at_rest;
   };
   for (const OldLink& old : work.before) {
-    const auto a = static_cast<BodyId>(old.pair >> 32), b = static_cast<BodyId>(old.pair & 0xffffffffu);
+    const BodyId a = first_of(old.pair), b = second_of(old.pair);
     const Draft *da = work.draft_of(a), *db = work.draft_of(b);
     const bool lies_a = work.changes(da) && asleep[place(da)], lies_b = work.changes(db) && asleep[place(db)];
     if (!lies_a && !lies_b) continue;

@@ -134,7 +134,11 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
   double least = never;
   if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
     least = kinematic_horizon;
-  least = std::min(least, std::min(a.horizon, b.horizon) - when);
+  // a step of an arc has narrow bounds, all of them wide ones
+  const bool in_steps = a.step_end != never || b.step_end != never;
+  const Mover step_a = in_steps ? a.within_step(*piece.a, when) : a;
+  const Mover step_b = in_steps ? b.within_step(*piece.b, when) : b;
+  const double step = std::min(step_a.horizon, step_b.horizon) - when, arc = piece.end.time - when;
 
   for (std::size_t i = 0; i < parts_a.size(); ++i)
     for (std::size_t j = 0; j < parts_b.size(); ++j) {
@@ -150,8 +154,13 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
         if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
         if (spheres || centers - radii > far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
-          least = std::min(least, time_apart(a, pa, b, pb, n, ca + pa.bound_radius * n,
-                                             cb - pb.bound_radius * n, allowance, true));
+          const auto apart = [&](const Mover& x, const Mover& y) {
+            return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n, allowance,
+                              true);
+          };
+          double time = apart(a, b);
+          if (in_steps && time < arc) time = std::max(time, std::min(step, apart(step_a, step_b)));
+          least = std::min(least, time);
           continue;
         }
       }
@@ -161,9 +170,13 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
       if (!(s.distance > -allowance)) return -never;
       double apart = time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, allowance, false);
+      if (in_steps && apart < arc)
+        apart = std::max(apart, std::min(step, time_apart(step_a, pa, step_b, pb, s.normal, s.point_a,
+                                                          s.point_b, allowance, false)));
       // where edges and faces turn past each other, a plane that turns with them lasts longer
       if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
-        apart = std::max(apart, turning_time_apart(a, pa, b, pb, s, allowance));
+        apart = std::max(apart,
+                         std::min(step, turning_time_apart(step_a, pa, step_b, pb, s, allowance)));
       least = std::min(least, apart);
     }
   ++counters.certificates;

@@ -116,7 +116,7 @@ void Kernel::claim_window(Body& body) {
   const double end = body.fixed() ? never : window_end(body);
   body.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
-    if (!body.unbounded) grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end));
+    if (!body.unbounded) grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end), body.fixed());
     body.placed = true;
     drop_parted_pairs(body);
     const std::uint64_t candidates = counters.candidates;

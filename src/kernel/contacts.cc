@@ -45,8 +45,8 @@ ContactSurvey Kernel::survey_contacts(double when) const {
     ++survey.groups;
     const double arc_time = group->at_rest ? group->arc->start().time : when;
     for (const GroupLink& link : group->links) {
-      const State* a = state_at(static_cast<BodyId>(link.pair >> 32), when);
-      const State* b = state_at(static_cast<BodyId>(link.pair & 0xffffffffu), when);
+      const State* a = state_at(first_of(link.pair), when);
+      const State* b = state_at(second_of(link.pair), when);
       if (governing(*a, *b) != group) continue;
       for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
         survey.contacts.push_back(

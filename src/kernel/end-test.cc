@@ -38,11 +38,11 @@ struct Pairing {
   std::vector<ManifoldPoint>& points;
 
   Frame frame(const Body& body, double when) const {
-    const auto at = std::lower_bound(group.members.begin(), group.members.end(), body.id());
-    if (at == group.members.end() || *at != body.id()) return Frame(outside_motion(body).pose(when));
+    const int member = group.member_of(body.id());
+    if (member < 0) return Frame(outside_motion(body).pose(when));
     Vec3 x;
     Quat q;
-    group.arc->pose(static_cast<int>(at - group.members.begin()), when, x, q);
+    group.arc->pose(member, when, x, q);
     return Frame(q.toRotationMatrix(), x);
   }
   const Motion& outside_motion(const Body& body) const {
@@ -74,17 +74,16 @@ struct Pairing {
   double travel() const {
     double sum = 0;
     for (const Body* body : {&a, &b}) {
-      const auto at = std::lower_bound(group.members.begin(), group.members.end(), body->id());
+      const int member = group.member_of(body->id());
       const double from = group.arc->start().time, to = group.next_check;
-      if (at == group.members.end() || *at != body->id()) {
+      if (member < 0) {
         if (!body->dynamic() || link.count == 0) continue;
         const Motion& motion = outside_motion(*body);
         sum += motion.path_bounds(from, to).size().norm() +
                motion.angular_speed_bound(from, to) * (to - from) * body->radius;
         continue;
       }
-      const GroupBounds bounds =
-          group.arc->bounds(static_cast<int>(at - group.members.begin()), from, to);
+      const GroupBounds bounds = group.arc->bounds(member, from, to);
       sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
     }
     return sum;
@@ -136,10 +135,10 @@ void Kernel::test_group_end(Group& group) {
   }
   group.ends.assign(group.members.size(), group.next_check);
   for (const EarlyEnd& early : early_ends)
-    for (const std::uint64_t side : {early.pair >> 32, early.pair & 0xffffffffu}) {
-      const auto at = std::lower_bound(group.members.begin(), group.members.end(), side);
-      if (at == group.members.end() || *at != side) continue;
-      double& end = group.ends[static_cast<std::size_t>(at - group.members.begin())];
+    for (const BodyId side : {first_of(early.pair), second_of(early.pair)}) {
+      const int member = group.member_of(side);
+      if (member < 0) continue;
+      double& end = group.ends[static_cast<std::size_t>(member)];
       end = std::min(end, early.time);
     }
 }
@@ -147,8 +146,8 @@ void Kernel::test_group_end(Group& group) {
 // When the contacts of a link stop telling the truth; the next check if they do not.
 double Kernel::early_end(Group& group, const GroupLink& link) {
   double end = group.next_check;
-  const Body& a = *bodies[link.pair >> 32];
-  const Body& b = *bodies[link.pair & 0xffffffffu];
+  const Body& a = *bodies[first_of(link.pair)];
+  const Body& b = *bodies[second_of(link.pair)];
   Pairing pair{group, link, a, b, {}, {}, manifold_points_};
   const double allowed = unseen_depth * default_depth * std::min(a.least_width, b.least_width);
   if (pair.travel() <= allowed) return end;

@@ -30,8 +30,8 @@ void tell_fission(Regroup& work, const Group& group, const GroupLink& link) {
   row.kind = CollisionKind::fission;
   row.key = work.key;
   row.time = work.key.time;
-  row.body1 = static_cast<BodyId>(link.pair >> 32);
-  row.body2 = static_cast<BodyId>(link.pair & 0xffffffffu);
+  row.body1 = first_of(link.pair);
+  row.body2 = second_of(link.pair);
   if (link.count > 0) {
     const double now = group.at_rest ? group.arc->start().time : work.key.time;
     const ContactForce f = group.arc->contact_force(static_cast<int>(link.first), now);
@@ -155,7 +155,7 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
     const std::vector<BodyId> there = remaining(*groups[i], key);
     all.insert(all.end(), there.begin(), there.end());
     for (const GroupLink& link : groups[i]->links) {
-      const auto a = static_cast<BodyId>(link.pair >> 32), b = static_cast<BodyId>(link.pair & 0xffffffffu);
+      const BodyId a = first_of(link.pair), b = second_of(link.pair);
       if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
       // seen from either side, or two checks of one time would take each other back: so links of those that
       // have left do not count
@@ -178,10 +178,8 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
 // Those whose contacts end at `when`, before the check of their group.
 std::vector<BodyId> Kernel::early_bodies(const Group& group, double when, const Key& key) const {
   std::vector<BodyId> all;
-  for (const BodyId id : remaining(group, key)) {
-    const auto member = std::lower_bound(group.members.begin(), group.members.end(), id) - group.members.begin();
-    if (group.end(static_cast<std::uint32_t>(member)) == when) all.push_back(id);
-  }
+  for (const BodyId id : remaining(group, key))
+    if (natural_end(*graph.last_before(id, key)) == when) all.push_back(id);
   return all;
 }
 

@@ -63,9 +63,12 @@ struct Group {
   std::vector<double> ends;             // of each member's arc, s; empty: all at next_check
   std::unique_ptr<GroupArc> arc;
 
-  bool contains(std::uint32_t body) const {
-    return std::binary_search(members.begin(), members.end(), body);
+  // Its place among the members; -1: it is none.
+  int member_of(std::uint32_t body) const {
+    const auto at = std::lower_bound(members.begin(), members.end(), body);
+    return at != members.end() && *at == body ? static_cast<int>(at - members.begin()) : -1;
   }
+  bool contains(std::uint32_t body) const { return member_of(body) >= 0; }
   const GroupLink* link(std::uint64_t pair) const {
     const auto at = std::lower_bound(links.begin(), links.end(), pair,
                                      [](const GroupLink& l, std::uint64_t p) { return l.pair < p; });

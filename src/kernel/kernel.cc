@@ -144,8 +144,8 @@ double Kernel::total_energy(double when) const {
   for (const Group* group : groups) {
     std::vector<bool> counted(group->tags.size(), false);
     for (const GroupLink& link : group->links) {
-      const State* a = state_at(static_cast<BodyId>(link.pair >> 32), when);
-      const State* b = state_at(static_cast<BodyId>(link.pair & 0xffffffffu), when);
+      const State* a = state_at(first_of(link.pair), when);
+      const State* b = state_at(second_of(link.pair), when);
       if (governing(*a, *b) != group) continue;
       std::fill_n(counted.begin() + link.first, link.count, true);
     }

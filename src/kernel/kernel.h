@@ -26,7 +26,7 @@
 
 #include "base/random.h"
 #include "collision/manifold.h"
-#include "collision/spatial-hash.h"
+#include "collision/broad-phase.h"
 #include "kernel/arc.h"
 #include "kernel/body.h"
 #include "kernel/checkpoint.h"
@@ -131,7 +131,7 @@ class Kernel {
   std::unordered_map<std::string, BodyId> names;
   StateGraph graph;
   EventQueue queue;
-  SpatialHash grid;
+  BroadPhase grid;
   std::vector<BodyId> unbounded;     // bodies that no box holds: every claim tests them
   std::vector<BodyId> kinematic;     // bodies that move by a given function of time
   std::vector<Pair> pairs;

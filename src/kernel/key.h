@@ -60,6 +60,9 @@ inline std::uint64_t pair_id(std::uint32_t a, std::uint32_t b) {
   return a < b ? (std::uint64_t{a} << 32 | b) : (std::uint64_t{b} << 32 | a);
 }
 
+inline std::uint32_t first_of(std::uint64_t pair) { return static_cast<std::uint32_t>(pair >> 32); }
+inline std::uint32_t second_of(std::uint64_t pair) { return static_cast<std::uint32_t>(pair); }
+
 // "impact 3-17 at 1.25 s, microstep 1": for messages.
 std::string show(const Key& key);
 

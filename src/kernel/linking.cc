@@ -141,8 +141,8 @@ void Kernel::match_stretches(Regroup& work, const LooseLink& link, const OldLink
   const Group& before = *was_linked.group;
   GroupArc& arc = *before.arc;
   const double now = before.at_rest ? arc.start().time : work.key.time;
-  const auto size_of = [&](std::uint64_t id) { return bodies[id]->least_width; };
-  const double size = std::min(size_of(link.pair >> 32), size_of(link.pair & 0xffffffffu));
+  const auto size_of = [&](BodyId id) { return bodies[id]->least_width; };
+  const double size = std::min(size_of(first_of(link.pair)), size_of(second_of(link.pair)));
   std::vector<bool> taken(old->count, false);
   for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
     LooseContact& fresh = work.contacts[c];
@@ -278,8 +278,8 @@ Side Kernel::outside_side(const Body& body, double when) const {
 void Kernel::find_fixed_around(const Body& mover) {
   ground_.clear();
   if (mover.unbounded) return;
-  grid.overlapping(mover.id(), [&](BodyId id) {
-    if (bodies[id]->fixed() && may_collide(mover, *bodies[id])) ground_.push_back(id);
+  grid.standing_around(mover.id(), [&](BodyId id) {
+    if (may_collide(mover, *bodies[id])) ground_.push_back(id);
   });
   std::sort(ground_.begin(), ground_.end());
 }
@@ -330,8 +330,8 @@ void Kernel::refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at,
     }
   }
   for (const OldLink& old : work.before)
-    if (!looked_at(static_cast<BodyId>(old.pair >> 32)) &&
-        !looked_at(static_cast<BodyId>(old.pair & 0xffffffffu)))
+    if (!looked_at(first_of(old.pair)) &&
+        !looked_at(second_of(old.pair)))
       carry(work, old);
 }
 

@@ -23,6 +23,7 @@ struct Mover {
   Vec3 acceleration = Vec3::Zero();
   Vec3 spread = Vec3::Zero();  // the acceleration differs from `acceleration` by this at most
   double horizon = never;      // bounds hold so far
+  double step_end = never;     // of the integrator's present step; `never`: the arc ends with it
 
   Mover(const Body& b, const State& arc, double when) : body(&b) {
     if (arc.group && !arc.group->at_rest) {
@@ -39,16 +40,28 @@ struct Mover {
     else
       speed_bound = b.motion->speed_bound(when, when + kinematic_horizon);
   }
-  // The dense output itself moves; a step of the integrator has narrow bounds, all of them wide ones.
+  // The dense output itself moves.
   void follow_group(const State& arc, double when) {
     const int member = static_cast<int>(arc.member);
     GroupArc& motion = *arc.group->arc;
     motion.pose(member, when, point.x, point.q);
     frame = Frame(point.q.toRotationMatrix(), point.x);
     motion.pose_rates(member, when, point.v, point.w);
-    const double until = std::max(when, motion.step_end(when));
-    if (until < arc.group->end(arc.member)) horizon = until;
-    const GroupBounds bounds = motion.bounds(member, when, until);
+    const double end = arc.group->end(arc.member);
+    bound_by(arc, when, std::max(when, end));
+    step_end = motion.step_end(when);
+    if (step_end >= end) step_end = never;
+  }
+  // The same with the narrower bounds of the present step of the integrator.
+  Mover within_step(const State& arc, double when) const {
+    Mover narrow = *this;
+    if (step_end == never) return narrow;
+    narrow.bound_by(arc, when, std::max(when, step_end));
+    narrow.horizon = std::max(when, step_end);
+    return narrow;
+  }
+  void bound_by(const State& arc, double when, double until) {
+    const GroupBounds bounds = arc.group->arc->bounds(static_cast<int>(arc.member), when, until);
     turn_bound = bounds.turn;
     bend = bounds.turn_change + bounds.turn * bounds.turn;
     acceleration = 0.5 * (bounds.acceleration.lo + bounds.acceleration.hi);

@@ -27,9 +27,6 @@ namespace {
 // What rests at the border wakes where the force on it changes by this share of its weight.
 constexpr double wake_share = 0.02;
 
-BodyId first_of(std::uint64_t pair) { return static_cast<BodyId>(pair >> 32); }
-BodyId second_of(std::uint64_t pair) { return static_cast<BodyId>(pair & 0xffffffffu); }
-
 void insert(std::vector<BodyId>& ids, BodyId id) {
   const auto at = std::lower_bound(ids.begin(), ids.end(), id);
   if (at == ids.end() || *at != id) ids.insert(at, id);
@@ -214,8 +211,7 @@ double Kernel::deviation(const Group& group, BodyId id) const {
   if (!before.group) return never;
   const Body& body = *bodies[id];
   const double end = group.arc->reached();
-  const auto member = std::lower_bound(group.members.begin(), group.members.end(), id) - group.members.begin();
-  const GroupSample now = group.arc->evaluate(static_cast<int>(member), end);
+  const GroupSample now = group.arc->evaluate(group.member_of(id), end);
   const ArcPoint was = evaluate(body, before, end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }

@@ -20,9 +20,6 @@ constexpr double coplanar = 1e-3;
 // as far as they are at one place (share of the size) with one normal (cosine), they hold it together.
 constexpr double same_place = 1e-2, same_normal = 0.95;
 
-BodyId first_of(std::uint64_t pair) { return static_cast<BodyId>(pair >> 32); }
-BodyId second_of(std::uint64_t pair) { return static_cast<BodyId>(pair & 0xffffffffu); }
-
 // Which drafts hang together: roots by path halving.
 struct Components {
   std::vector<std::size_t> parent;
@@ -203,9 +200,7 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   start.velocity_tolerance = group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
 
   const auto index_of = [&](BodyId id) {
-    const auto member = std::lower_bound(group.members.begin(), group.members.end(), id);
-    if (member != group.members.end() && *member == id)
-      return static_cast<int>(member - group.members.begin());
+    if (const int member = group.member_of(id); member >= 0) return member;
     const auto known = std::find(group.outside.begin(), group.outside.end(), id);
     if (known != group.outside.end()) return ~static_cast<int>(known - group.outside.begin());
     group.outside.push_back(id);

