@@ -71,12 +71,17 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
 // Tilted faces (sine of the angle with the edge) only touch it in passing.
 constexpr double along_edge = 0.05;
 
+// The direction of the incident edge that the name of a crossing holds.
+Vec3 incident_edge(const Polyhedron& incident, const Frame& placed, std::uint64_t key) {
+  const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
+                    incident.vertex(static_cast<int>(key >> 40 & 0xfffff));
+  return placed.R * ends.normalized();
+}
+
 // `p` as a point of the face's border on the edge that its name holds.
 void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& face_normal,
                  const Frame& world, std::uint64_t key, ManifoldPoint& p) {
-  const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
-                    incident.vertex(static_cast<int>(key >> 40 & 0xfffff));
-  const Vec3 edge = placed.R * ends.normalized();
+  const Vec3 edge = incident_edge(incident, placed, key);
   const double sine = edge.dot(face_normal);
   if (std::abs(sine) > along_edge) return;
   const Vec3 normal = world.R * (face_normal - sine * edge).normalized();
@@ -86,8 +91,24 @@ void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& fa
   p.reference_is_a = !p.reference_is_a;
 }
 
-// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is ground.
-void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, int face,
+// Where both bodies move, a crossing may wander along either edge: the normal stands on both, so that no
+// sliding parts the two or pushes them together.
+void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& incident, const Frame& placed,
+                    const Frame& world, std::uint64_t key, ManifoldPoint& p) {
+  const Vec3& face_normal = reference.face(face).normal;
+  const Vec3 border = face_normal.cross(reference.side(static_cast<int>(key & 0xfffff)).inward);
+  const Vec3 across = border.cross(incident_edge(incident, placed, key));
+  const double length = across.norm(), cosine = across.dot(face_normal) / length;
+  if (!(cosine * cosine >= 1 - along_edge * along_edge)) return;
+  const Vec3 normal = (cosine > 0 ? 1 / length : -1 / length) * across;
+  p.gap *= std::abs(cosine);
+  p.normal = world.R * normal;
+  p.reference_point = p.core_point - p.gap * p.normal;
+}
+
+// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is ground,
+// `both_move` that neither is.
+void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool both_move, int face,
               int incident_face, const NearestFeatures& near, double reach, int pair,
               std::vector<ManifoldPoint>& out) {
   thread_local std::vector<FacePoint> points;
@@ -119,8 +140,10 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, int f
     p.feature = feature_name(pair, FeatureMode::face,
                              {static_cast<std::uint64_t>(face),
                               static_cast<std::uint64_t>(reference_is_a), found.key});
-    if (edges_stay && found.key >> 60 == edge_crossing)
-      follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
+    if (found.key >> 60 == edge_crossing) {
+      if (edges_stay) follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
+      if (both_move) stand_on_edges(reference, face, incident, placed, world, found.key, p);
+    }
     out.push_back(p);
   }
 }
@@ -139,7 +162,8 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
       of_a &&
       !(of_b && prefers_b(cores.a.face(face_a.number), cores.b.face(face_b.number), choice));
   const bool edges_stay = choice == (reference_is_a ? ReferenceChoice::of_b : ReferenceChoice::of_a);
-  add_face(cores, reference_is_a, edges_stay, reference_is_a ? face_a.number : face_b.number,
+  const bool both_move = choice == ReferenceChoice::larger;
+  add_face(cores, reference_is_a, edges_stay, both_move, reference_is_a ? face_a.number : face_b.number,
            reference_is_a ? face_b.number : face_a.number, near, reach, pair, out);
 }
 

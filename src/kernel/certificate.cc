@@ -158,9 +158,10 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
             return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n, allowance,
                               true);
           };
-          double time = apart(a, b);
-          if (in_steps && time < arc) time = std::max(time, std::min(step, apart(step_a, step_b)));
-          least = std::min(least, time);
+          double time_left = apart(a, b);
+          if (in_steps && time_left < arc)
+            time_left = std::max(time_left, std::min(step, apart(step_a, step_b)));
+          least = std::min(least, time_left);
           continue;
         }
       }

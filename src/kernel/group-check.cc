@@ -166,6 +166,7 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
       if (!judge || !judge->link(link.pair)) continue;
       for (const State* state : {&state_a, &state_b}) {
         if (!state->group || state->error || state->group->next_check != group->next_check) continue;
+        if (group_check_key(*state->group, key.time).microstep != key.microstep) continue;
         if (std::find(groups.begin(), groups.end(), state->group) == groups.end())
           groups.push_back(state->group);
       }
@@ -202,12 +203,17 @@ void Kernel::process_group_check(BodyId id) {
     for (; bodies[mover]->claim.time < key.time; claimed = true) claim_window(*bodies[mover]);
   if (claimed) return;
   const bool early = when < group->next_check;
-  const std::vector<BodyId> concerned = early ? early_bodies(*group, when, key) : family(group, key);
+  const auto all_concerned = [&] { return early ? early_bodies(*group, when, key) : family(group, key); };
+  std::vector<BodyId> concerned = all_concerned();
   bool all_known = true;
   for (const BodyId member : concerned) all_known = await(member, key) && all_known;
   if (!all_known) return;
 
-  key.id = concerned.front();
+  // the least of them gives the key; some may have left by lesser keys of this instant
+  while (key.id != concerned.front()) {
+    key.id = concerned.front();
+    concerned = all_concerned();
+  }
   std::vector<Draft> drafts;
   drafts.reserve(concerned.size());
   const Group* failed = nullptr;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "collision/separation.h"
@@ -330,6 +331,35 @@ TEST(Manifold, a_face_that_slides_along_a_ridge_does_not_part_from_it) {
       least = std::min(least, p.gap);
     }
     EXPECT_NEAR(least, 0.51 - 0.5 * std::cos(tilt) - 0.5 * std::sin(tilt), 1e-5);
+  }
+}
+
+// The corner of one cube's lower face sticks out over the border of another's upper face: its edge crosses
+// that border, at an angle small enough to count as a contact of faces.  Whatever way the two slide, the
+// deepest point nears as fast as the distance says.
+TEST(Manifold, the_crossing_of_an_edge_and_a_border_nears_as_fast_as_the_bodies) {
+  const double depth = 1e-3, step = 1e-6;
+  for (const double tilt : {0.005, 0.015, 0.03}) {
+    Frame over = turned({tilt, -0.5 * tilt, 0}, {0, 0, 0});
+    over = Frame(rotation_by({0, 0, 0.7}).toRotationMatrix() * over.R, Vec3(0.95, 0.1, 2));
+    over.p.z() -= separation(*cube(), Frame(), *cube(), over).distance;
+    const Separation first = separation(*cube(), Frame(), *cube(), over);
+    over.p -= (first.distance + depth) * first.normal;
+    const Separation now = separation(*cube(), Frame(), *cube(), over);
+    ASSERT_NEAR(now.distance, -depth, 1e-5);
+
+    const Points points = manifold_of(cube(), Frame(), cube(), over, 0.01);
+    const auto deepest = std::min_element(points.begin(), points.end(),
+                                          [](const auto& p, const auto& q) { return p.gap < q.gap; });
+    ASSERT_NE(deepest, points.end());
+    EXPECT_NEAR(deepest->gap, now.distance, 1e-6);
+    for (const Vec3& slide : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, -2, 0.1)}) {
+      Frame later = over;
+      later.p += step * slide;
+      const double rate = (separation(*cube(), Frame(), *cube(), later).distance - now.distance) / step;
+      const double predicted = slide.dot(deepest->normal) * (deepest->reference_is_a ? 1 : -1);
+      EXPECT_NEAR(predicted, rate, 1e-4) << "tilt " << tilt;
+    }
   }
 }
 
