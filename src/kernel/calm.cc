@@ -3,9 +3,9 @@
 // One stone that rocks keeps a heap awake, for rest is decided for whole groups.  So at the check of a large
 // group those of its members that hardly move are laid to rest for the time being: groups at rest of their
 // own, in which the others see still bodies at their border (region.cc), and which wake where the forces on
-// them change.  What still moves comes to rest only together with its provisional neighbours, all awake
-// again and watched by the rule for whole groups (group-check.cc): nothing is frozen in the end that would
-// have moved.
+// them change.  What comes to rest beside sleepers goes to sleep, too, as long as something moves that touches
+// any of those that hang together with it; the last one wakes them all, and all come to rest together, watched by
+// the rule for whole groups (group-check.cc): nothing is frozen in the end that would have moved.
 //
 // A member is laid to rest when it was slow for a while without getting faster or away (so neither a tower
 // that begins to tip nor a ball that creeps), no loaded contact of it slips, and everything it touches is

@@ -12,6 +12,7 @@ namespace tw {
 struct Draft {
   const Body* body = nullptr;
   bool enters = true;               // false: a fixed body that keeps no states
+  bool watched = false;             // what happens to others depends on it, but it doesn't touch them
   bool placed = false;              // somebody put it elsewhere: its contacts are gone
   StateData data;
   ArcPoint point;                   // at the discontinuity's time

@@ -260,6 +260,7 @@ class Kernel {
   void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
   std::vector<BodyId> all_provisional(std::vector<BodyId> ids, const Key& key) const;
+  bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep, std::vector<BodyId>& movers) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);
   double deviation(const Group& group, BodyId id) const;

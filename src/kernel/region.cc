@@ -167,6 +167,22 @@ std::vector<BodyId> Kernel::all_provisional(std::vector<BodyId> ids, const Key& 
   return all;
 }
 
+// Whether something that moves touches the sleepers; `movers`: those of them that keep their arcs.
+bool Kernel::disturbed(const Regroup& work, const std::vector<BodyId>& asleep,
+                       std::vector<BodyId>& movers) const {
+  bool found = false;
+  visit_neighbours(asleep, work.key, [&](const Group&, const GroupLink& link, BodyId other) {
+    if (holds(asleep, other) || link.count == 0) return;
+    const Draft* draft = work.draft_of(other);
+    const bool changes = work.changes(draft);
+    const Group* group = (changes ? draft->data : *graph.last_before(other, work.key)).group.get();
+    if (!group || group->at_rest) return;
+    found = true;
+    if (!changes) insert(movers, other);
+  });
+  return found;
+}
+
 // Small groups whole, and the border.  What this depends on stands in states of the region and its border:
 // so nothing here may ask how many have left a large group.
 void Kernel::complete(Region& region, const Key& key, bool whole) const {
@@ -206,6 +222,7 @@ bool Kernel::await(const Region& region, const Key& key) {
   bool all_known = true;
   for (const BodyId id : region.inside) all_known = await(id, key) && all_known;
   for (const BodyId id : region.border) all_known = await(id, key) && all_known;
+  for (const BodyId id : region.watched) all_known = await(id, key) && all_known;
   return all_known;
 }
 
@@ -303,6 +320,12 @@ std::vector<Draft> Kernel::drafts_of(const Region& region, const Key& key,
     all.push_back(draft_for(*bodies[id], key, false));
     all.back().data.changed = false;
   }
+  for (const BodyId id : region.watched) {
+    if (holds(region.border, id) || known(id)) continue;
+    all.push_back(draft_for(*bodies[id], key, false));
+    all.back().data.changed = false;
+    all.back().watched = true;
+  }
   return all;
 }
 
@@ -331,6 +354,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     std::vector<Draft> all = drafts_of(region, key, drafts);
     Regroup work(key, all);
     work.may_sleep = occasion.look && !occasion.early;
+    work.rests_provisionally = !region.watched.empty();
     collect_old(work);
     if (occasion.look)
       refresh(work, hit, check_interval(work, hit));
@@ -346,7 +370,15 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
     if (more.empty()) {
       finish(work);
       more = reached_beyond(work);
-      for (const BodyId id : all_provisional(provisional_around(work), key)) more.push_back(id);
+      const std::vector<BodyId> asleep = all_provisional(provisional_around(work), key);
+      if (std::vector<BodyId> movers; more.empty() && disturbed(work, asleep, movers)) {
+        // what would come to rest with them goes to sleep instead
+        discard(work);
+        region.watched = asleep;
+        region.watched.insert(region.watched.end(), movers.begin(), movers.end());
+        continue;
+      }
+      more.insert(more.end(), asleep.begin(), asleep.end());
     }
     if (more.empty()) {
       for (const auto& group : work.made) count_group(*group);
@@ -354,6 +386,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
       return true;
     }
     discard(work);
+    region.watched.clear();
     for (const BodyId id : more) insert(region.inside, id);
     add_neighbours(region, key);
     complete(region, key, false);

@@ -74,7 +74,7 @@ void Kernel::collect_old(Regroup& work) const {
   };
   for (const auto& [id, i] : work.index) {
     const Draft& draft = work.drafts[i];
-    if (!draft.body->dynamic()) continue;
+    if (!draft.body->dynamic() || draft.watched) continue;
     add_once(all, draft.data.group);
     if (!work.changes(&draft)) {
       work.has_border = work.has_border || draft.data.group;
@@ -187,7 +187,7 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   GroupStart start;
   start.time = work.key.time;
   start.end = group.next_check;
-  double size = never;
+  double size = never, speed = 0;
   for (const BodyId id : group.members) {
     const Draft& draft = *work.draft_of(id);
     const Body& body = *draft.body;
@@ -195,9 +195,12 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
                              body.mass * d.acceleration, Vec3::Zero()});
     size = std::min(size, body.least_width);
+    const Side side = side_of(draft);
+    speed = std::max(speed, side.surface_speed());
   }
-  start.position_tolerance = group_position_tolerance(options.accuracy, size);
-  start.velocity_tolerance = group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
+  const double closeness = group_closeness(options.accuracy, speed / std::sqrt(gravity_magnitude() * size));
+  start.position_tolerance = closeness * group_position_tolerance(options.accuracy, size);
+  start.velocity_tolerance = closeness * group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
 
   const auto index_of = [&](BodyId id) {
     if (const int member = group.member_of(id); member >= 0) return member;
@@ -271,6 +274,7 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
     group->first_step = before->arc->next_step();
     if (comes_to_rest(work, *group, *before)) {
       group->at_rest = true;
+      group->provisional = work.rests_provisionally;
       group->next_check = never;
       for (const BodyId id : members) stop(*work.draft_of(id));
     }
@@ -278,7 +282,7 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
   for (const BodyId id : members) {
     const auto place = static_cast<std::size_t>(work.draft_of(id) - work.drafts.data());
     group->calm.push_back(work.calm[place]);
-    group->provisional = work.asleep[place];
+    group->provisional = group->provisional || work.asleep[place];
   }
   if (group->provisional) {
     group->at_rest = true;

@@ -54,6 +54,7 @@ struct Regroup {
   std::vector<OldLink> before;   // of bodies with new arcs, ascending pairs
   bool has_border = false;
   bool may_sleep = false;        // the check of whole groups
+  bool rests_provisionally = false;  // whatever comes to rest does so for the time being
   std::vector<Calm> calm;        // of the drafts
   std::vector<bool> asleep;      // of the drafts: laid to rest provisionally
   std::vector<LooseLink> links;

@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace tw {
@@ -14,6 +15,13 @@ namespace tw {
 // Of one step of a contact group, m: `size` is the least width of its smallest member.  At the default
 // accuracy a tenth of the static depth (2.5e-4 size).
 inline double group_position_tolerance(double accuracy, double size) { return 25 * accuracy * size; }
+
+// What moves slowly is followed more closely, as far as to the tolerances of an accuracy of 1e-6: by the
+// fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to rest gains energy.
+inline double group_closeness(double accuracy, double share_of_speed) {
+  constexpr double most = 0.1, finest = 1e-6;
+  return std::min(1.0, std::max({share_of_speed, most, finest / accuracy}));
+}
 
 // m/s: what gravity does to a body of that size within the time of its contact.
 inline double group_velocity_tolerance(double accuracy, double size, double gravity) {
