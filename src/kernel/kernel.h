@@ -261,6 +261,7 @@ class Kernel {
   void complete(Region& region, const Key& key, bool whole) const;
   std::vector<BodyId> all_provisional(std::vector<BodyId> ids, const Key& key) const;
   bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep, std::vector<BodyId>& movers) const;
+  bool own_check_before(BodyId id, const Key& key) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);
   double deviation(const Group& group, BodyId id) const;

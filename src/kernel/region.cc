@@ -198,6 +198,16 @@ void Kernel::complete(Region& region, const Key& key, bool whole) const {
   });
 }
 
+// Whether the body's arc ends at the time of the key, and the check that stands there comes first.
+bool Kernel::own_check_before(BodyId id, const Key& key) const {
+  if (!bodies[id]->dynamic()) return false;
+  const State& tail = *graph.tail(id);
+  if (tail.error || natural_end(tail) != key.time) return false;
+  Key check = group_check_key(*tail.group, key.time);
+  check.id = id;
+  return tail.key < check && check < key;
+}
+
 // Claims windows of a body until its arcs are known to `key`.  False: something else comes first, perhaps.
 bool Kernel::await(BodyId id, const Key& key) {
   Body& body = *bodies[id];
@@ -205,6 +215,11 @@ bool Kernel::await(BodyId id, const Key& key) {
   const bool at_time = key.kind == KeyKind::group_check || key.kind == KeyKind::callback;
   const auto known = [&] { return at_time ? body.claim.time >= key.time : ready(body, key); };
   bool all_known = true;
+  // its own check of this instant would be forgotten if its arc were changed by a greater key
+  if (at_time && own_check_before(id, key)) {
+    process_group_check(id);
+    return false;
+  }
   while (!body.fixed() && !known() && !graph.tail(id)->error) {
     all_known = false;
     if (body.claim.time < natural_end(*graph.tail(id))) {
