@@ -2,7 +2,7 @@
 ;;; heap with a slope of its own.
 (use-modules (timewarp) (timewarp vectors) (srfi srfi-1))
 
-(scene #:title "Hopper" #:duration 8)
+(scene #:title "Hopper" #:accuracy 1e-4 #:duration 8)
 
 (define-scene-parameter bodies 120 "number of bodies")
 (define random-state (scene-random-state))

@@ -79,7 +79,7 @@ double run_row(int doublings, double first) {
   const int count = smallest << doublings;
   const int across = 4 << (doublings / 2), along = 4 << ((doublings + 1) / 2);
   World world;
-  world.set_accuracy(1e-5);
+  world.set_accuracy(1e-4);  // as scenes/avalanche.scm
   test::set_contact_for_all(world, 0.2, 0.5);
   add_pit(world, across, along);
   add_rocks(world, count, across, along);
