@@ -104,11 +104,12 @@ void Kernel::commit_state(State& state) {
   state.committed = true;
   counters.kinematic_work += state.kinematic_work;
   // each ring is counted by its member with the least id
-  bool first = true;
-  for (const State* r = state.ring; r != &state; r = r->ring)
-    first = first && state.process < r->process;
-  if (first && state.key.kind == KeyKind::impact) ++counters.collisions;
-  if (first && state.key.kind == KeyKind::callback && state.changed) ++counters.callback_changes;
+  const bool impact = state.key.kind == KeyKind::impact;
+  const bool call = state.key.kind == KeyKind::callback && state.changed;
+  bool first = impact || call;
+  for (const State* r = state.ring; first && r != &state; r = r->ring) first = state.process < r->process;
+  if (first && impact) ++counters.collisions;
+  if (first && call) ++counters.callback_changes;
   if (state.key.kind == KeyKind::callback)
     callbacks[state.key.id].committed_next = state.next_callback;
   counters.fusions += state.tally.fusions;

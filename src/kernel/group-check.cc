@@ -179,8 +179,11 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
 // Those whose contacts end at `when`, before the check of their group.
 std::vector<BodyId> Kernel::early_bodies(const Group& group, double when, const Key& key) const {
   std::vector<BodyId> all;
-  for (const BodyId id : remaining(group, key))
-    if (natural_end(*graph.last_before(id, key)) == when) all.push_back(id);
+  for (std::uint32_t i = 0; i < group.members.size(); ++i) {
+    if (group.end(i) != when) continue;
+    const State& state = *graph.last_before(group.members[i], key);
+    if (state.group.get() == &group && !state.error) all.push_back(group.members[i]);
+  }
   return all;
 }
 

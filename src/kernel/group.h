@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "integrate/group-arc.h"
@@ -57,6 +58,7 @@ struct Group {
   std::vector<std::uint32_t> outside;   // body ids of arc->start().outside: fixed, kinematic, border
   bool has_border = false;         // some of them are dynamic
   std::vector<GroupLink> links;         // ascending pairs
+  std::vector<std::uint32_t> link_starts, links_by_member;  // numbers of each member's links, in rows
   std::vector<ContactTag> tags;         // of arc->start().contacts
   std::vector<double> gaps;             // m, of arc->start().contacts, at the start
   std::vector<Calm> calm;               // of each member
@@ -74,6 +76,13 @@ struct Group {
                                      [](const GroupLink& l, std::uint64_t p) { return l.pair < p; });
     return at != links.end() && at->pair == pair ? &*at : nullptr;
   }
+  // The numbers of a member's links.
+  std::span<const std::uint32_t> links_of(std::uint32_t member) const {
+    const std::uint32_t first = link_starts[member];
+    return {links_by_member.data() + first, link_starts[member + 1] - first};
+  }
+  // Fills in what links_of reads.
+  void index_links();
   // Where the arc of a member ends by itself, s.
   double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
 };

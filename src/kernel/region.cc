@@ -113,22 +113,20 @@ std::vector<BodyId> Kernel::remaining(const Group& group, const Key& key) const 
 // group that has the say, the link, the body inside and the other one.
 template <class Visit>
 void Kernel::visit_neighbours(const std::vector<BodyId>& inside, const Key& key, Visit visit) const {
-  Groups groups;
-  for (const BodyId id : inside) add_once(groups, graph.last_before(id, key)->group);
-  for (const auto& group : groups)
-    for (const GroupLink& link : group->links) {
-      const BodyId a = first_of(link.pair), b = second_of(link.pair);
-      if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
-      const bool has_a = holds(inside, a), has_b = holds(inside, b);
-      if (!has_a && !has_b) continue;
-      const State& state_a = *graph.last_before(a, key);
-      const State& state_b = *graph.last_before(b, key);
-      const Group* judge = governing(state_a, state_b);
-      const GroupLink* standing = judge == group.get() ? &link : judge ? judge->link(link.pair) : nullptr;
-      if (!standing || state_a.error || state_b.error) continue;
-      if (has_a) visit(*judge, *standing, b);
-      if (has_b) visit(*judge, *standing, a);
+  for (const BodyId id : inside) {
+    const State& state = *graph.last_before(id, key);
+    const Group* group = state.group.get();
+    if (!group || state.error) continue;
+    for (const std::uint32_t number : group->links_of(state.member)) {
+      const GroupLink& link = group->links[number];
+      const BodyId other = first_of(link.pair) == id ? second_of(link.pair) : first_of(link.pair);
+      if (!bodies[other]->dynamic()) continue;
+      const State& theirs = *graph.last_before(other, key);
+      const Group* judge = governing(state, theirs);
+      const GroupLink* standing = judge == group ? &link : judge ? judge->link(link.pair) : nullptr;
+      if (standing && !theirs.error) visit(*judge, *standing, other);
     }
+  }
 }
 
 // The region of a discontinuity that concerns the dynamic bodies `hit`.

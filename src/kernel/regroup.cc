@@ -90,15 +90,23 @@ void Kernel::collect_old(Regroup& work) const {
       work.heaviest = std::max(work.heaviest, group->heaviest);
     }
 
-  for (const auto& group : all)
-    for (const GroupLink& link : group->links) {
-      const BodyId a = first_of(link.pair), b = second_of(link.pair);
-      if (!work.changes(work.draft_of(a)) && !work.changes(work.draft_of(b))) continue;
-      if (governing(*graph.last_before(a, work.key), *graph.last_before(b, work.key)) == group.get())
-        work.before.push_back({link.pair, group, &link});
+  for (const auto& [id, i] : work.index) {
+    const Draft& draft = work.drafts[i];
+    if (!work.changes(&draft) || !draft.data.group) continue;
+    for (const std::uint32_t number : draft.data.group->links_of(draft.data.member)) {
+      const GroupLink& link = draft.data.group->links[number];
+      const State& a = *graph.last_before(first_of(link.pair), work.key);
+      const State& b = *graph.last_before(second_of(link.pair), work.key);
+      const Group* judge = governing(a, b);
+      const GroupLink* standing = judge == draft.data.group.get() ? &link : judge ? judge->link(link.pair) : nullptr;
+      if (standing) work.before.push_back({link.pair, judge == a.group.get() ? a.group : b.group, standing});
     }
+  }
   std::sort(work.before.begin(), work.before.end(),
             [](const OldLink& x, const OldLink& y) { return x.pair < y.pair; });
+  // from either side
+  const auto same = [](const OldLink& x, const OldLink& y) { return x.pair == y.pair; };
+  work.before.erase(std::unique(work.before.begin(), work.before.end(), same), work.before.end());
 }
 
 // A link and its contacts as they stand, stretches evaluated at the key's time.
@@ -230,6 +238,20 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   group.arc = std::make_unique<GroupArc>(std::move(start));
 }
 
+void Group::index_links() {
+  const auto each_side = [&](auto&& visit) {
+    for (std::uint32_t i = 0; i < links.size(); ++i)
+      for (const BodyId id : {first_of(links[i].pair), second_of(links[i].pair)})
+        if (const int member = member_of(id); member >= 0) visit(static_cast<std::size_t>(member), i);
+  };
+  link_starts.assign(members.size() + 1, 0);
+  each_side([&](std::size_t member, std::uint32_t) { ++link_starts[member + 1]; });
+  std::partial_sum(link_starts.begin(), link_starts.end(), link_starts.begin());
+  links_by_member.resize(link_starts.back());
+  std::vector<std::uint32_t> next = link_starts;
+  each_side([&](std::size_t member, std::uint32_t i) { links_by_member[next[member]++] = i; });
+}
+
 std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyId>& members) {
   auto group = std::make_shared<Group>();
   group->key = work.key;
@@ -247,6 +269,7 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
     group->has_border = true;
     if (!work.changes(other)) border_end = std::min(border_end, other->data.group->next_check);
   }
+  group->index_links();
   for (const BodyId id : members) {
     group->lightest = std::min(group->lightest, bodies[id]->mass);
     group->heaviest = std::max(group->heaviest, bodies[id]->mass);

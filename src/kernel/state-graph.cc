@@ -27,7 +27,7 @@ State* StateGraph::allocate() {
 
 void StateGraph::release(State* state) {
   *state = State();
-  state->ring = state;
+  state->ring = state->ring_before = state;
   unused_.push_back(state);
   --live_;
 }
@@ -40,7 +40,7 @@ State* StateGraph::append(std::uint32_t process, const Key& key) {
   State* state = allocate();
   state->key = key;
   state->process = process;
-  state->ring = state;
+  state->ring = state->ring_before = state;
   state->prev = queue.tail;
   (queue.tail ? queue.tail->next : queue.head) = state;
   queue.tail = state;
@@ -58,7 +58,11 @@ void StateGraph::tidy_busy() {
 }
 
 void StateGraph::link_ring(std::span<State* const> states) {
-  for (std::size_t i = 0; i < states.size(); ++i) states[i]->ring = states[(i + 1) % states.size()];
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    State* const after = states[(i + 1) % states.size()];
+    states[i]->ring = after;
+    after->ring_before = states[i];
+  }
 }
 
 State* StateGraph::last_at_or_before(std::uint32_t process, const Key& key) const {
@@ -80,10 +84,9 @@ State* StateGraph::last_at_or_before_time(std::uint32_t process, double time) co
 }
 
 void StateGraph::unlink_ring(State* state) {
-  State* before = state;
-  while (before->ring != state) before = before->ring;
-  before->ring = state->ring;
-  state->ring = state;
+  state->ring_before->ring = state->ring;
+  state->ring->ring_before = state->ring_before;
+  state->ring = state->ring_before = state;
 }
 
 std::size_t StateGraph::rollback(std::uint32_t process, const Key& key,
@@ -108,10 +111,13 @@ std::size_t StateGraph::rollback(std::uint32_t process, const Key& key,
       TW_ASSERT(!state->committed, "rollback of body " + std::to_string(item.process) + " to " +
                                        show(item.key) + " reached the committed " +
                                        show(state->key));
-      for (State* other = state->ring; other != state; other = other->ring)
+      // all of its ring go with it
+      while (state->ring != state) {
+        State* const other = state->ring;
         work.push_back({other->process, other->key});
+        unlink_ring(other);
+      }
       least = state->key;
-      unlink_ring(state);
       queue.tail = state->prev;
       (queue.tail ? queue.tail->next : queue.head) = nullptr;
       farewell(*state);
@@ -170,6 +176,7 @@ std::string StateGraph::validate() const {
       std::size_t length = 0;
       const State* r = s;
       do {
+        if (r->ring->ring_before != r) return "ring broken backwards: " + where;
         if (r->key != s->key) return "ring of two keys: " + where;
         if (++length > queues_.size()) return "ring does not close: " + where;
         if (r != s && r->process == s->process) return "ring meets a queue twice: " + where;

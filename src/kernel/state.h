@@ -71,7 +71,8 @@ struct State : StateData {
   std::uint32_t process = 0;    // the body that owns the queue
   State* prev = nullptr;
   State* next = nullptr;
-  State* ring = this;           // circular list of the states of one discontinuity
+  State* ring = this;           // circular list of the states of one discontinuity,
+  State* ring_before = this;    // and backwards
   bool committed = false;
 
   bool starts_arc() const { return arc_key == key; }
