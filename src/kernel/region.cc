@@ -26,9 +26,9 @@ namespace {
 
 // What rests at the border wakes where the force on it changes by this share of its weight.
 constexpr double wake_share = 0.02;
-// What moves there may miss this share of a step's velocity tolerance.  What is missed is lost to the body's
-// momentum: with all of the tolerance a row of 16 cubes ended with 2.8 times its own at an accuracy of 1e-4, with
-// this share with 0.9 % too much (with a tenth 1.0 %, at 1.3 times the cost).
+// What moves there may miss this share of a step's velocity tolerance, for what is missed is lost to the body's
+// momentum.  Where the tolerance was 0.01 sqrt(g size) a row of 16 cubes ended with 2.8 times its momentum with all
+// of it, with 0.9 % too much with this share (with a tenth 1.0 %, at 1.3 times the cost).
 constexpr double missed_share = 0.3;
 
 void insert(std::vector<BodyId>& ids, BodyId id) {

@@ -19,8 +19,8 @@ inline double group_position_tolerance(double accuracy, double size) { return 25
 // What moves slowly is followed more closely, as far as to the tolerances of an accuracy of 1e-6: by the
 // fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to rest gains energy.
 inline double group_closeness(double accuracy, double share_of_speed) {
-  constexpr double most = 0.1, finest = 1e-6;
-  return std::min(1.0, std::max({share_of_speed, most, finest / accuracy}));
+  constexpr double closest = 0.1, finest = 1e-6;
+  return std::min(1.0, std::max({share_of_speed, closest, finest / accuracy}));
 }
 
 // m/s: what gravity does to a body of that size within the time of its contact.
