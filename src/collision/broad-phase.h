@@ -3,7 +3,7 @@
 // A body near the ground asks for it again and again while its own box hardly moves: so a moving box
 // remembers the standing ones in a zone somewhat larger than itself until it leaves the zone.
 //
-// Measured (avalanche, 300 rocks on 524 pieces): a query of 1.6 us becomes 0.3.
+// Measured: the first 4 s of the avalanche (300 rocks on 524 pieces) took 13.1 s instead of 13.8.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

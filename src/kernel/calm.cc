@@ -44,7 +44,7 @@ bool stays(const Calm& calm, const Side& side, double now) {
 }  // namespace
 
 // The books of one body at a discontinuity.
-Calm Kernel::watched(const Draft& draft, const Key& key) const {
+Calm Kernel::calm_of(const Draft& draft, const Key& key) const {
   const Side side = side_of(draft);
   const double speed = fastest_point(side);
   if (speed >= calm_share * std::sqrt(gravity_magnitude() * side.body->least_width)) return {};
@@ -92,7 +92,7 @@ std::vector<bool> Kernel::sleepers(const Regroup& work) const {
     const bool lies_a = work.changes(da) && asleep[place(da)], lies_b = work.changes(db) && asleep[place(db)];
     if (!lies_a && !lies_b) continue;
     bool slips = false;
-    const double when = old.group->at_rest ? old.group->arc->start().time : work.key.time;
+    const double when = old.group->contact_time(work.key.time);
     for (std::uint32_t c = old.link->first; c < old.link->first + old.link->count && !slips; ++c) {
       const ContactForce f = old.group->arc->contact_force(static_cast<int>(c), when);
       slips = f.normal_force > 0 && f.slipping;

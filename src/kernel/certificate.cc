@@ -19,6 +19,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/polyhedron.h"
 #include "kernel/kernel.h"
@@ -134,11 +135,21 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
   double least = never;
   if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
     least = kinematic_horizon;
-  // a step of an arc has narrow bounds, all of them wide ones
+  // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where needed
   const bool in_steps = a.step_end != never || b.step_end != never;
-  const Mover step_a = in_steps ? a.within_step(*piece.a, when) : a;
-  const Mover step_b = in_steps ? b.within_step(*piece.b, when) : b;
-  const double step = std::min(step_a.horizon, step_b.horizon) - when, arc = piece.end.time - when;
+  std::optional<Mover> step_a, step_b;
+  const auto by_step = [&](const auto& bound) {
+    if (!in_steps) return bound(a, b);
+    if (!step_a) {
+      step_a.emplace(a.within_step(*piece.a, when));
+      step_b.emplace(b.within_step(*piece.b, when));
+    }
+    return std::min(std::min(step_a->horizon, step_b->horizon) - when, bound(*step_a, *step_b));
+  };
+  const auto longest = [&](const auto& bound) {
+    const double left = bound(a, b);
+    return in_steps && left < piece.end.time - when ? std::max(left, by_step(bound)) : left;
+  };
 
   for (std::size_t i = 0; i < parts_a.size(); ++i)
     for (std::size_t j = 0; j < parts_b.size(); ++j) {
@@ -154,14 +165,10 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
         if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
         if (spheres || centers - radii > far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
-          const auto apart = [&](const Mover& x, const Mover& y) {
+          least = std::min(least, longest([&](const Mover& x, const Mover& y) {
             return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n, allowance,
                               true);
-          };
-          double time_left = apart(a, b);
-          if (in_steps && time_left < arc)
-            time_left = std::max(time_left, std::min(step, apart(step_a, step_b)));
-          least = std::min(least, time_left);
+          }));
           continue;
         }
       }
@@ -170,14 +177,14 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
       SimplexCache& cache = pair.caches[i * parts_b.size() + j];
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
       if (!(s.distance > -allowance)) return -never;
-      double apart = time_apart(a, pa, b, pb, s.normal, s.point_a, s.point_b, allowance, false);
-      if (in_steps && apart < arc)
-        apart = std::max(apart, std::min(step, time_apart(step_a, pa, step_b, pb, s.normal, s.point_a,
-                                                          s.point_b, allowance, false)));
+      double apart = longest([&](const Mover& x, const Mover& y) {
+        return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
+      });
       // where edges and faces turn past each other, a plane that turns with them lasts longer
       if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
-        apart = std::max(apart,
-                         std::min(step, turning_time_apart(step_a, pa, step_b, pb, s, allowance)));
+        apart = std::max(apart, by_step([&](const Mover& x, const Mover& y) {
+          return turning_time_apart(x, pa, y, pb, s, allowance);
+        }));
       least = std::min(least, apart);
     }
   ++counters.certificates;

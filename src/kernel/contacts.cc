@@ -43,7 +43,7 @@ ContactSurvey Kernel::survey_contacts(double when) const {
                                     [&](BodyId id) { return group_of(id) == group; });
     if (*first != body->id()) continue;
     ++survey.groups;
-    const double arc_time = group->at_rest ? group->arc->start().time : when;
+    const double arc_time = group->contact_time(when);
     for (const GroupLink& link : group->links) {
       const State* a = state_at(first_of(link.pair), when);
       const State* b = state_at(second_of(link.pair), when);

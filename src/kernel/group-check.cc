@@ -33,7 +33,7 @@ void tell_fission(Regroup& work, const Group& group, const GroupLink& link) {
   row.body1 = first_of(link.pair);
   row.body2 = second_of(link.pair);
   if (link.count > 0) {
-    const double now = group.at_rest ? group.arc->start().time : work.key.time;
+    const double now = group.contact_time(work.key.time);
     const ContactForce f = group.arc->contact_force(static_cast<int>(link.first), now);
     const bool straight = group.tags[link.first].reference == row.body1;
     row.point = f.point;
@@ -149,7 +149,7 @@ void Kernel::note_changes(Regroup& work) const {
 // All that hangs together with the group and is checked at the same time: the parts of a group that blows
 // have divided.
 std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Key& key) const {
-  std::vector<std::shared_ptr<Group>> groups{group};
+  Groups groups{group};
   std::vector<BodyId> all;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::vector<BodyId> there = remaining(*groups[i], key);
@@ -167,8 +167,7 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
       for (const State* state : {&state_a, &state_b}) {
         if (!state->group || state->error || state->group->next_check != group->next_check) continue;
         if (group_check_key(*state->group, key.time).microstep != key.microstep) continue;
-        if (std::find(groups.begin(), groups.end(), state->group) == groups.end())
-          groups.push_back(state->group);
+        add_once(groups, state->group);
       }
     }
   }

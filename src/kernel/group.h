@@ -83,9 +83,17 @@ struct Group {
   }
   // Fills in what links_of reads.
   void index_links();
+  // When its contacts are looked at for what holds at `when`: resting ones at their start alone.
+  double contact_time(double when) const { return at_rest ? arc->start().time : when; }
   // Where the arc of a member ends by itself, s.
   double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
 };
+
+using Groups = std::vector<std::shared_ptr<Group>>;
+
+inline void add_once(Groups& groups, const std::shared_ptr<Group>& group) {
+  if (group && std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+}
 
 // What a discontinuity did to groups: statistics.
 struct GroupTally {

@@ -25,8 +25,8 @@
 #include <vector>
 
 #include "base/random.h"
-#include "collision/manifold.h"
 #include "collision/broad-phase.h"
+#include "collision/manifold.h"
 #include "kernel/arc.h"
 #include "kernel/body.h"
 #include "kernel/checkpoint.h"
@@ -306,7 +306,7 @@ class Kernel {
   std::string group_failure(const Group& group) const;
 
   // ---- calm.cc ----
-  Calm watched(const Draft& draft, const Key& key) const;
+  Calm calm_of(const Draft& draft, const Key& key) const;
   std::vector<bool> sleepers(const Regroup& work) const;
   std::vector<BodyId> provisional_around(const Regroup& work) const;
 

@@ -140,7 +140,7 @@ void Kernel::match_stretches(Regroup& work, const LooseLink& link, const OldLink
   const GroupLink* old = was_linked.link;
   const Group& before = *was_linked.group;
   GroupArc& arc = *before.arc;
-  const double now = before.at_rest ? arc.start().time : work.key.time;
+  const double now = before.contact_time(work.key.time);
   const auto size_of = [&](BodyId id) { return bodies[id]->least_width; };
   const double size = std::min(size_of(first_of(link.pair)), size_of(second_of(link.pair)));
   std::vector<bool> taken(old->count, false);
@@ -330,9 +330,7 @@ void Kernel::refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at,
     }
   }
   for (const OldLink& old : work.before)
-    if (!looked_at(first_of(old.pair)) &&
-        !looked_at(second_of(old.pair)))
-      carry(work, old);
+    if (!looked_at(first_of(old.pair)) && !looked_at(second_of(old.pair))) carry(work, old);
 }
 
 }  // namespace tw

@@ -40,17 +40,9 @@ bool holds(const std::vector<BodyId>& ids, BodyId id) {
   return std::binary_search(ids.begin(), ids.end(), id);
 }
 
-using Groups = std::vector<std::shared_ptr<Group>>;
-
-bool add_once(Groups& groups, const std::shared_ptr<Group>& group) {
-  if (!group || std::find(groups.begin(), groups.end(), group) != groups.end()) return false;
-  groups.push_back(group);
-  return true;
-}
-
 // Whether a link carries a load at `when`.
 bool carries(const Group& group, const GroupLink& link, double when) {
-  if (group.at_rest) when = group.arc->start().time;
+  when = group.contact_time(when);
   for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
     if (group.arc->contact_force(static_cast<int>(c), when).gap <= 0) return true;
   return false;
@@ -58,7 +50,7 @@ bool carries(const Group& group, const GroupLink& link, double when) {
 
 // The force of a link on one of its bodies, N.
 Vec3 force_on(BodyId body, const Group& group, const GroupLink& link, double when) {
-  if (group.at_rest) when = group.arc->start().time;
+  when = group.contact_time(when);
   Vec3 sum = Vec3::Zero();
   for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
     const ContactForce f = group.arc->contact_force(static_cast<int>(c), when);

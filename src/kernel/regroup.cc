@@ -68,10 +68,7 @@ const OldLink* Regroup::link_before(std::uint64_t pair) const {
 // The groups that the drafts come from, and the links of those that get new arcs.
 void Kernel::collect_old(Regroup& work) const {
   work.update_index();
-  std::vector<std::shared_ptr<Group>> all;
-  const auto add_once = [](std::vector<std::shared_ptr<Group>>& list, const std::shared_ptr<Group>& group) {
-    if (group && std::find(list.begin(), list.end(), group) == list.end()) list.push_back(group);
-  };
+  Groups all;
   for (const auto& [id, i] : work.index) {
     const Draft& draft = work.drafts[i];
     if (!draft.body->dynamic() || draft.watched) continue;
@@ -114,7 +111,7 @@ void Kernel::carry(Regroup& work, const OldLink& old) const {
   const GroupLink& link = *old.link;
   const Group& group = *old.group;
   GroupArc& arc = *group.arc;
-  const double now = group.at_rest ? arc.start().time : work.key.time;
+  const double now = group.contact_time(work.key.time);
   const Draft* a = work.draft_of(first_of(link.pair));
   const Draft* b = work.draft_of(second_of(link.pair));
   if ((a && a->placed) || (b && b->placed)) return;
@@ -361,7 +358,7 @@ void Kernel::finish(Regroup& work) {
   const std::size_t count = work.drafts.size();
   work.calm.resize(count);
   for (std::size_t i = 0; i < count; ++i)
-    if (work.changes(&work.drafts[i])) work.calm[i] = watched(work.drafts[i], work.key);
+    if (work.changes(&work.drafts[i])) work.calm[i] = calm_of(work.drafts[i], work.key);
   work.asleep = work.may_sleep ? sleepers(work) : std::vector<bool>(count, false);
 
   // who hangs together, and who has a link at all

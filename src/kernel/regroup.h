@@ -50,7 +50,7 @@ struct Occasion {
 struct Regroup {
   Key key;
   std::vector<Draft>& drafts;    // with new arcs: the bodies concerned; else those at the border
-  std::vector<std::shared_ptr<Group>> old;  // whose members get new arcs, each once
+  Groups old;  // whose members get new arcs, each once
   std::vector<OldLink> before;   // of bodies with new arcs, ascending pairs
   bool has_border = false;
   bool may_sleep = false;        // the check of whole groups
@@ -59,7 +59,7 @@ struct Regroup {
   std::vector<bool> asleep;      // of the drafts: laid to rest provisionally
   std::vector<LooseLink> links;
   std::vector<LooseContact> contacts;
-  std::vector<std::shared_ptr<Group>> made;
+  Groups made;
   std::vector<std::pair<BodyId, std::size_t>> index;  // body, place in drafts; ascending
   double lightest = never, heaviest = 0;  // kg, of the drafts and, at a border, of their groups
   GroupTally tally;
