@@ -31,21 +31,6 @@ struct PlacedCore {
   Vec3 center() const { return placement * core.center(); }
 };
 
-// B seen from A's frame and scaled about its centre.
-struct ShrunkCore {
-  const Polyhedron& core;
-  const Frame& placement;
-  double factor;
-
-  int support(const Vec3& direction, int start) const {
-    return core.support(placement.R.transpose() * direction, start);
-  }
-  Vec3 vertex(int i) const {
-    return placement * (core.center() + factor * (core.vertex(i) - core.center()));
-  }
-  Vec3 center() const { return placement * core.center(); }
-};
-
 // B as a single point.
 struct PointCore {
   const Vec3& point;
@@ -148,11 +133,6 @@ CoreDistance distance_of(const Polyhedron& a, const CoreB& b, SimplexCache* cach
 CoreDistance core_distance(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
                            SimplexCache* cache) {
   return distance_of(a, PlacedCore{b, b_in_a}, cache);
-}
-
-CoreDistance shrunk_distance(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
-                             double factor, SimplexCache* cache) {
-  return distance_of(a, ShrunkCore{b, b_in_a, factor}, cache);
 }
 
 CoreDistance core_distance(const Polyhedron& a, const Vec3& point, SimplexCache* cache) {

@@ -29,9 +29,6 @@ struct CoreDistance {
 // `b_in_a` maps B's frame to A's.  The cache, if any, is where the search starts, and gets its end.
 CoreDistance core_distance(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
                            SimplexCache* cache);
-// The same, cold, for B scaled by `factor` about its center(): its faces keep their normals.
-CoreDistance shrunk_distance(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
-                             double factor, SimplexCache* cache);
 // The same for a point in A's frame.
 CoreDistance core_distance(const Polyhedron& a, const Vec3& point, SimplexCache* cache);
 

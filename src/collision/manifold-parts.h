@@ -28,7 +28,8 @@ enum class FeatureMode : std::uint64_t {
   side,
   rim,
   lying,
-  standing
+  standing,
+  exposed
 };
 
 // The name of a point by the numbers of what meets there.

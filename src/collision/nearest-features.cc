@@ -93,20 +93,4 @@ NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const
   return result;
 }
 
-bool features_of_shrunk(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double factor,
-                        NearestFeatures& near) {
-  SimplexCache simplex;
-  const CoreDistance core = shrunk_distance(a, b, b_in_a, factor, &simplex);
-  if (core.overlap || core.distance <= touch_ratio * (a.radius() + b.radius())) return false;
-  near.normal = core.normal;
-  near.a = spanned(simplex.count, simplex.vertex_a);
-  near.b = spanned(simplex.count, simplex.vertex_b);
-  near.point_a = core.point_a;
-  // the same point of the unscaled B
-  const Vec3 center = b_in_a * b.center();
-  near.point_b = center + (core.point_a + core.distance * core.normal - center) / factor;
-  near.distance = near.normal.dot(near.point_b - near.point_a);
-  return true;
-}
-
 }  // namespace tw

@@ -31,10 +31,4 @@ struct NearestFeatures {
 NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
                                  double reach);
 
-// The features that are nearest when B is scaled by `factor` (below 1) about its center(), with the
-// distance of the unscaled B along that normal; for slight overlap.  False where even the scaled B
-// overlaps A.
-bool features_of_shrunk(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double factor,
-                        NearestFeatures& near);
-
 }  // namespace tw

@@ -1,0 +1,89 @@
+// A cylinder at a seam.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
+#include "collision/seam-pair.h"
+#include "collision/separation.h"
+
+namespace tw {
+
+namespace {
+
+// How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
+constexpr double shrinking[] = {0.98, 0.9};
+
+// A point this near to a part, relative to the size, is held by it.
+constexpr double held_ratio = 1e-5;
+
+bool buries(const SeamPair& seam, bool on_a, const RoundDistance& near) {
+  return seam.buries(on_a, on_a ? near.point_a : near.point_b, near.normal, same_angle);
+}
+
+// Of points along a buried axis, leaves what is exposed elsewhere on that side.
+void keep_exposed(const SeamPair& seam, bool on_a, std::size_t from, std::vector<ManifoldPoint>& out) {
+  const auto first_new = out.begin() + static_cast<std::ptrdiff_t>(from);
+  out.erase(std::remove_if(first_new, out.end(),
+                           [&](const auto& p) { return p.reference_is_a != on_a; }),
+            out.end());
+  seam.remove_ghosts(from, same_angle, out);
+}
+
+// Whether the part of a (or of b) or a neighbour of it holds a point of the other body.
+bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
+  const auto held_by = [&](const SeamNeighbour& q) {
+    return height_over(q, point) <= held_ratio * seam.size;
+  };
+  const std::vector<SeamNeighbour>& others = seam.neighbours(of_a);
+  return held_by({of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame}) ||
+         std::any_of(others.begin(), others.end(), held_by);
+}
+
+// What is nearest with a cylinder scaled down, where the neighbours of a (or of b) bury the axis of least
+// depth.
+void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out) {
+  const ConvexPart& first = seam.first();
+  const ConvexPart& second = seam.second();
+  if ((of_a ? second : first).kind != PartKind::cylinder) return;
+  const std::size_t from = out.size();
+  for (double factor : shrinking) {
+    SupportCore core_a(first, seam.a.frame * first.placement);
+    SupportCore core_b(second, seam.b.frame * second.placement);
+    SupportCore& scaled = of_a ? core_b : core_a;
+    scaled.radius *= factor;
+    scaled.half_length *= factor;
+    RoundDistance near = round_distance(core_a, core_b);
+    if (!(near.distance > 0)) continue;
+    if (buries(seam, of_a, near)) return;
+    // the same point of the cylinder itself
+    Vec3& point = of_a ? near.point_b : near.point_a;
+    point = scaled.place.p + (point - scaled.place.p) / factor;
+    near.distance = near.normal.dot(near.point_b - near.point_a);
+    if (near.distance > seam.reach) return;
+    // a depth that is real: half of it farther out the parts still hold the point
+    const Vec3 outward = of_a ? near.normal : Vec3(-near.normal);
+    if (near.distance < 0 && !holds(seam, of_a, point - 0.5 * near.distance * outward)) return;
+    round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
+    seam.remove_ghosts(from, face_angle, out);
+    return;
+  }
+}
+
+}  // namespace
+
+void cylinders_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+  const ConvexPart& first = seam.first();
+  const ConvexPart& second = seam.second();
+  const std::size_t from = out.size();
+  const Separation s = part_separation(first, seam.a.frame, second, seam.b.frame, nullptr);
+  if (s.distance > seam.reach) return;
+  const RoundDistance near{s.distance, s.normal, s.point_a, s.point_b};
+  round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
+  const bool ghost_a = buries(seam, true, near);
+  const bool ghost = ghost_a || buries(seam, false, near);
+  if (!ghost) return seam.remove_ghosts(from, face_angle, out);
+  keep_exposed(seam, ghost_a, from, out);
+  const bool sunk = near.distance < sunk_ratio * seam.size;
+  if (sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
+}
+
+}  // namespace tw

@@ -1,0 +1,51 @@
+// Ghosts of a pair of parts; see the header.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "collision/seam-pair.h"
+
+#include <algorithm>
+
+namespace tw {
+
+void SeamSide::neighbours_of(std::size_t part, std::vector<SeamNeighbour>& out) const {
+  out.clear();
+  const ConvexPart& here = shape.parts()[part];
+  const Vec3 center = frame * here.bound_center;
+  const auto add = [&](const SeamNeighbour& q) {
+    const double near = (q.part->bound_radius + here.bound_radius) * (1 + 1e-6);
+    const bool apart = (q.frame * q.part->bound_center - center).squaredNorm() > near * near;
+    if (!apart) out.push_back(q);
+  };
+  for (std::size_t i = 0; i < shape.parts().size(); ++i)
+    if (i != part) add({&shape.parts()[i], frame});
+  for (const SeamNeighbour& q : around) add(q);
+}
+
+const std::vector<SeamNeighbour>& SeamPair::neighbours(bool of_a) const {
+  const std::size_t side = of_a ? 0 : 1;
+  if (!listed[side]) (of_a ? a : b).neighbours_of(of_a ? part_a : part_b, *lists[side]);
+  listed[side] = true;
+  return *lists[side];
+}
+
+bool SeamPair::buries(bool on_a, const Vec3& point, const Vec3& normal, double angle) const {
+  const SeamSide& side = on_a ? a : b;
+  if (!side.has_seams) return false;
+  return buried_edge(on_a ? first() : second(), side.frame, point, on_a ? normal : Vec3(-normal),
+                     neighbours(on_a), size, angle);
+}
+
+bool SeamPair::is_ghost(const ManifoldPoint& p, double angle) const {
+  const Vec3 on_reference = p.reference_point + p.reference_radius * p.normal;
+  const Vec3 on_other = p.core_point - p.radius * p.normal;
+  const Vec3 normal = p.reference_is_a ? p.normal : Vec3(-p.normal);
+  return buries(p.reference_is_a, on_reference, normal, angle) ||
+         buries(!p.reference_is_a, on_other, normal, angle);
+}
+
+void SeamPair::remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const {
+  const auto ghosts = std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(from), out.end(),
+                                     [&](const ManifoldPoint& p) { return is_ghost(p, angle); });
+  out.erase(ghosts, out.end());
+}
+
+}  // namespace tw

@@ -1,0 +1,62 @@
+// A pair of convex parts in contact at a seam of one of them, and which of their contacts are ghosts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "collision/manifold-parts.h"
+
+namespace tw {
+
+// Bodies nearer than this, relative to the size, may overlap the neighbours of what they are near to.
+inline constexpr double sunk_ratio = 0.01;
+
+// Normals that agree so far are the same, rad.
+inline constexpr double same_angle = 1e-4;
+
+// Points on a face of the other body have its normal, up to 2 degrees from that of the nearest features
+// and a little more: rad.
+inline constexpr double face_angle = 0.04;
+
+// One body with what surrounds its parts.
+struct SeamSide {
+  const Shape& shape;
+  const Frame& frame;
+  const std::vector<SeamNeighbour>& around;
+  bool has_seams;
+
+  SeamSide(const Shape& s, const Frame& f, const std::vector<SeamNeighbour>& neighbours)
+      : shape(s), frame(f), around(neighbours),
+        has_seams(!neighbours.empty() || s.parts().size() > 1) {}
+
+  // The neighbours of one part whose balls come near its own.  Overwrites `out`.
+  void neighbours_of(std::size_t part, std::vector<SeamNeighbour>& out) const;
+};
+
+struct SeamPair {
+  const SeamSide& a;
+  const SeamSide& b;
+  std::size_t part_a, part_b;
+  double reach, size;
+  ReferenceChoice choice;
+  int pair;
+  // the neighbours of the part of a and of b, once they are asked for
+  std::vector<SeamNeighbour>* lists[2];
+  mutable bool listed[2] = {false, false};
+
+  const ConvexPart& first() const { return a.shape.parts()[part_a]; }
+  const ConvexPart& second() const { return b.shape.parts()[part_b]; }
+
+  const std::vector<SeamNeighbour>& neighbours(bool of_a) const;
+
+  // Whether the neighbours of a's part (or b's) bury the point; the normal is from a to b, world.
+  bool buries(bool on_a, const Vec3& point, const Vec3& normal, double angle) const;
+  bool is_ghost(const ManifoldPoint& p, double angle) const;
+  void remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const;
+};
+
+// Two polyhedra; a polyhedron and a cylinder or two cylinders.
+void polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
+void cylinders_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
+
+}  // namespace tw

@@ -1,0 +1,167 @@
+// Two polyhedra at a seam.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
+#include "collision/exposed-edges.h"
+#include "collision/face-contact.h"
+#include "collision/nearest-to-point.h"
+#include "collision/seam-pair.h"
+
+namespace tw {
+
+namespace {
+
+// What of an edge is this near to a neighbour, relative to the size, counts as buried: more than
+// buried_edge allows.
+constexpr double margin_ratio = 2e-5;
+
+// What the neighbours of one side leave exposed of it in the other.
+struct Exposure {
+  const SeamPair& seam;
+  const CorePair& cores;
+  bool of_a;
+  std::vector<ManifoldPoint>& out;
+  const Polyhedron& part = of_a ? cores.a : cores.b;
+  const Polyhedron& other = of_a ? cores.b : cores.a;
+  const Frame world = of_a ? cores.world_a : cores.world_a * cores.b_in_a;
+  const Frame other_in_part = of_a ? cores.b_in_a : cores.a_in_b();
+
+  // A point of one side over a plane of the other, in the frame of the part.  False for ghosts.
+  bool add(bool reference_is_a, const Vec3& normal, const Vec3& core_point, double gap,
+           const std::array<std::uint64_t, 3>& names) const {
+    ManifoldPoint p;
+    p.reference_is_a = reference_is_a;
+    p.normal = world.R * normal;
+    p.core_point = world * core_point;
+    p.gap = gap;
+    p.reference_point = p.core_point - gap * p.normal;
+    p.pair = seam.pair;
+    p.feature = feature_name(seam.pair, FeatureMode::exposed, names);
+    if (seam.is_ghost(p, same_angle)) return false;
+    out.push_back(p);
+    return true;
+  }
+
+  // Edges of the part through the other.
+  void add_edges() const {
+    thread_local std::vector<ExposedPoint> exposed;
+    exposed.clear();
+    exposed_edges(part, world, other, other_in_part, seam.neighbours(of_a), margin_ratio * seam.size,
+                  seam.reach, exposed);
+    for (const ExposedPoint& p : exposed) {
+      const std::array<std::uint64_t, 3> names{static_cast<std::uint64_t>(p.edge),
+                                               static_cast<std::uint64_t>(p.face + 1),
+                                               static_cast<std::uint64_t>(p.other_edge + 1)};
+      if (p.face >= 0)
+        add(!of_a, -p.normal, p.point, p.gap, names);
+      else
+        add(of_a, p.normal, p.opposite, p.gap, names);
+    }
+  }
+
+  // Whether the point, `depth` under a face of the part, is nearer to an exposed face of a neighbour: as
+  // behind the edge of a steep ridge.
+  bool leaves_by_neighbour(const Vec3& point, double depth) const {
+    const std::vector<SeamNeighbour>& around = seam.neighbours(of_a);
+    const Vec3 here = world * point;
+    for (const SeamNeighbour& q : around) {
+      if (q.part->kind != PartKind::polyhedron) continue;
+      const Polyhedron& core = *q.part->core;
+      const Frame place = q.frame * q.part->placement;
+      const Vec3 local = place.to_local(here);
+      for (const Polyhedron::Face& face : core.faces()) {
+        const double under = face.offset - face.normal.dot(local);
+        if (!(under >= 0 && under < depth - same_place())) continue;
+        const Vec3 foot = local + under * face.normal;
+        if (!over_face(core, face, foot, same_place())) continue;
+        // a little outside, as a wall between two is inside neither
+        if (!covered(place * Vec3(foot + 4 * same_place() * face.normal), around)) return true;
+      }
+    }
+    return false;
+  }
+
+  // Whether a place (world) is inside the part or one of the neighbours.
+  bool covered(const Vec3& place, const std::vector<SeamNeighbour>& around) const {
+    const auto holds = [&](const SeamNeighbour& q) { return height_over(q, place) < -same_place(); };
+    int face = 0;
+    return part.face_separation(world.to_local(place), face) < -same_place() ||
+           std::any_of(around.begin(), around.end(), holds);
+  }
+
+  double same_place() const { return margin_ratio * seam.size; }
+
+  // Vertices of the other, each over or under the face of the part that it is nearest to, or under the one
+  // that it leaves the ground by.
+  void add_vertices() const {
+    for (std::uint64_t v = 0; v < other.vertices().size(); ++v) {
+      const Vec3 point = other_in_part * other.vertices()[v];
+      int nearest = 0;
+      const double height = part.face_separation(point, nearest);
+      const std::array<std::uint64_t, 3> names{v, static_cast<std::uint64_t>(nearest), ~std::uint64_t{0}};
+      if (height <= seam.reach && add(of_a, part.face(nearest).normal, point, height, names)) continue;
+      if (height <= sunk_ratio * seam.size) add_under_face(v, point, height > 0);
+    }
+  }
+
+  // A vertex inside the part, or `beside` it and inside a neighbour.
+  void add_under_face(std::uint64_t v, const Vec3& point, bool beside) const {
+    thread_local std::vector<std::pair<double, std::uint64_t>> depths;
+    depths.clear();
+    for (std::uint64_t f = 0; f < part.faces().size(); ++f) {
+      const Polyhedron::Face& face = part.faces()[f];
+      const double depth = face.offset - face.normal.dot(point);
+      if (depth < 0 || depth > sunk_ratio * seam.size) continue;
+      if (beside && !over_face(part, face, point + depth * face.normal, 0)) continue;
+      depths.emplace_back(depth, f);
+    }
+    std::sort(depths.begin(), depths.end());
+    if (beside && !covered(world * point, seam.neighbours(of_a))) return;
+    for (const auto& [depth, f] : depths) {
+      if (leaves_by_neighbour(point, depth)) return;
+      if (add(of_a, part.faces()[f].normal, point, -depth, {v, f, ~std::uint64_t{0}})) return;
+    }
+  }
+};
+
+// Leaves each place once and no more points than a manifold has, the deepest.
+void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) {
+  const auto first_new = out.begin() + static_cast<std::ptrdiff_t>(from);
+  std::sort(first_new, out.end(), [](const auto& p, const auto& q) {
+    return std::pair(p.gap, p.feature) < std::pair(q.gap, q.feature);
+  });
+  // edges that end in one vertex meet the same face there
+  const auto last = std::unique(first_new, out.end(), [&](const auto& p, const auto& q) {
+    return (p.core_point - q.core_point).norm() <= same_place && p.reference_is_a == q.reference_is_a;
+  });
+  out.erase(last, out.end());
+  out.resize(std::min(out.size(), from + most_manifold_points));
+}
+
+}  // namespace
+
+void polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+  const std::size_t from = out.size();
+  const CorePair cores(seam.first(), seam.a.frame, seam.second(), seam.b.frame);
+  const NearestFeatures near = nearest_features(cores.a, cores.b, cores.b_in_a, seam.reach);
+  if (near.distance > seam.reach) return;
+  const auto buried = [&](bool on_a) {
+    return seam.buries(on_a, cores.world_a * (on_a ? near.point_a : near.point_b),
+                       cores.world_a.R * near.normal, same_angle);
+  };
+  if (!buried(true) && !buried(false)) {
+    features_manifold(cores, near, seam.reach, seam.choice, seam.pair, out);
+    seam.remove_ghosts(from, face_angle, out);
+  }
+  if (out.size() > from || near.distance > sunk_ratio * seam.size) return;
+  for (const bool of_a : {true, false}) {
+    if (!(of_a ? seam.a : seam.b).has_seams) continue;
+    const Exposure exposure{seam, cores, of_a, out};
+    exposure.add_edges();
+    exposure.add_vertices();
+  }
+  thin(coincident_ratio * cores.size(), from, out);
+}
+
+}  // namespace tw
