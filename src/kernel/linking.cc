@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/separation.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
 #include "kernel/kernel.h"
@@ -222,14 +223,13 @@ void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const 
   }
 }
 
-// Whether the two overlap although there is nothing to support: a buried wall or edge of the ground.  Such
-// a pair is linked without contacts, or its collision checks would see an overlap all the time.
-bool Kernel::ghosts(const Side& a, const Side& b) {
-  if (!manifold_points_.empty() || (!a.body->fixed() && !b.body->fixed())) return false;
-  manifold(*a.body->shape_P, a.frame, *b.body->shape_P, b.frame, 0, manifold_points_);
-  const bool overlap = !manifold_points_.empty();
-  manifold_points_.clear();
-  return overlap;
+// Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the ground.  Such
+// a pair is linked, with no contact that presses, or its collision checks would see an overlap all the time.
+bool Kernel::ghosts(const Side& a, const Side& b) const {
+  if (!a.body->fixed() && !b.body->fixed()) return false;
+  const auto touches = [](const ManifoldPoint& p) { return p.gap <= 0; };
+  if (std::any_of(manifold_points_.begin(), manifold_points_.end(), touches)) return false;
+  return separation(*a.body->shape_P, a.frame, *b.body->shape_P, b.frame).distance <= 0;
 }
 
 bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, bool must) {
