@@ -70,12 +70,15 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
 
 // Manifolds where seams matter: as `manifold`, but without ghosts.  `around_a`: the parts of *other*
 // fixed bodies near a, where a is fixed; likewise for b; the other parts of a union are its own
-// neighbours.  `size` as above.
+// neighbours.  `size` as above.  Returns the least distance of the pairs of parts (m; negative: depth), ghosts
+// or not, if it is within reach; else 1e300.
 //
 // Where bodies overlap a little the axis of least depth may be that of a buried wall, while another axis
-// supports: then the features are those that are nearest when the other body is scaled down until it is
-// apart, which have no ghosts (see buried_edge), with their depth along that normal.
-void manifold_at_seams(const Shape& a, const Frame& frame_a,
+// supports.  Then the points are those of the exposed edges that lie deepest in the other polyhedron, and
+// its vertices under the face that they leave the ground by (exposed-edges.h, seam-polyhedra.cc).  A cylinder
+// is scaled down until it is apart: what is nearest then is no ghost (see buried_edge), and has its depth
+// along that normal.
+double manifold_at_seams(const Shape& a, const Frame& frame_a,
                        const std::vector<SeamNeighbour>& around_a, const Shape& b,
                        const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,
                        double reach, double size, std::vector<ManifoldPoint>& out,

@@ -70,20 +70,23 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
 
 }  // namespace
 
-void cylinders_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+double cylinders_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const ConvexPart& first = seam.first();
   const ConvexPart& second = seam.second();
   const std::size_t from = out.size();
   const Separation s = part_separation(first, seam.a.frame, second, seam.b.frame, nullptr);
-  if (s.distance > seam.reach) return;
+  if (s.distance > seam.reach) return s.distance;
   const RoundDistance near{s.distance, s.normal, s.point_a, s.point_b};
   round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
   const bool ghost_a = buries(seam, true, near);
   const bool ghost = ghost_a || buries(seam, false, near);
-  if (!ghost) return seam.remove_ghosts(from, face_angle, out);
-  keep_exposed(seam, ghost_a, from, out);
+  if (ghost)
+    keep_exposed(seam, ghost_a, from, out);
+  else
+    seam.remove_ghosts(from, face_angle, out);
   const bool sunk = near.distance < sunk_ratio * seam.size;
-  if (sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
+  if (ghost && sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
+  return near.distance;
 }
 
 }  // namespace tw

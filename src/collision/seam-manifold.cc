@@ -8,7 +8,7 @@ namespace tw {
 
 namespace {
 
-void add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+double add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const PartKind first = seam.first().kind, second = seam.second().kind;
   const auto has_core = [](PartKind kind) {
     return kind == PartKind::polyhedron || kind == PartKind::cylinder;
@@ -19,12 +19,15 @@ void add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
   part_manifold(seam.first(), seam.a.frame, seam.second(), seam.b.frame, seam.reach, seam.choice,
                 seam.pair, out);
+  double least = 1e300;
+  for (std::size_t i = from; i < out.size(); ++i) least = std::min(least, out[i].gap);
   seam.remove_ghosts(from, same_angle, out);
+  return least;
 }
 
 }  // namespace
 
-void manifold_at_seams(const Shape& a, const Frame& frame_a,
+double manifold_at_seams(const Shape& a, const Frame& frame_a,
                        const std::vector<SeamNeighbour>& around_a, const Shape& b,
                        const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,
                        double reach, double size, std::vector<ManifoldPoint>& out,
@@ -33,14 +36,18 @@ void manifold_at_seams(const Shape& a, const Frame& frame_a,
   const SeamSide side_b(b, frame_b, around_b);
   thread_local std::vector<SeamNeighbour> near_a, near_b;
   int pair = 0;
+  double least = 1e300;
   for (std::size_t i = 0; i < a.parts().size(); ++i)
     for (std::size_t j = 0; j < b.parts().size(); ++j, ++pair) {
       const auto first = static_cast<std::ptrdiff_t>(out.size());
       if (far_apart(a.parts()[i], frame_a, b.parts()[j], frame_b, reach)) continue;
-      add(SeamPair{side_a, side_b, i, j, reach, size, choice, pair, {&near_a, &near_b}}, out);
+      const double distance =
+          add(SeamPair{side_a, side_b, i, j, reach, size, choice, pair, {&near_a, &near_b}}, out);
+      if (distance <= reach) least = std::min(least, distance);
       std::sort(out.begin() + first, out.end(),
                 [](const auto& p, const auto& q) { return p.feature < q.feature; });
     }
+  return least;
 }
 
 }  // namespace tw

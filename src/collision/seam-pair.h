@@ -55,8 +55,9 @@ struct SeamPair {
   void remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const;
 };
 
-// Two polyhedra; a polyhedron and a cylinder or two cylinders.
-void polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
-void cylinders_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
+// Two polyhedra; a polyhedron and a cylinder or two cylinders.  They return the distance, with all ghosts, or
+// beyond the reach a lower bound of it.
+double polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
+double cylinders_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 
 }  // namespace tw

@@ -141,11 +141,11 @@ void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) 
 
 }  // namespace
 
-void polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+double polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
   const CorePair cores(seam.first(), seam.a.frame, seam.second(), seam.b.frame);
   const NearestFeatures near = nearest_features(cores.a, cores.b, cores.b_in_a, seam.reach);
-  if (near.distance > seam.reach) return;
+  if (near.distance > seam.reach) return near.distance;
   const auto buried = [&](bool on_a) {
     return seam.buries(on_a, cores.world_a * (on_a ? near.point_a : near.point_b),
                        cores.world_a.R * near.normal, same_angle);
@@ -154,7 +154,7 @@ void polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
     features_manifold(cores, near, seam.reach, seam.choice, seam.pair, out);
     seam.remove_ghosts(from, face_angle, out);
   }
-  if (out.size() > from || near.distance > sunk_ratio * seam.size) return;
+  if (out.size() > from || near.distance > sunk_ratio * seam.size) return near.distance;
   for (const bool of_a : {true, false}) {
     if (!(of_a ? seam.a : seam.b).has_seams) continue;
     const Exposure exposure{seam, cores, of_a, out};
@@ -162,6 +162,7 @@ void polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
     exposure.add_vertices();
   }
   thin(coincident_ratio * cores.size(), from, out);
+  return near.distance;
 }
 
 }  // namespace tw

@@ -282,7 +282,7 @@ class Kernel {
   LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
                              const ContactConstants& law) const;
   void match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const;
-  bool ghosts(const Side& a, const Side& b) const;
+  bool ghosts(const Side& a, const Side& b, double distance) const;
   void preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const;
   void refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at, double interval);
   void find_fixed_around(const Body& mover);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/separation.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
 #include "kernel/kernel.h"
@@ -225,11 +224,10 @@ void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const 
 
 // Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the ground.  Such
 // a pair is linked, with no contact that presses, or its collision checks would see an overlap all the time.
-bool Kernel::ghosts(const Side& a, const Side& b) const {
-  if (!a.body->fixed() && !b.body->fixed()) return false;
+bool Kernel::ghosts(const Side& a, const Side& b, double distance) const {
+  if (distance > 0 || (!a.body->fixed() && !b.body->fixed())) return false;
   const auto touches = [](const ManifoldPoint& p) { return p.gap <= 0; };
-  if (std::any_of(manifold_points_.begin(), manifold_points_.end(), touches)) return false;
-  return separation(*a.body->shape_P, a.frame, *b.body->shape_P, b.frame).distance <= 0;
+  return std::none_of(manifold_points_.begin(), manifold_points_.end(), touches);
 }
 
 bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, bool must) {
@@ -248,12 +246,13 @@ bool Kernel::link(Regroup& work, const Side& a, const Side& b, double interval, 
   const ReferenceChoice choice = !body_a.dynamic()   ? ReferenceChoice::of_a
                                  : !body_b.dynamic() ? ReferenceChoice::of_b
                                                      : ReferenceChoice::larger;
-  manifold_at_seams(*body_a.shape_P, a.frame, around(body_a), *body_b.shape_P, b.frame,
-                    around(body_b), reach, size, manifold_points_, choice);
+  const double distance =
+      manifold_at_seams(*body_a.shape_P, a.frame, around(body_a), *body_b.shape_P, b.frame,
+                        around(body_b), reach, size, manifold_points_, choice);
   for (ManifoldPoint& p : manifold_points_) flatten(p, p.reference_is_a ? a : b, body_b);
   const std::uint64_t pair = pair_id(body_a.id(), body_b.id());
   const OldLink* before = work.link_before(pair);
-  if (!must && !wants_link(a, b, before, interval, law) && !ghosts(a, b)) return false;
+  if (!must && !wants_link(a, b, before, interval, law) && !ghosts(a, b, distance)) return false;
 
   LooseLink fresh{pair, static_cast<std::uint32_t>(work.contacts.size()),
                   static_cast<std::uint32_t>(manifold_points_.size()), false};
