@@ -29,7 +29,8 @@ enum class FeatureMode : std::uint64_t {
   rim,
   lying,
   standing,
-  exposed
+  exposed_of_a,
+  exposed_of_b
 };
 
 // The name of a point by the numbers of what meets there.

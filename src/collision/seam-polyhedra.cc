@@ -1,7 +1,6 @@
 // Two polyhedra at a seam.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
-#include <array>
 
 #include "collision/exposed-edges.h"
 #include "collision/face-contact.h"
@@ -27,17 +26,26 @@ struct Exposure {
   const Frame world = of_a ? cores.world_a : cores.world_a * cores.b_in_a;
   const Frame other_in_part = of_a ? cores.b_in_a : cores.a_in_b();
 
-  // A point of one side over a plane of the other, in the frame of the part.  False for ghosts.
-  bool add(bool reference_is_a, const Vec3& normal, const Vec3& core_point, double gap,
-           const std::array<std::uint64_t, 3>& names) const {
+  // Of one side, over a face or edge of the other; lengths in the frame of the part.
+  struct Point {
+    bool reference_is_a;
+    Vec3 normal, core_point;
+    double gap;
+    // of what meets there
+    std::uint64_t first, second, third;
+  };
+
+  // False for ghosts.
+  bool add(const Point& found) const {
     ManifoldPoint p;
-    p.reference_is_a = reference_is_a;
-    p.normal = world.R * normal;
-    p.core_point = world * core_point;
-    p.gap = gap;
-    p.reference_point = p.core_point - gap * p.normal;
+    p.reference_is_a = found.reference_is_a;
+    p.normal = world.R * found.normal;
+    p.core_point = world * found.core_point;
+    p.gap = found.gap;
+    p.reference_point = p.core_point - p.gap * p.normal;
     p.pair = seam.pair;
-    p.feature = feature_name(seam.pair, FeatureMode::exposed, names);
+    const FeatureMode mode = of_a ? FeatureMode::exposed_of_a : FeatureMode::exposed_of_b;
+    p.feature = feature_name(seam.pair, mode, {found.first, found.second, found.third});
     if (seam.is_ghost(p, same_angle)) return false;
     out.push_back(p);
     return true;
@@ -50,13 +58,12 @@ struct Exposure {
     exposed_edges(part, world, other, other_in_part, seam.neighbours(of_a), margin_ratio * seam.size,
                   seam.reach, exposed);
     for (const ExposedPoint& p : exposed) {
-      const std::array<std::uint64_t, 3> names{static_cast<std::uint64_t>(p.edge),
-                                               static_cast<std::uint64_t>(p.face + 1),
-                                               static_cast<std::uint64_t>(p.other_edge + 1)};
+      const auto edge = static_cast<std::uint64_t>(p.edge), face = static_cast<std::uint64_t>(p.face + 1);
+      const auto other_edge = static_cast<std::uint64_t>(p.other_edge + 1);
       if (p.face >= 0)
-        add(!of_a, -p.normal, p.point, p.gap, names);
+        add({!of_a, -p.normal, p.point, p.gap, edge, face, other_edge});
       else
-        add(of_a, p.normal, p.opposite, p.gap, names);
+        add({of_a, p.normal, p.opposite, p.gap, edge, face, other_edge});
     }
   }
 
@@ -92,6 +99,10 @@ struct Exposure {
 
   double same_place() const { return margin_ratio * seam.size; }
 
+  bool add_vertex(std::uint64_t v, std::uint64_t face, const Vec3& point, double height) const {
+    return add({of_a, part.faces()[face].normal, point, height, v, face, ~std::uint64_t{0}});
+  }
+
   // Vertices of the other, each over or under the face of the part that it is nearest to, or under the one
   // that it leaves the ground by.
   void add_vertices() const {
@@ -99,8 +110,7 @@ struct Exposure {
       const Vec3 point = other_in_part * other.vertices()[v];
       int nearest = 0;
       const double height = part.face_separation(point, nearest);
-      const std::array<std::uint64_t, 3> names{v, static_cast<std::uint64_t>(nearest), ~std::uint64_t{0}};
-      if (height <= seam.reach && add(of_a, part.face(nearest).normal, point, height, names)) continue;
+      if (height <= seam.reach && add_vertex(v, static_cast<std::uint64_t>(nearest), point, height)) continue;
       if (height <= sunk_ratio * seam.size) add_under_face(v, point, height > 0);
     }
   }
@@ -120,7 +130,7 @@ struct Exposure {
     if (beside && !covered(world * point, seam.neighbours(of_a))) return;
     for (const auto& [depth, f] : depths) {
       if (leaves_by_neighbour(point, depth)) return;
-      if (add(of_a, part.faces()[f].normal, point, -depth, {v, f, ~std::uint64_t{0}})) return;
+      if (add_vertex(v, f, point, -depth)) return;
     }
   }
 };
