@@ -6,7 +6,7 @@
 // surface; the point of it that lies deepest in the other polyhedron is a contact, either under one face
 // (where the stretch ends) or where it crosses an edge.
 //
-// No such depth exceeds the least translation that would part the two polyhedra.
+// A point under a face is never deeper than the least translation that would part the two polyhedra.
 //
 // Cost: edges times faces of the other, for those edges that come near it.
 //

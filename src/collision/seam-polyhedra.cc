@@ -70,9 +70,8 @@ struct Exposure {
   // Whether the point, `depth` under a face of the part, is nearer to an exposed face of a neighbour: as
   // behind the edge of a steep ridge.
   bool leaves_by_neighbour(const Vec3& point, double depth) const {
-    const std::vector<SeamNeighbour>& around = seam.neighbours(of_a);
     const Vec3 here = world * point;
-    for (const SeamNeighbour& q : around) {
+    for (const SeamNeighbour& q : seam.neighbours(of_a)) {
       if (q.part->kind != PartKind::polyhedron) continue;
       const Polyhedron& core = *q.part->core;
       const Frame place = q.frame * q.part->placement;
@@ -83,14 +82,15 @@ struct Exposure {
         const Vec3 foot = local + under * face.normal;
         if (!over_face(core, face, foot, same_place())) continue;
         // a little outside, as a wall between two is inside neither
-        if (!covered(place * Vec3(foot + 4 * same_place() * face.normal), around)) return true;
+        if (!covered(place * Vec3(foot + 4 * same_place() * face.normal))) return true;
       }
     }
     return false;
   }
 
   // Whether a place (world) is inside the part or one of the neighbours.
-  bool covered(const Vec3& place, const std::vector<SeamNeighbour>& around) const {
+  bool covered(const Vec3& place) const {
+    const std::vector<SeamNeighbour>& around = seam.neighbours(of_a);
     const auto holds = [&](const SeamNeighbour& q) { return height_over(q, place) < -same_place(); };
     int face = 0;
     return part.face_separation(world.to_local(place), face) < -same_place() ||
@@ -117,6 +117,7 @@ struct Exposure {
 
   // A vertex inside the part, or `beside` it and inside a neighbour.
   void add_under_face(std::uint64_t v, const Vec3& point, bool beside) const {
+    if (beside && !covered(world * point)) return;
     thread_local std::vector<std::pair<double, std::uint64_t>> depths;
     depths.clear();
     for (std::uint64_t f = 0; f < part.faces().size(); ++f) {
@@ -127,7 +128,6 @@ struct Exposure {
       depths.emplace_back(depth, f);
     }
     std::sort(depths.begin(), depths.end());
-    if (beside && !covered(world * point, seam.neighbours(of_a))) return;
     for (const auto& [depth, f] : depths) {
       if (leaves_by_neighbour(point, depth)) return;
       if (add_vertex(v, f, point, -depth)) return;
