@@ -14,11 +14,14 @@ namespace tw {
 Checkpoint::Checkpoint() = default;
 Checkpoint::~Checkpoint() = default;
 
-std::shared_ptr<const Checkpoint> Kernel::checkpoint() const {
+std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   require_between_runs("a checkpoint was made");
+  // what an interrupt or an observer's error has left undelivered belongs to the time before
+  deliver_rest();
   auto result = std::make_shared<Checkpoint>();
   result->owner = this;
   result->time = time;
+  result->due = due_;
   result->begun = begun;
   result->counters = counters;
   result->hash_sum = hash_sum_;
@@ -56,10 +59,12 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     graph.clear(body->id());
   }
   undelivered_.clear();
-  error_ = nullptr;
+  next_observer_ = 0;
+  undone_.clear();
 
   // the committed present
   time = gvt = checkpoint.time;
+  due_ = checkpoint.due;
   begun = checkpoint.begun;
   counters = checkpoint.counters;
   counters.live_pairs = 0;
@@ -75,6 +80,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     static_cast<StateData&>(*state) = data;
     state->committed = begun;
     body->claim = body->fixed() && begun ? last_key : begun ? present : key;
+    body->lonely_claims = 0;
     // boxes are those of another time until the first claim
     if (!body->fixed()) body->placed = false;
     if (begun) {
@@ -90,9 +96,10 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     callbacks[i].parked = false;
     schedule_callback(i);
   }
+  // frames go on with the first that had not been delivered
   for (SinkRecord& sink : sinks) {
     sink.next_frame = 0;
-    while (sink.next_time() < time) ++sink.next_frame;
+    while (due_.reaches(sink.next_time())) ++sink.next_frame;
   }
 }
 

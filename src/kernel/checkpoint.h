@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel/counters.h"
+#include "kernel/due.h"
 #include "kernel/key.h"
 #include "kernel/state.h"
 
@@ -19,6 +20,7 @@ struct Checkpoint {
 
   const Kernel* owner = nullptr;
   double time = 0;
+  Due due;
   bool begun = false;
   Counters counters;
   std::uint64_t hash_sum = 0, hash_count = 0, edits = 0;

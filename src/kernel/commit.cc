@@ -52,24 +52,24 @@ void Kernel::update_gvt() {
   if (limit > gvt || inclusive) commit(limit, inclusive);
 }
 
-// Everything before `limit` (at it, too, if inclusive) is final.
+// Everything before `limit` (at it, too, if inclusive) is final.  What is committed is so before observers
+// hear of it: an error of theirs leaves the world at its last committed time.
 void Kernel::commit(double limit, bool inclusive) {
-  raise_error_before(limit, inclusive);
+  const std::exception_ptr error = error_before(limit, inclusive);
   commit_states(limit, inclusive);
-  gvt = limit;
-  delivered_to_ = limit;
-  delivered_inclusive_ = inclusive;
-  if (error_)
+  gvt = time = limit;
+  due_ = {limit, inclusive};
+  if (error)
     deliver(never);
   else if (delivery_is_worth_it())
     deliver(slice_end_);
   free_states(limit);
-  time = limit;
-  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  if (error) std::rethrow_exception(error);
 }
 
-// A stopped process whose error GVT passes: commit up to it, then raise.
-void Kernel::raise_error_before(double& limit, bool& inclusive) {
+// The error of the first stopped process that GVT passes, null if there is none: then the commit ends where
+// it stopped.
+std::exception_ptr Kernel::error_before(double& limit, bool& inclusive) const {
   const State* first = nullptr;
   for (const std::uint32_t process : graph.busy()) {
     const State* tail = graph.tail(process);
@@ -77,10 +77,10 @@ void Kernel::raise_error_before(double& limit, bool& inclusive) {
     if (tail->key.time < limit || (inclusive && tail->key.time == limit))
       if (!first || tail->key < first->key) first = tail;
   }
-  if (!first) return;
-  error_ = first->error;
+  if (!first) return nullptr;
   limit = first->key.time;
   inclusive = false;
+  return first->error;
 }
 
 void Kernel::commit_states(double limit, bool inclusive) {
@@ -133,12 +133,13 @@ bool Kernel::delivery_is_worth_it() const {
   // states wait for their frames: memory
   if (graph.state_count() >= most_waiting_states) return true;
   return std::any_of(sinks.begin(), sinks.end(), [&](const SinkRecord& s) {
-    return (delivered_to_ - s.next_time()) * s.fps >= batch;
+    return (due_.time - s.next_time()) * s.fps >= batch;
   });
 }
 
-// Collisions and frames in time order; a collision at a frame's time comes first.  What an observer's
-// error keeps from being delivered is delivered by the next call, and a call delivers one thing at least.
+// Collisions and frames in time order; a collision at a frame's time comes first.  Each observer hears of a
+// collision once, whatever another one or a call before did: what an error keeps from being delivered is
+// delivered by the next call, and a call delivers one thing at least.
 bool Kernel::deliver(double wall_end) {
   const double cpu = thread_cpu_seconds();
   struct AddTime {
@@ -151,14 +152,16 @@ bool Kernel::deliver(double wall_end) {
     SinkRecord* sink = nullptr;
     for (SinkRecord& s : sinks)
       if (!sink || s.next_time() < sink->next_time()) sink = &s;
-    const bool frame_due = sink && (sink->next_time() < delivered_to_ ||
-                                    (delivered_inclusive_ && sink->next_time() == delivered_to_));
+    const bool frame_due = sink && due_.reaches(sink->next_time());
     if (!undelivered_.empty() &&
         (!frame_due || undelivered_.front()->time <= sink->next_time())) {
       const std::shared_ptr<const Collision> collision = undelivered_.front();
-      undelivered_.pop_front();
-      for (const ObserverRecord& record : observers)
+      while (next_observer_ < observers.size()) {
+        const ObserverRecord& record = observers[next_observer_++];
         if (record.kind == collision->kind) record.observer(*collision);
+      }
+      undelivered_.pop_front();
+      next_observer_ = 0;
       continue;
     }
     if (!frame_due) return true;

@@ -104,6 +104,11 @@ RunStatus Kernel::advance(double until, double slice) {
   return deliver(slice_end_) ? RunStatus::finished : RunStatus::slice_over;
 }
 
+void Kernel::deliver_rest() {
+  const RunGuard guard(*this);
+  deliver(never);
+}
+
 bool Kernel::step(double until) {
   TW_REQUIRE(!running, "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(*this);

@@ -32,6 +32,7 @@
 #include "kernel/checkpoint.h"
 #include "kernel/counters.h"
 #include "kernel/draft.h"
+#include "kernel/due.h"
 #include "kernel/event-queue.h"
 #include "kernel/pair.h"
 #include "kernel/policy.h"
@@ -92,7 +93,7 @@ class Kernel {
   void set_gravity(const Vec3& gravity);
   const ContactParameters& contact_parameters(BodyId a, BodyId b) const;
   void edit(BodyId id, const std::function<void(StateView&)>& change);
-  std::shared_ptr<const Checkpoint> checkpoint() const;  // checkpoint.cc
+  std::shared_ptr<const Checkpoint> checkpoint();  // checkpoint.cc
   void restore(const Checkpoint& checkpoint);
   void require_between_runs(const char* what) const;
   void require_before_first_run(const char* what) const;
@@ -168,6 +169,7 @@ class Kernel {
   Event make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start);
   bool gvt_is_due() const;
   bool finished();
+  void deliver_rest();               // what is committed, all of it
 
   // ---- claim.cc ----
   void schedule_advance(Body& body);
@@ -340,7 +342,7 @@ class Kernel {
   bool deliver(double wall_end);
   void deliver_frame(SinkRecord& sink);
   void free_states(double limit);
-  void raise_error_before(double& limit, bool& inclusive);
+  std::exception_ptr error_before(double& limit, bool& inclusive) const;
 
   double cell_ = 1;                  // typical spacing, m
   bool contacts_may_disable_ = false;  // somebody called disable-collisions!
@@ -349,9 +351,8 @@ class Kernel {
   double until_ = 0;                 // end of the present run
   std::vector<BodyId> newborn_;
   std::deque<std::shared_ptr<const Collision>> undelivered_;  // committed, in time order
-  double delivered_to_ = 0;          // frames at or before it may be delivered
-  bool delivered_inclusive_ = false;
-  std::exception_ptr error_;         // final: to be raised
+  std::size_t next_observer_ = 0;    // who hears next of the first of them
+  Due due_;                          // frames that may be delivered
   std::uint64_t hash_sum_ = 0, hash_count_ = 0;
   std::uint64_t edits_ = 0;
   unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread

@@ -120,7 +120,7 @@ void World::edit(BodyId id, const std::function<void(StateView&)>& change) {
   kernel_->edit(id, change);
 }
 
-std::shared_ptr<const Checkpoint> World::checkpoint() const { return kernel_->checkpoint(); }
+std::shared_ptr<const Checkpoint> World::checkpoint() { return kernel_->checkpoint(); }
 void World::restore(const Checkpoint& checkpoint) { kernel_->restore(checkpoint); }
 
 std::vector<QueuedState> World::state_queue(BodyId id) const { return kernel_->state_queue(id); }

@@ -188,8 +188,9 @@ class World {
   SlotsPtr slots(BodyId id) const;
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.
   void edit(BodyId id, const std::function<void(StateView&)>& change);
-  // The committed present, to come back to.  Bodies and callbacks must be the same at restore.
-  std::shared_ptr<const Checkpoint> checkpoint() const;
+  // The committed present, to come back to; delivers first what an interrupt or an observer's error has left.
+  // Bodies and callbacks must be the same at restore.  Frames go on where they stood.
+  std::shared_ptr<const Checkpoint> checkpoint();
   void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;
   double total_energy() const;              // kinetic, gravity, contact springs, J, at time()

@@ -162,7 +162,9 @@ TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
 }
 
 TW_PRIMITIVE(checkpoint, "%checkpoint", (SCM world), "Return the committed present of a world.") {
-  return from_checkpoint(quiet_world(world, "checkpoint").checkpoint(), world);
+  WorldBox& box = quiet_box(world, "checkpoint");
+  const CallCounter counter(box);
+  return from_checkpoint(box.world.checkpoint(), world);
 }
 
 TW_PRIMITIVE(restore, "%restore!", (SCM checkpoint), "Bring a world back to a checkpoint.") {
