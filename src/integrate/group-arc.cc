@@ -173,10 +173,12 @@ GroupBounds GroupArc::bounds(int member, double from, double to) {
 }
 
 double GroupArc::step_end(double time) {
+  // also where `time` is as far as the arc has come: the step that begins there
+  extend(std::nextafter(std::max(time, data_->start.time), data_->start.end));
   const double from = data_->at(time);
   const GroupRecord& record = data_->record;
-  const int step = std::max(record.step_from(from), 0);
-  return step < record.steps() ? record.time(step + 1) : record.reached();
+  const int step = record.step_from(from);
+  return step >= 0 ? record.time(step + 1) : record.reached();
 }
 
 Vec3 GroupArc::stretch(int contact, double time) {

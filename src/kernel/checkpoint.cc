@@ -72,7 +72,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   hash_count_ = checkpoint.hash_count;
   edits_ = checkpoint.edits;
   options.gravity = checkpoint.gravity;
-  const Key present{time, 0xffffffffu, KeyKind::edit, ~0ull};
+  const Key present = present_key();
   newborn_.clear();
   for (const auto& body : bodies) {
     const auto& [key, data] = checkpoint.states[body->id()];

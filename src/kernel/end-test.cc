@@ -48,6 +48,7 @@ struct Pairing {
   const Motion& outside_motion(const Body& body) const {
     if (!body.dynamic()) return *body.motion;
     const auto at = std::find(group.outside.begin(), group.outside.end(), body.id());
+    TW_ASSERT(at != group.outside.end(), body.info.name + " is linked and neither member nor outside");
     return *group.arc->start().outside[static_cast<std::size_t>(at - group.outside.begin())];
   }
   // The depth of the deepest point, m, as a negative gap; 0: none.  `at_seams`: ghosts left out.
@@ -77,7 +78,7 @@ struct Pairing {
       const int member = group.member_of(body->id());
       const double from = group.arc->start().time, to = group.next_check;
       if (member < 0) {
-        if (!body->dynamic() || link.count == 0) continue;
+        if (!body->dynamic()) continue;
         const Motion& motion = outside_motion(*body);
         sum += motion.path_bounds(from, to).size().norm() +
                motion.angular_speed_bound(from, to) * (to - from) * body->radius;

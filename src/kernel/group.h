@@ -55,7 +55,7 @@ struct Group {
   double first_step = 0;           // of the arc, s; 0: chosen
   double lightest = never, heaviest = 0;  // kg, of all that hung together when it was made
   std::vector<std::uint32_t> members;   // body ids, ascending
-  std::vector<std::uint32_t> outside;   // body ids of arc->start().outside: fixed, kinematic, border
+  std::vector<std::uint32_t> outside;   // body ids of arc->start().outside: all linked ones that are no members
   bool has_border = false;         // some of them are dynamic
   std::vector<GroupLink> links;         // ascending pairs
   std::vector<std::uint32_t> link_starts, links_by_member;  // numbers of each member's links, in rows

@@ -156,7 +156,10 @@ class Kernel {
   void require_no_overlap(const Body& a, const Body& b) const;
   void check_overlaps(Body& body);
   void update_contact_classes() const;
-  Key edit_key(BodyId id);
+  Key edit_key(const std::vector<BodyId>& concerned);
+  Key present_key() const;
+  void edit_together(const std::function<bool(BodyId)>& concerned,
+                     const std::function<void(Draft&)>& change);
   void resolve_shape(Body& body, const BodyDef& def);
   void make_birth(Body& body, const BodyDef& def);
   void validate_body_def(const BodyDef& def, const std::string& name) const;
@@ -261,7 +264,10 @@ class Kernel {
   Region region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const;
   void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
-  std::vector<BodyId> all_provisional(std::vector<BodyId> ids, const Key& key) const;
+  template <class GoesOn>
+  std::vector<BodyId> reached_from(const std::vector<BodyId>& ids, const Key& key, GoesOn goes_on) const;
+  std::vector<BodyId> all_provisional(const std::vector<BodyId>& ids, const Key& key) const;
+  std::vector<BodyId> hanging_together(BodyId id, const Key& key) const;
   bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep, std::vector<BodyId>& movers) const;
   bool own_check_before(BodyId id, const Key& key) const;
   bool await(BodyId id, const Key& key);

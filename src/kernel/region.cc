@@ -141,20 +141,30 @@ void Kernel::add_neighbours(Region& region, const Key& key) const {
   for (const BodyId id : next) insert(region.inside, id);
 }
 
-// These, and all provisional sleepers that hang together with them.
-std::vector<BodyId> Kernel::all_provisional(std::vector<BodyId> ids, const Key& key) const {
+// These, and all dynamic bodies that they reach by links over bodies of which `goes_on` holds; ascending.
+template <class GoesOn>
+std::vector<BodyId> Kernel::reached_from(const std::vector<BodyId>& ids, const Key& key, GoesOn goes_on) const {
   std::vector<BodyId> all, next;
   for (const BodyId id : ids) insert(all, id);
   for (next = all; !next.empty();) {
     std::vector<BodyId> found;
     visit_neighbours(next, key, [&](const Group&, const GroupLink&, BodyId other) {
-      const State& state = *graph.last_before(other, key);
-      if (state.group && state.group->provisional && !holds(all, other)) insert(found, other);
+      if (!holds(all, other) && goes_on(*graph.last_before(other, key))) insert(found, other);
     });
     for (const BodyId id : found) insert(all, id);
     next = found;
   }
   return all;
+}
+
+// These, and all provisional sleepers that hang together with them.
+std::vector<BodyId> Kernel::all_provisional(const std::vector<BodyId>& ids, const Key& key) const {
+  return reached_from(ids, key, [](const State& s) { return s.group && s.group->provisional; });
+}
+
+// The body, and all that it is linked to over any number of others.
+std::vector<BodyId> Kernel::hanging_together(BodyId id, const Key& key) const {
+  return reached_from({id}, key, [](const State&) { return true; });
 }
 
 // Whether something that moves touches the sleepers; `movers`: those of them that keep their arcs.

@@ -231,6 +231,9 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     }
     link.first = first;
   }
+  // also what is linked without a contact is looked at along the arc (end-test.cc)
+  for (const GroupLink& link : group.links)
+    for (const BodyId id : {first_of(link.pair), second_of(link.pair)}) index_of(id);
   start.first_step = group.first_step;
   group.arc = std::make_unique<GroupArc>(std::move(start));
 }

@@ -270,13 +270,10 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 
 // ---- changes between runs ----
 
-Key Kernel::edit_key(BodyId id) {
+// Of an edit that concerns these: after whatever they have done at this instant.
+Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
   std::uint32_t microstep = 1;
-  // after whatever its group has done at this instant
-  const Region region = region_of(last_key, {id}, true);
-  std::vector<BodyId> all = region.inside;
-  all.insert(all.end(), region.border.begin(), region.border.end());
-  for (const BodyId member : all)
+  for (const BodyId member : concerned)
     for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
       if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
   return {time, microstep, KeyKind::edit, edits_++};
@@ -285,7 +282,10 @@ Key Kernel::edit_key(BodyId id) {
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   require_between_runs("a body was changed");
   Body& body = *bodies[id];
-  const Key key = edit_key(id);
+  const Region region = region_of(last_key, {id}, true);
+  std::vector<BodyId> concerned = region.inside;
+  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
+  const Key key = edit_key(concerned);
   std::vector<Draft> drafts{draft_for(body, key, false)};
   drafts[0].enters = true;
   const Vec3 x_before = drafts[0].point.x;
@@ -302,25 +302,46 @@ void Kernel::set_gravity(const Vec3& gravity) {
   require_between_runs("gravity was set");
   TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
   options.gravity = gravity;
-  for (const auto& body : bodies) {
-    if (!body->dynamic()) continue;
-    State* tail = graph.tail(body->id());
-    if (!begun && !tail->prev) {
+  // a body that is still at its birth needs no discontinuity
+  const auto newborn = [&](BodyId id) { return !begun && !graph.tail(id)->prev; };
+  for (const auto& body : bodies)
+    if (body->dynamic() && newborn(body->id())) {
+      State* tail = graph.tail(body->id());
       tail->acceleration = gravity + tail->force / body->mass;
-      continue;
     }
-    const Key key = edit_key(body->id());
-    std::vector<Draft> drafts{draft_for(*body, key, true)};
-    drafts[0].data.acceleration = gravity + drafts[0].data.force / body->mass;
+  edit_together([&](BodyId id) { return !newborn(id); }, [&](Draft& draft) {
+    draft.data.acceleration = gravity + draft.data.force / draft.body->mass;
+  });
+}
+
+// Gives new arcs, changed by `change`, to all dynamic bodies that are `concerned` and to those that hang together with
+// them: one edit for all that hang together, so that no group is made in between whose members are half changed.
+void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
+                           const std::function<void(Draft&)>& change) {
+  std::vector<bool> done(bodies.size(), false);
+  for (const auto& body : bodies) {
+    if (!body->dynamic() || done[body->id()] || !concerned(body->id())) continue;
+    const std::vector<BodyId> together = hanging_together(body->id(), present_key());
+    const Key key = edit_key(together);
+    std::vector<Draft> drafts;
+    drafts.reserve(together.size());
+    for (const BodyId id : together) {
+      done[id] = true;
+      drafts.push_back(draft_for(*bodies[id], key, true));
+      change(drafts.back());
+    }
     regroup_edited(key, drafts);
     enter_discontinuity(key, drafts);
   }
 }
 
+// After everything that has happened at the present time.
+Key Kernel::present_key() const { return {time, 0xffffffffu, KeyKind::edit, ~0ull}; }
+
 // Everything after the present time is forgotten and will be found again.
 void Kernel::restart_future() {
   undone_.clear();
-  const Key present{time, 0xffffffffu, KeyKind::edit, ~0ull};
+  const Key present = present_key();
   std::vector<Touched> touched;
   for (const auto& body : bodies) graph.rollback(body->id(), present, touched, removal());
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
@@ -331,17 +352,12 @@ void Kernel::restart_future() {
 }
 
 void Kernel::renew_groups() {
-  const std::uint64_t first = edits_;
-  for (const auto& body : bodies) {
-    const State* tail = graph.tail(body->id());
-    if (tail->error || !tail->group || 
-        (tail->group->key.kind == KeyKind::edit && tail->group->key.id >= first))
-      continue;
-    const Key key = edit_key(body->id());
-    std::vector<Draft> drafts{draft_for(*body, key, true)};
-    regroup_edited(key, drafts);
-    enter_discontinuity(key, drafts);
-  }
+  edit_together(
+      [&](BodyId id) {
+        const State* tail = graph.tail(id);
+        return tail->group && !tail->error;
+      },
+      [](Draft&) {});
 }
 
 // ---- the beginning of a run ----

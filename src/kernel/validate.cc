@@ -1,5 +1,6 @@
 // Validators: the kernel's invariants as functions, run after every event under --check.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "base/hash.h"
@@ -85,6 +86,12 @@ std::string Kernel::validate_residences() const {
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
       if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
+      if (s->starts_arc())
+        for (const GroupLink& link : group.links)
+          for (const BodyId id : {first_of(link.pair), second_of(link.pair)})
+            if (!group.contains(id) &&
+                std::find(group.outside.begin(), group.outside.end(), id) == group.outside.end())
+              return "linked to a group and neither in it nor outside: " + bodies[id]->info.name;
       if (s->committed || s->key != group.key) continue;
       for (const BodyId other : group.members) {
         const State* t = graph.last_at_or_before(other, s->key);

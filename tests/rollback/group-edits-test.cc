@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "rollback/kernel-access.h"
 #include "support/counter.h"
 #include "support/heap-scenes.h"
@@ -178,6 +180,33 @@ TEST(GroupEdits, pose_of_the_lowest_lets_the_others_fall) {
 
 TEST(GroupEdits, gravity_wakes_groups) {
   expect_edit_wakes([](World& world, const Members&) { world.set_gravity({8, 0, -3}); });
+}
+
+// All of a heap get new arcs at once: not a group for each member, whose neighbours still fall the old way.
+TEST(GroupEdits, gravity_and_parameters_make_each_group_once) {
+  World world;
+  heap_scene(40, 0).fill(world);
+  world.advance(1);
+  const auto groups = [&] { return count_of(world.statistics(), "groups"); };
+  KernelTest kernel(world);
+  std::set<const Group*> standing;
+  for (BodyId id = 0; id < world.body_count(); ++id)
+    if (const auto& group = kernel.tail(id).group) standing.insert(group.get());
+  ASSERT_GT(standing.size(), 0u);
+  const auto made_by = [&](const std::function<void()>& change) {
+    const std::int64_t before = groups();
+    change();
+    return groups() - before;
+  };
+  const auto most = static_cast<std::int64_t>(standing.size());
+  EXPECT_LE(made_by([&] { world.set_gravity({1, 0, -9}); }), most);
+  EXPECT_LE(made_by([&] { set_contact_for_all(world, 0.1, 0.3); }), most);
+  // and all of them fall the new way, whoever was changed first
+  for (BodyId id = 0; id < world.body_count(); ++id)
+    if (world.body(id).kind == BodyKind::dynamic) {
+      EXPECT_EQ(kernel.tail(id).acceleration, Vec3(1, 0, -9));
+    }
+  EXPECT_NO_THROW(world.advance(1.2));
 }
 
 TEST(GroupEdits, friction_set_to_nothing_lets_a_tilted_stack_slide) {

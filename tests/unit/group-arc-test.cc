@@ -47,6 +47,28 @@ TEST(GroupArc, extending_in_pieces_gives_the_same_bits) {
   }
 }
 
+// An arc that nobody has looked at yet is integrated as far as the question needs.
+TEST(GroupArc, step_end_lies_after_the_time_whoever_asked_before) {
+  const GroupStart start = falling_stack(3);
+  GroupArc whole(start);
+  whole.extend(start.end);
+  for (int i = 0; i <= 20; ++i) {
+    const double time = start.time + i * (start.end - start.time) / 20;
+    GroupArc fresh(start);
+    const double end = fresh.step_end(time);
+    EXPECT_EQ(end, whole.step_end(time)) << time;
+    if (i < 20) {
+      EXPECT_GT(end, time);
+    } else {
+      EXPECT_EQ(end, start.end);
+    }
+  }
+  // in the middle of being integrated: at the very end of what is known
+  GroupArc half(start);
+  half.extend(0.5 * (start.time + start.end));
+  EXPECT_GT(half.step_end(half.reached()), half.reached());
+}
+
 // ½ kt xi^2 up to the cone; what lies beyond is lost in sliding.
 TEST(GroupArc, stretch_beyond_the_cone_has_no_more_energy) {
   GroupStart start = stack(1, 0.5, 0.4);
