@@ -145,6 +145,15 @@ void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) {
   w = sample.w;
 }
 
+// Of an arc that stands at its start.
+static GroupBounds standing_bounds(const GroupSample& start) {
+  GroupBounds bounds;
+  bounds.path.add(start.x);
+  bounds.turn = start.w.norm();
+  bounds.acceleration.add(Vec3(Vec3::Zero()));
+  return bounds;
+}
+
 GroupBounds GroupArc::bounds(int member, double from, double to) {
   extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
   if (data_->record.steps() > 0) {
@@ -163,13 +172,7 @@ GroupBounds GroupArc::bounds(int member, double from, double to) {
       kept = {data_->serial, member, begin, end, data_->record.bounds(member, begin, end)};
     return kept.bounds;
   }
-  // it stands at its start
-  const GroupSample sample = evaluate(member, from);
-  GroupBounds bounds;
-  bounds.path.add(sample.x);
-  bounds.turn = sample.w.norm();
-  bounds.acceleration.add(Vec3(Vec3::Zero()));
-  return bounds;
+  return standing_bounds(evaluate(member, from));
 }
 
 double GroupArc::step_end(double time) {
@@ -179,6 +182,54 @@ double GroupArc::step_end(double time) {
   const GroupRecord& record = data_->record;
   const int step = record.step_from(from);
   return step >= 0 ? record.time(step + 1) : record.reached();
+}
+
+namespace {
+
+class MemberMotion final : public Motion {
+ public:
+  MemberMotion(GroupRecord record, const GroupSample& start)
+      : record_(std::move(record)), start_(start) {}
+  Pose pose(double time) const override {
+    const double t = at(time);
+    Pose pose;
+    pose.p = record_.position(0, t);
+    pose.q = record_.attitude(0, t);
+    return pose;
+  }
+  // of the path itself, so that contacts see what moves them
+  void velocity(double time, Vec3& v, Vec3& w) const override {
+    if (record_.steps() > 0) return record_.pose_rates(0, at(time), v, w);
+    v = start_.v;
+    w = start_.w;
+  }
+  double speed_bound(double from, double to) const override {
+    Vec3 v, w;
+    velocity(from, v, w);
+    const Aabb bend = bounds(from, to).acceleration;
+    return v.norm() + bend.lo.cwiseAbs().cwiseMax(bend.hi.cwiseAbs()).norm() * (to - from);
+  }
+  double angular_speed_bound(double from, double to) const override { return bounds(from, to).turn; }
+  Aabb path_bounds(double from, double to) const override { return bounds(from, to).path; }
+
+ private:
+  double at(double time) const { return std::clamp(time, record_.start(), record_.reached()); }
+  GroupBounds bounds(double from, double to) const {
+    const double end = at(to);
+    return record_.steps() > 0 ? record_.bounds(0, std::min(at(from), end), end)
+                               : standing_bounds(start_);
+  }
+
+  GroupRecord record_;
+  GroupSample start_;  // of an arc that could not make a step
+};
+
+}  // namespace
+
+MotionPtr GroupArc::motion(int member, double from, double to) {
+  extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
+  const GroupSample start = data_->record.steps() > 0 ? GroupSample() : evaluate(member, from);
+  return std::make_shared<MemberMotion>(data_->record.stretch_of(member, data_->at(from)), start);
 }
 
 Vec3 GroupArc::stretch(int contact, double time) {

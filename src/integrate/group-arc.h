@@ -32,6 +32,7 @@
 #include <string>
 #include <vector>
 
+#include "base/counted.h"
 #include "dynamics/contact-law.h"
 #include "dynamics/motion.h"
 #include "math/aabb.h"
@@ -115,7 +116,7 @@ struct GroupCounts {
   std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
 };
 
-class GroupArc {
+class GroupArc : public Counted<GroupArc> {
  public:
   explicit GroupArc(GroupStart start);
   ~GroupArc();
@@ -141,6 +142,9 @@ class GroupArc {
   GroupBounds bounds(int member, double from, double to);
   // The end of the step that holds `time`: beyond it bounds may be much wider.
   double step_end(double time);
+  // What the member's centre of mass and principal frame do over [from, to], as a motion with the same bits: a copy of
+  // that stretch, which keeps nothing else of the arc.  Beyond the stretch it stands.
+  MotionPtr motion(int member, double from, double to);
   Vec3 stretch(int contact, double time);  // a's frame
   ContactForce contact_force(int contact, double time);
   // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which contacts.

@@ -71,6 +71,20 @@ GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
       }
 }
 
+GroupRecord GroupRecord::stretch_of(int member, double from) const {
+  GroupRecord stretch;
+  stretch.members_ = 1;
+  stretch.node_size_ = node_numbers;
+  stretch.step_size_ = step_numbers;
+  // at a node the step before it, too: rates are those of the step that ends there
+  for (int i = steps() > 0 ? step_to(from) : 0; i <= steps(); ++i) {
+    stretch.times_.push_back(time(i));
+    put(stretch.nodes_, member_node(i, member), node_numbers);
+    if (i < steps()) put(stretch.steps_, member_step(i, member), step_numbers);
+  }
+  return stretch;
+}
+
 void GroupRecord::load_last(GroupSystem& system, double* y) const {
   const double* from = node(steps());
   for (int i = 0; i < members_; ++i, from += node_numbers, y += 12) {

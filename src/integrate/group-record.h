@@ -22,6 +22,8 @@ namespace tw {
 class GroupRecord {
  public:
   GroupRecord(const GroupStart& start, const GroupSystem& system);
+  // A copy of what one member (0 there) does from the step that `from` lies in on; its answers have the same bits.
+  GroupRecord stretch_of(int member, double from) const;
 
   int steps() const { return static_cast<int>(times_.size()) - 1; }
   double start() const { return times_.front(); }
@@ -66,6 +68,7 @@ class GroupRecord {
   const double* step(int i) const {
     return steps_.data() + step_size_ * static_cast<std::size_t>(i);
   }
+  GroupRecord() = default;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
   static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,
@@ -76,9 +79,9 @@ class GroupRecord {
   const double* member_step(int step, int member) const;
   void add_step_bounds(int step, int member, double from, double to, GroupBounds& bounds) const;
 
-  int members_, packs_;
+  int members_ = 0, packs_ = 0;
   bool with_sides_ = false;
-  std::size_t node_size_, step_size_;
+  std::size_t node_size_ = 0, step_size_ = 0;
   std::vector<double> times_, nodes_, steps_;
   std::vector<LaneVec> first_sides_;
 };

@@ -22,6 +22,7 @@
 #include <span>
 #include <vector>
 
+#include "base/counted.h"
 #include "integrate/group-arc.h"
 #include "kernel/calm.h"
 #include "kernel/key.h"
@@ -43,7 +44,7 @@ struct ContactTag {
   std::uint64_t feature = 0;
 };
 
-struct Group {
+struct Group : Counted<Group> {
   Key key;                         // of the discontinuity that made it
   double birth = 0;                // when this set of members came together, s
   double next_check = never;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernel/group-motion.h"
 #include "kernel/kernel.h"
 #include "kernel/tolerances.h"
 
@@ -184,7 +183,11 @@ MotionPtr Kernel::outside_motion(const Regroup& work, BodyId id) const {
   const Draft& draft = *work.draft_of(id);
   // laid to rest by this discontinuity, or, seen from there, what goes on: it is not asked for long
   if (work.changes(&draft)) return make_fixed_motion({draft.point.x, draft.point.q});
-  return make_group_motion(draft.data.group, static_cast<int>(draft.data.member));
+  const Group& theirs = *draft.data.group;
+  if (theirs.at_rest) return make_fixed_motion({draft.data.x, draft.data.q});
+  // a copy of what the new group will see of it: a group that kept those at its border, and these theirs, would keep
+  // all there ever were
+  return theirs.arc->motion(static_cast<int>(draft.data.member), work.key.time, theirs.next_check);
 }
 
 // Bodies, outside bodies and contacts as the integrator wants them.

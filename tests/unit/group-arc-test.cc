@@ -69,6 +69,37 @@ TEST(GroupArc, step_end_lies_after_the_time_whoever_asked_before) {
   EXPECT_GT(half.step_end(half.reached()), half.reached());
 }
 
+// What another group meets at its border is a copy: were it the arc itself, each group would keep those at its border,
+// with the borders that they had, and so on to the first.
+TEST(GroupArc, motion_of_a_member_has_the_bits_of_the_arc_and_outlives_it) {
+  const GroupStart start = falling_stack(3);
+  GroupArc whole(start);
+  const std::int64_t alive = GroupArc::alive();
+  const double from = start.time + 0.3 * (start.end - start.time), to = start.end;
+  // as seen from the middle of a step, and from its very end
+  for (const double seen : {from, whole.step_end(from)}) {
+    const MotionPtr motion = GroupArc(start).motion(1, seen, to);
+    EXPECT_EQ(GroupArc::alive(), alive);
+    for (int i = 0; i <= 40; ++i) {
+      const double time = seen + i * (to - seen) / 40;
+      Vec3 x, v, w, v_arc, w_arc;
+      Quat q;
+      whole.pose(1, time, x, q);
+      whole.pose_rates(1, time, v_arc, w_arc);
+      motion->velocity(time, v, w);
+      EXPECT_EQ(motion->pose(time).p, x);
+      EXPECT_EQ(motion->pose(time).q.coeffs(), q.coeffs());
+      EXPECT_EQ(v, v_arc);
+      EXPECT_EQ(w, w_arc);
+      const double later = std::min(to, time + 0.1 * (to - seen));
+      const GroupBounds bounds = whole.bounds(1, time, later);
+      EXPECT_EQ(motion->path_bounds(time, later).lo, bounds.path.lo);
+      EXPECT_EQ(motion->path_bounds(time, later).hi, bounds.path.hi);
+      EXPECT_EQ(motion->angular_speed_bound(time, later), bounds.turn);
+    }
+  }
+}
+
 // ½ kt xi^2 up to the cone; what lies beyond is lost in sliding.
 TEST(GroupArc, stretch_beyond_the_cone_has_no_more_energy) {
   GroupStart start = stack(1, 0.5, 0.4);
