@@ -44,6 +44,12 @@ struct GroupArc::Data {
     Vec3 center_b[lane_count];
   };
   const KeptPack& pack_at(int number, double at) const;
+  // What a contact does to a member; where the work counts, how fast the outside body's material moves there.
+  struct MemberForce {
+    Vec3 force, other_velocity;
+    double normal = 0;
+  };
+  MemberForce force_on(int member, const WorkingContact& contact, double at) const;
   int strongest_contact() const;
   void fail();
 };
@@ -281,6 +287,60 @@ ContactForce GroupArc::contact_force(int contact, double time) {
   force.velocity = lane(state.vr);
   force.slipping = state.slipping[i] != 0 && state.N[i] > 0;
   return force;
+}
+
+GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingContact& c, double at) const {
+  const ContactPlace place = system.contact_packs().places[static_cast<std::size_t>(c.contact)];
+  const KeptPack& kept = pack_at(place.pack, at);
+  const int i = place.lane;
+  const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
+  const Vec3 on_b = kept.state.N[i] * lane(kept.state.n) + lane(kept.state.F);
+  const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
+  const bool is_b = pack.b[i] == member;
+  MemberForce result{is_b ? on_b : Vec3(-on_b), Vec3::Zero(), kept.state.N[i]};
+  if (!c.counts) return result;
+  const int other = is_b ? pack.a[i] : pack.b[i];
+  GroupScratch& s = stepper.scratch();
+  system.set_outside_slot(other, at, s.bodies);
+  const BodyKinematics& body = s.bodies[static_cast<std::size_t>(other)];
+  const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
+  const Vec3 arm = kept.center_b[i] + lane(kept.state.sb) - vec(body.x);
+  result.other_velocity = vec(body.v) + vec(body.w).cross(arm);
+  return result;
+}
+
+// Gauss's rule with two points a step.  The force of the dense output is not what the step was made of: damping turns the
+// small error of velocities between the steps' ends into one of forces, always to the same side (2.6 % of the work of a
+// lift at accuracy 1e-4, 0.1 % at 1e-6).  What the step was made of is known as a whole, m dv - F h; the difference is
+// shared out by the normal forces.
+double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, double from, double to) {
+  extend(to);
+  const Data& d = *data_;
+  const GroupMember& body = d.start.members[static_cast<std::size_t>(member)];
+  double work = 0;
+  const double end = d.at(to);
+  for (double start = d.at(from); start < end;) {
+    const double stop = std::min(end, step_end(start)), h = stop - start;
+    Vec3 v0, v1, L, impulse = Vec3::Zero(), carrying = Vec3::Zero();
+    d.record.velocities(member, start, v0, L);
+    d.record.velocities(member, stop, v1, L);
+    double normal = 0;
+    for (const double side : {-1.0, 1.0}) {
+      const double when = start + 0.5 * h + side * 0.5 / std::sqrt(3.0) * h;
+      for (const WorkingContact& c : contacts) {
+        const Data::MemberForce f = d.force_on(member, c, when);
+        impulse += 0.5 * h * f.force;
+        normal += 0.5 * h * f.normal;
+        if (!c.counts) continue;
+        work += 0.5 * h * f.force.dot(f.other_velocity);
+        carrying += 0.5 * h * f.normal * f.other_velocity;
+      }
+    }
+    const Vec3 missed = body.mass * (v1 - v0) - h * body.force - impulse;
+    if (normal > 0) work += missed.dot(carrying) / normal;
+    start = stop;
+  }
+  return work;
 }
 
 double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) {

@@ -29,6 +29,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -112,6 +113,12 @@ struct GroupBounds {
   double turn_change = 0;   // |w'| at most, of the attitude's interpolant, rad/s^2
 };
 
+// A contact of a member, and whether the work at it is asked for.
+struct WorkingContact {
+  int contact = 0;
+  bool counts = false;
+};
+
 struct GroupCounts {
   std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
 };
@@ -147,6 +154,9 @@ class GroupArc : public Counted<GroupArc> {
   MotionPtr motion(int member, double from, double to);
   Vec3 stretch(int contact, double time);  // a's frame
   ContactForce contact_force(int contact, double time);
+  // The work done on a member over [from, to] at those of its contacts that count, by the outside bodies that it meets
+  // there, J: force times the outside body's own speed where it acts.  `contacts`: all of the member's.
+  double work_on(int member, std::span<const WorkingContact> contacts, double from, double to);
   // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which contacts.
   double elastic_energy(double time, const std::vector<bool>& counted);
   double elastic_energy(double time) {

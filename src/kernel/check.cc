@@ -355,7 +355,6 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
     impact_time = find_root(f, start, when, left + level, right + level).left;
   }
   if (!approaching_at(piece, impact_time)) return false;
-  counters.max_penetration = std::max(counters.max_penetration, -separation_at(piece, impact_time).distance);
   pair.impact = impact_key(piece, impact_time);
   return true;
 }

@@ -102,7 +102,8 @@ void Kernel::commit_states(double limit, bool inclusive) {
 
 void Kernel::commit_state(State& state) {
   state.committed = true;
-  counters.kinematic_work += state.kinematic_work;
+  counters.kinematic_work += state.tally.kinematic_work;
+  counters.max_penetration = std::max(counters.max_penetration, state.tally.depth);
   // each ring is counted by its member with the least id
   const bool impact = state.key.kind == KeyKind::impact;
   const bool call = state.key.kind == KeyKind::callback && state.changed;
@@ -180,6 +181,7 @@ void Kernel::deliver_frame(SinkRecord& record) {
     if (!state) continue;
     poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
   }
+  counters.max_penetration = std::max(counters.max_penetration, deepest_contact(frame_time));
   const std::shared_ptr<FrameSink> sink = record.sink;
   sink->frame(index, frame_time, poses);
 }

@@ -60,4 +60,25 @@ ContactSurvey Kernel::survey_contacts(double when) const {
   return survey;
 }
 
+// Of moving groups: what rests is as deep as it was when it came to rest.
+double Kernel::deepest_contact(double when) const {
+  double depth = 0;
+  for (const auto& body : bodies) {
+    if (!body->dynamic()) continue;
+    const State& state = *state_at(body->id(), when);
+    if (!state.group || state.group->at_rest) continue;
+    const Group& group = *state.group;
+    for (const std::uint32_t number : group.links_of(state.member)) {
+      const GroupLink& link = group.links[number];
+      // from the member that was added first
+      const BodyId other = first_of(link.pair) == body->id() ? second_of(link.pair) : first_of(link.pair);
+      if (other < body->id() && group.contains(other) && state_at(other, when)->group.get() == &group)
+        continue;
+      for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
+        depth = std::max(depth, -group.arc->contact_force(static_cast<int>(c), when).gap);
+    }
+  }
+  return depth;
+}
+
 }  // namespace tw

@@ -33,7 +33,7 @@ struct Counters {
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
   double kinematic_work = 0;          // J, by kinematic bodies on dynamic ones
-  double max_penetration = 0;         // m, deepest overlap seen at an impact
+  double max_penetration = 0;         // m, deepest overlap at impacts, in contacts and at frames
 
   // time of this thread, s
   double cpu_seconds = 0, output_cpu_seconds = 0;

@@ -125,8 +125,11 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
          (speed <= 0.5 * before.quiet_speed || speed <= still_share * scale);
 }
 
-// Which links went, which came: counted, and told as fissions where bodies parted.
+// Which links went, which came: counted, and told as fissions where bodies parted; and how deep they are.
 void Kernel::note_changes(Regroup& work) const {
+  for (const LooseLink& link : work.links)
+    for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
+      work.tally.note_gap(work.contacts[c].gap);
   bool changed = false;
   std::size_t lasting = 0;
   for (const OldLink& old : work.before) {

@@ -96,9 +96,4 @@ inline void add_once(Groups& groups, const std::shared_ptr<Group>& group) {
   if (group && std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
 }
 
-// What a discontinuity did to groups: statistics.
-struct GroupTally {
-  std::uint16_t fusions = 0, fissions = 0, contact_changes = 0;
-};
-
 }  // namespace tw

@@ -224,7 +224,10 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   const ContactParameters& contact = contact_parameters(a.body->id(), b.body->id());
   Resolution r{{*a.body, a.point}, {*b.body, b.point}, contact.restitution, contact.friction};
   double worst = 0;
-  for (const ContactPoint& c : contact_points_) worst = std::min(worst, r.approach(c));
+  for (const ContactPoint& c : contact_points_) {
+    worst = std::min(worst, r.approach(c));
+    (a.enters ? a : b).data.tally.note_gap(c.gap);
+  }
   const ContactPoint first = contact_points_.front();
   const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
                             double impulse) {
@@ -255,7 +258,7 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   if (a.body->dynamic()) take_velocities(a, r.a);
   if (b.body->dynamic()) take_velocities(b, r.b);
   // what is told once stands on the first state that enters the graph
-  (a.enters ? a : b).data.kinematic_work = r.kinematic_work;
+  (a.enters ? a : b).data.tally.kinematic_work = r.kinematic_work;
   if (wants_collision(*a.body, *b.body))
     describe(CollisionKind::collision, r.point, r.normal, r.speed, r.normal_impulse);
   // what still approaches after so many impulses stays in contact

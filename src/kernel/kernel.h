@@ -108,6 +108,7 @@ class Kernel {
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
   ContactSurvey survey_contacts(double when) const;  // contacts.cc
+  double deepest_contact(double when) const;
   Vec3 total_momentum(double when) const;
   std::string history_hash() const;
   StatisticsTable statistics() const;
@@ -317,6 +318,9 @@ class Kernel {
   Calm calm_of(const Draft& draft, const Key& key) const;
   std::vector<bool> sleepers(const Regroup& work) const;
   std::vector<BodyId> provisional_around(const Regroup& work) const;
+
+  // ---- kinematic-work.cc ----
+  double contact_work(const State& state, double until) const;
 
   // ---- end-test.cc ----
   void test_group_end(Group& group);

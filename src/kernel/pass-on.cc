@@ -62,6 +62,9 @@ std::vector<BodyId> Kernel::pass_on(Regroup& work) const {
     for (const BodyId id : {worst->tag.reference, worst->tag.other})
       if (bodies[id]->dynamic() && !work.changes(work.draft_of(id))) at_border.push_back(id);
     if (!at_border.empty()) return at_border;
+    // of what is held only kinematic bodies move
+    if (!reference.moves) work.tally.kinematic_work += impulse.dot(reference.velocity_at(worst->point));
+    if (!other.moves) work.tally.kinematic_work -= impulse.dot(other.velocity_at(worst->point));
     reference.apply(-impulse, worst->point);
     other.apply(impulse, worst->point);
   }

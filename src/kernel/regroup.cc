@@ -407,7 +407,7 @@ void Kernel::finish(Regroup& work) {
 void Kernel::tell(Regroup& work) const {
   for (Draft& draft : work.drafts) {
     if (!draft.enters) continue;
-    draft.data.tally = work.tally;
+    draft.data.tally.add(work.tally);
     if (work.told.empty()) return;
     Told all = draft.data.told ? *draft.data.told : Told();
     all.insert(all.end(), work.told.begin(), work.told.end());

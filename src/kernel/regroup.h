@@ -62,7 +62,7 @@ struct Regroup {
   Groups made;
   std::vector<std::pair<BodyId, std::size_t>> index;  // body, place in drafts; ascending
   double lightest = never, heaviest = 0;  // kg, of the drafts and, at a border, of their groups
-  GroupTally tally;
+  Tally tally;
   Told told;
 
   Regroup(const Key& k, std::vector<Draft>& d) : key(k), drafts(d) {}

@@ -25,7 +25,6 @@ Draft Kernel::draft_for(const Body& body, const Key& key, bool new_arc) const {
   draft.data.next_callback = never;
   draft.data.told.reset();
   draft.data.tally = {};
-  draft.data.kinematic_work = 0;
   draft.data.error = nullptr;
   draft.enters = body.dynamic() || draft.data.slots;
   if (new_arc) start_new_arc(draft, key);
@@ -180,13 +179,12 @@ void Kernel::note_removed(State& state) {
 StateGraph::Farewell Kernel::release() {
   return [this](State& state) {
     if (!bodies[state.process]->dynamic() || !state.starts_arc()) return;
-    if (stepped(state)) {
-      counters.integration_length += count_steps(counters, state);
-      return;
-    }
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
-    if (next) counters.integration_length += next->key.time - state.key.time;
+    if (next) counters.kinematic_work += contact_work(state, next->key.time);
+    if (stepped(state))
+      counters.integration_length += count_steps(counters, state);
+    else if (next) counters.integration_length += next->key.time - state.key.time;
   };
 }
 

@@ -22,6 +22,7 @@
 #include "kernel/group.h"
 #include "kernel/key.h"
 #include "kernel/slots.h"
+#include "kernel/tally.h"
 #include "math/vec.h"
 
 namespace tw {
@@ -47,8 +48,7 @@ struct StateData {
   bool changed = true;               // false: a record that changed nothing
   double next_callback = never;      // callbacks without a period: their next time
   std::shared_ptr<const Told> told;  // what observers will hear (on one state of the ring)
-  double kinematic_work = 0;         // J, done by kinematic bodies in this impact (first state)
-  GroupTally tally;                  // fusions, fissions, contact changes (on one state of the ring)
+  Tally tally;                       // for statistics (on one state of the ring)
 
   // the contact group that the body is in from here on, and its place there; null: it is isolated
   std::shared_ptr<Group> group;

@@ -27,7 +27,7 @@ StatisticsTable Kernel::statistics() const {
   for (const auto& body : bodies) moving += !body->fixed();
 
   // arcs that still stand count up to the present
-  double length = counters.integration_length;
+  double length = counters.integration_length, kinematic_work = counters.kinematic_work;
   std::uint64_t kinematic_arcs = 0;
   std::uint64_t steps = 0, factorizations = 0;  // of groups that still stand
   for (const auto& body : bodies) {
@@ -38,6 +38,10 @@ StatisticsTable Kernel::statistics() const {
     if (!body->dynamic()) continue;
     for (const State* s = graph.head(body->id()); s; s = s->next) {
       if (!s->starts_arc() || s->key.time > time) continue;
+      const State* next = s->next;
+      while (next && !next->starts_arc()) next = next->next;
+      const double until = std::min(time, next ? next->key.time : time);
+      kinematic_work += contact_work(*s, until);
       if (s->group && !s->group->at_rest) {
         const GroupArc& arc = *s->group->arc;
         length += arc.reached() - arc.start().time;
@@ -47,9 +51,7 @@ StatisticsTable Kernel::statistics() const {
         }
         continue;
       }
-      const State* next = s->next;
-      while (next && !next->starts_arc()) next = next->next;
-      length += std::min(time, next ? next->key.time : time) - s->key.time;
+      length += until - s->key.time;
     }
   }
 
@@ -104,7 +106,7 @@ StatisticsTable Kernel::statistics() const {
       {"peak_states", whole(graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},
       {"max_penetration", counters.max_penetration},
-      {"kinematic_work", counters.kinematic_work},
+      {"kinematic_work", kinematic_work},
       {"energy_start", counters.energy_known ? counters.energy_start : total_energy(time)},
       {"energy_end", total_energy(time)},
       {"policy", std::string(policy->name())},

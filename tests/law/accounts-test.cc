@@ -1,0 +1,148 @@
+// The books: work of kinematic bodies through contacts, and the deepest penetration, beside what is measured
+// without asking the contacts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "support/heap-scenes.h"
+#include "support/stability.h"
+
+namespace tw::test {
+namespace {
+
+BodyId add_platform(World& world, std::vector<Keyframe> frames, bool smooth) {
+  BodyDef platform;
+  platform.shape = make_box({4, 4, 0.2});
+  platform.motion = make_keyframes(std::move(frames), smooth);
+  return world.add_body(platform);
+}
+
+// Energy at the end less that at the start and the work of kinematic bodies: minus what was lost on the way.
+double gain_beyond_work(const World& world) {
+  const auto table = world.statistics();
+  return number_of(table, "energy_end") - number_of(table, "energy_start") -
+         number_of(table, "kinematic_work");
+}
+
+// A box of 64 kg is carried up by 1 m and 0.5 m aside: m g h, and nothing beside but what the contacts' springs took
+// while the weight came on.
+TEST(KinematicWork, of_a_lift_is_the_weight_times_the_way) {
+  World world;
+  set_contact_for_all(world, 0, 0.6);
+  add_platform(world, {{0.5, {0, 0, -0.1}, {}}, {2.5, {0.5, 0, 0.9}, {}}}, true);
+  const BodyId box = add_box(world, {0.4, 0.4, 0.4}, {0, 0, 0.2});
+  world.advance(3);
+  const double mg = world.body(box).mass * 9.81;
+  EXPECT_NEAR(world.state(box).position.z(), 1.2, 1e-3);
+  const double work = number_of(world.statistics(), "kinematic_work");
+  EXPECT_NEAR(work, mg, 2e-4 * mg);
+  EXPECT_LE(gain_beyond_work(world), 1e-6 * mg);
+  EXPECT_GE(gain_beyond_work(world), -2e-4 * mg);
+}
+
+// A box put on a belt that runs at v is brought to v: half of the work is its kinetic energy, the other half is lost
+// in sliding.
+TEST(KinematicWork, of_a_belt_is_twice_the_energy_it_gives) {
+  World world;
+  set_contact_for_all(world, 0, 0.5);
+  constexpr double v = 1;
+  add_platform(world, {{-10, {-10 * v, 0, -0.1}, {}}, {10, {10 * v, 0, -0.1}, {}}}, false);
+  const BodyId box = add_box(world, {0.4, 0.4, 0.2}, {0, 0, 0.1});
+  world.advance(1);
+  EXPECT_NEAR(world.state(box).velocity.x(), v, 1e-6);
+  const double mass = world.body(box).mass;
+  const double work = number_of(world.statistics(), "kinematic_work");
+  EXPECT_NEAR(work, mass * v * v, 2e-3 * mass * v * v);
+}
+
+// A shaken tray with boxes, balls and rocks: whatever they have was given to them.
+TEST(KinematicWork, balances_on_a_shaken_platform_at_every_time) {
+  World world;
+  platform_scene(0).fill(world);
+  double best = 0, worst = 0;
+  const double unit = number_of(world.statistics(), "energy_start") + 1;
+  for (int i = 1; i <= 60; ++i) {
+    world.advance(i / 40.0);
+    const double gain = gain_beyond_work(world);
+    EXPECT_LE(gain, best + 2e-4 * unit) << world.time();
+    best = std::min(best, gain);
+    worst = std::max(worst, std::abs(number_of(world.statistics(), "kinematic_work")));
+  }
+  EXPECT_GT(worst, 0.1 * unit) << "nothing was moved";
+}
+
+// Frames are looked at, too: a sink that wants 200 a second and does nothing with them.
+void look_at_frames(World& world) {
+  class Sink : public FrameSink {
+    void frame(long, double, std::span<const BodyPose>) override {}
+  };
+  world.add_frame_sink(std::make_shared<Sink>(), 200);
+}
+
+// The deepest overlap that distance queries on the poses see, over samples, m.
+class Judge {
+ public:
+  void look(const World& world) {
+    StabilityOutcome outcome;
+    measure_depths(world, outcome);
+    deepest_ = std::max(deepest_, outcome.deepest);
+  }
+  double deepest() const { return deepest_; }
+
+ private:
+  double deepest_ = 0;
+};
+
+double max_penetration(const World& world) {
+  return number_of(world.statistics(), "max_penetration");
+}
+
+TEST(MaxPenetration, of_a_stack_is_the_depth_of_its_lowest_contact) {
+  World world;
+  set_contact_for_all(world, 0.2, 0.5);
+  add_wall(world, Vec3::UnitZ(), 0);
+  for (int i = 0; i < 10; ++i) add_box(world, {1, 1, 1}, {0, 0, 0.5 + i});
+  look_at_frames(world);
+  Judge judge, at_rest;
+  for (int i = 1; i <= 400; ++i) {
+    world.advance(i / 200.0);
+    judge.look(world);
+  }
+  at_rest.look(world);
+  EXPECT_NEAR(at_rest.deepest(), 7.6e-4, 1e-5);
+  EXPECT_GT(judge.deepest(), at_rest.deepest()) << "deeper while the weight came on";
+  EXPECT_NEAR(max_penetration(world), judge.deepest(), 1e-3 * judge.deepest());
+}
+
+TEST(MaxPenetration, of_a_heap_is_what_a_judge_sees) {
+  World world;
+  heap_scene(20, 0).fill(world);
+  look_at_frames(world);
+  Judge judge;
+  for (int i = 1; i <= 150; ++i) {
+    world.advance(0.01 * i);
+    judge.look(world);
+  }
+  EXPECT_GE(max_penetration(world), 0.99 * judge.deepest());
+  EXPECT_LE(max_penetration(world), 1.5 * judge.deepest());
+}
+
+// It is that of the committed history: no schedule changes it.
+TEST(MaxPenetration, does_not_depend_on_the_schedule) {
+  const auto measured = [](const Schedule& schedule) {
+    World world;
+    apply(world, schedule);
+    tower_scene(6, 0).fill(world);
+    world.advance(1);
+    return max_penetration(world);
+  };
+  const double expected = measured(Schedule());
+  EXPECT_GT(expected, 1e-5);
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    Schedule schedule = adversary_schedule(seed);
+    schedule.adversary->head_start = 0.05;
+    EXPECT_EQ(measured(schedule), expected) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace tw::test
