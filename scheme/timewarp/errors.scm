@@ -38,6 +38,9 @@
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "progress" "repl" "command-line")))))
 
+;; a frame in this file stands for a form of a scene
+(define forms-file (string-append (own-directory) "/forms.scm"))
+
 (define system-folders
   '("ice-9/" "srfi/" "system/" "language/" "oop/" "rnrs/" "sxml/" "texinfo/"))
 
@@ -47,37 +50,45 @@
        (not (string=? file "timewarp.scm"))
        (not (any (lambda (folder) (string-prefix? folder file)) system-folders))))
 
-;; Looking a frame's line up takes about a millisecond; code never moves, so answers are kept by its
-;; address.
-(define places-by-address (make-hash-table))
+;; Looking a frame's line and name up takes about a millisecond; code never moves, so answers are kept by
+;; its address.
+(define frames-by-address (make-hash-table))
 
-;; (FILE LINE COLUMN) of a frame in one of the user's files, or #f.
-(define (frame-place frame)
+;; (PLACE . NAME) of a frame in one of the user's files, `form' of one that stands for a form, or #f.
+(define (user-frame frame)
   (let* ((address (frame-instruction-pointer frame))
-         (handle (hashv-get-handle places-by-address address)))
+         (handle (hashv-get-handle frames-by-address address)))
     (if handle
         (cdr handle)
-        (let ((place (look-up-place frame)))
-          (hashv-set! places-by-address address place)
-          place))))
+        (let ((found (look-up-frame frame)))
+          (hashv-set! frames-by-address address found)
+          found))))
 
-(define (look-up-place frame)
+(define (look-up-frame frame)
   (match (frame-source frame)
     ((_ file line . column)
-     (and (users-file? file) (list file (1+ line) (1+ column))))
+     (cond ((equal? file forms-file) 'form)
+           ((users-file? file)
+            (cons (list file (1+ line) (1+ column)) (frame-procedure-name frame)))
+           (else #f)))
     (_ #f)))
 
 (define (user-frames most)
   "Return up to MOST frames of the user's files on the stack, innermost first, as ((PLACE . NAME) ...)."
   (let ((stack (make-stack #t)))
-    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()))
+    ;; only the innermost form has its place at hand
+    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (current-form-place)))
       (if (or (not frame) (= (length frames) most))
           (reverse frames)
-          (let ((place (frame-place frame)))
-            (loop (frame-previous frame)
-                  (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
-                      (acons place (frame-procedure-name frame) frames)
-                      frames)))))))
+          (match (user-frame frame)
+            (#f (loop (frame-previous frame) frames form))
+            ('form (loop (frame-previous frame) (add-frame form #f frames) #f))
+            ((place . name) (loop (frame-previous frame) (add-frame place name frames) form)))))))
+
+(define (add-frame place name frames)
+  (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
+      (acons place name frames)
+      frames))
 
 (define (caller-place)
   "Return the place in the user's files that is being run, or #f."

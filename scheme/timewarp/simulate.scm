@@ -17,7 +17,7 @@ are relative to the scene's file."
   (when movie (not-there-yet "#:movie" "the movie writer"))
   (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))
-    (call-with-recorders world
+    (call-with-recorders
       (lambda () (run-world! world (or until (world-duration world))))
       #:frames (and frames (scene-file frames))
       #:size size
