@@ -18,6 +18,7 @@
             caller-place
             place->string
             describe-error
+            print-user-frames
             error-text
             not-there-yet))
 
@@ -36,7 +37,7 @@
           (map (lambda (name) (string-append folder "/" name ".scm"))
                '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
-                 "progress" "repl" "command-line")))))
+                 "progress" "help" "repl" "command-line")))))
 
 ;; a frame in this file stands for a form of a scene
 (define forms-file (string-append (own-directory) "/forms.scm"))
@@ -101,6 +102,25 @@
   (match place
     ((file line column) (format #f "~a:~a:~a" file line column))))
 
+;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE) is running, or #f.  The loader's
+;; port tells only where it ends; so the file is read again.
+(define (loaded-form-place)
+  (let ((port (current-load-port)))
+    (and port
+         (port-filename port)
+         (false-if-exception
+          (call-with-input-file (port-filename port)
+            (lambda (again)
+              (let loop ()
+                (let ((form (read-syntax again)))
+                  (cond ((eof-object? form) #f)
+                        ((< (port-line again) (port-line port)) (loop))
+                        (else
+                         (let ((source (syntax-source form)))
+                           (list (port-filename port)
+                                 (1+ (assq-ref source 'line))
+                                 (1+ (assq-ref source 'column))))))))))))))
+
 ;; "  scene.scm:12:4 (swing)" for each frame but the first, which the message itself names
 (define (backtrace-text places)
   (string-join
@@ -114,8 +134,21 @@
 
 (define* (raise-error message #:optional place (backtrace ""))
   "Raise a timewarp-error with MESSAGE at PLACE, by default where the user's files call."
-  (throw 'timewarp-error #f "~A" (list message)
-         (list (or place (caller-place)) backtrace)))
+  (let ((place (or place (caller-place) (loaded-form-place))))
+    (without-guiles-backtrace
+     (lambda ()
+       (throw 'timewarp-error #f "~A" (list message) (list place backtrace))))))
+
+;; An error that nothing catches is printed by Guile itself, where it is thrown, below a backtrace in
+;; which our frames and Guile's are all that can be seen of a script that is interpreted.  The message
+;; has what there is of the user's.
+(define (without-guiles-backtrace thunk)
+  (if (memq 'backtrace (debug-options))
+      (dynamic-wind
+        (lambda () (debug-disable 'backtrace))
+        thunk
+        (lambda () (debug-enable 'backtrace)))
+      (thunk)))
 
 (define (bad-value name value expected)
   "Raise the error `NAME is VALUE; expected EXPECTED'."
@@ -240,7 +273,8 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
     (vector (error-text key args)
             (or (own-place key args)
                 (and (pair? places) (caar places))
-                (current-form-place))
+                (current-form-place)
+                (loaded-form-place))
             backtrace)))
 
 ;; ---- showing ----
@@ -262,6 +296,24 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
                         (lambda (port key args default-printer)
                           (display "interrupted; the world is usable at its last committed time"
                                    port)))
+
+;; Guile's REPL and its printer of uncaught errors hand over the FRAME that raised an error, in which
+;; they say it was before its printer is asked.  Of ours that is no news; the user's frames are.
+(let ((print print-exception))
+  (module-set! the-root-module 'print-exception
+               (lambda (port frame key args)
+                 (match key
+                   ((or 'timewarp-error 'timewarp-interrupted)
+                    (print port #f key args)
+                    (when (and frame (= (length (user-frames 2)) 2))
+                      (print-user-frames port)))
+                   (_ (print port frame key args))))))
+
+(define (print-user-frames port)
+  "Print the frames of the user's files on the stack to PORT, one a line."
+  (match (user-frames 12)
+    (() #t)
+    (places (format port "~a~%" (backtrace-text places)))))
 
 ;; what the C++ side calls to raise its errors, and to describe those of callbacks
 (%set-error-hooks!
