@@ -10,6 +10,7 @@
   ;; for the other modules
   #:export (open-frames
             attach-frames!
+            await-frames
             close-frames!
             frames-written
             require-drawing))
@@ -51,10 +52,27 @@
   (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)
                    (draw-contacts? contacts?)))
 
-(define (close-frames! world drawer)
-  "Wait until all frames are on disk."
-  (world-set! world 'drawer #f)
-  (%close-frames! world drawer))
+;; s of wall time: Ctrl-C has its say between two waits
+(define patience 0.05)
+
+(define (await-frames drawer most)
+  "Wait until at most MOST frames of DRAWER are not on disk."
+  (unless (%await-frames drawer most patience)
+    (await-frames drawer most)))
+
+(define (close-frames! world drawer interrupted?)
+  "Let WORLD no longer feed DRAWER, when all its frames are on disk; if INTERRUPTED?, or when Ctrl-C
+interrupts the waiting, only the one that is being drawn."
+  (let ((all? #f))
+    (dynamic-wind
+      (const #t)
+      (lambda ()
+        (unless interrupted?
+          (await-frames drawer 0)
+          (set! all? #t)))
+      (lambda ()
+        (world-set! world 'drawer #f)
+        (%close-frames! world drawer all?)))))
 
 (define (frames-written world)
   "Return how many frames of WORLD are on disk in this run, or #f where none are drawn."

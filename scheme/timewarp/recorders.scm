@@ -11,17 +11,19 @@
   #:use-module (srfi srfi-9)
   #:export (call-with-recorders))
 
-;; A recorder: FOLLOW lets a world feed it from that world's next run on, FLUSH and CLOSE are thunks.
+;; A recorder: FOLLOW lets a world feed it from that world's next run on, PACE is called between slices
+;; and FLUSH once a second, CLOSE with whether the run was interrupted.
 (define-record-type <recorder>
-  (make-recorder follow flush close)
+  (make-recorder follow pace flush close)
   recorder?
   (follow recorder-follow)
+  (pace recorder-pace)
   (flush recorder-flush)
   (close recorder-close))
 
 ;; A recorder that ATTACH feeds from one world only, the first to run of those it is told to follow.
-;; CLOSE is given that world, or #f.
-(define (record-one-world what attach flush close)
+;; CLOSE is given that world, or #f, and whether the run was interrupted.
+(define (record-one-world what attach pace flush close)
   (let ((attached #f))
     (make-recorder
      (lambda (world)
@@ -33,41 +35,52 @@
            (unless attached
              (attach world)
              (set! attached world)))))
+     pace
      flush
-     (lambda () (close attached)))))
+     (lambda (interrupted?) (close attached interrupted?)))))
 
 (define (csv-recorder what open file)
   (let ((recorder (open file)))
     (record-one-world what
                       (lambda (world) (%attach-recorder! world recorder (world-fps world)))
+                      (const #f)
                       (lambda () (%flush-recorder! recorder))
-                      (lambda (world) (%close-recorder! (or world (current-world)) recorder)))))
+                      (lambda (world interrupted?)
+                        (%close-recorder! (or world (current-world)) recorder)))))
 
 (define (frames-recorder frames size quality contacts?)
   (let ((drawer (open-frames frames size quality)))
     (record-one-world "frames"
                       (lambda (world) (attach-frames! world drawer (world-fps world) contacts?))
+                      ;; one is being drawn, one is waiting: more would only fill memory
+                      (lambda () (await-frames drawer 2))
                       (const #f)
-                      (lambda (world) (when world (close-frames! world drawer))))))
+                      (lambda (world interrupted?)
+                        (when world (close-frames! world drawer interrupted?))))))
 
-;; A slice hook: what is recorded reaches the files once a second, and a full disk shows as soon.
-(define (make-flusher recorders)
+;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a second,
+;; and a full disk shows as soon.
+(define (make-pacer recorders)
   (let ((last (current-time)))
     (lambda (world until)
+      (for-each (lambda (recorder) ((recorder-pace recorder))) recorders)
       (unless (= (current-time) last)
         (set! last (current-time))
         (for-each (lambda (recorder) ((recorder-flush recorder))) recorders)))))
 
 ;; Every recorder is closed, also where closing another fails; the first failure is raised.
-(define (close-all recorders)
-  (let loop ((recorders recorders) (failure #f))
+(define (close-all recorders interrupted?)
+  (let loop ((recorders recorders) (interrupted? interrupted?) (failure #f))
     (match recorders
       (() (when failure (apply throw failure)))
       ((recorder . rest)
-       (loop rest
-             (catch 'timewarp-error
-               (lambda () ((recorder-close recorder)) failure)
-               (lambda args (or failure args))))))))
+       (match (catch #t
+                (lambda () ((recorder-close recorder) interrupted?) #f)
+                list)
+         (#f (loop rest interrupted? failure))
+         (raised (loop rest
+                       (or interrupted? (eq? (car raised) 'timewarp-interrupted))
+                       (or failure raised))))))))
 
 (define* (call-with-recorders thunk #:key frames size quality contacts? poses events)
   "Call THUNK while the current world, or one that takes its place before anything has run, is
@@ -83,14 +96,16 @@ recorded: frames to pictures, poses and events to CSV files."
           (catch #t
             (lambda ()
               (parameterize ((current-slice-hooks
-                              (cons (make-flusher recorders) (current-slice-hooks)))
+                              (cons (make-pacer recorders) (current-slice-hooks)))
                              (current-world-followers
                               (append follows (current-world-followers))))
                 (thunk)))
             (lambda (key . args)
               ;; what made the run stop is what is told, not what came of it
-              (catch 'timewarp-error (lambda () (close-all recorders)) (const #f))
+              (catch #t
+                (lambda () (close-all recorders (eq? key 'timewarp-interrupted)))
+                (const #f))
               (apply throw key args))))
       (lambda results
-        (close-all recorders)
+        (close-all recorders #f)
         (apply values results)))))
