@@ -80,9 +80,13 @@ interrupts the waiting, only the one that is being drawn."
     (and drawer (%frames-written drawer))))
 
 (define-keyword-procedure (render! file #:key size quality contacts?)
-  "Draw the current world as it is now into FILE (PNG).  Size is (WIDTH HEIGHT), 1280 by 720 unless
-given; quality 'draft, 'normal or 'best.  With contacts? a line along the normal shows each contact that
-carries load, its length by the logarithm of the force, its colour whether it sticks or slips."
+  "Draw the current world as it is now into FILE (PNG), a name relative to the scene's file.
+
+#:size       (WIDTH HEIGHT) in pixels, 1 to 16384 each; --size, else (1280 720)
+#:quality    'draft, 'normal or 'best; --quality, else 'normal
+#:contacts?  #t: a line along the normal shows each contact that carries load, its length by the
+             logarithm of the force, its colour whether it sticks or slips; #f, or #t with
+             --contacts"
   (require-drawing "render!")
   (let ((world (current-world)))
     (call-with-values (lambda () (picture-size size))

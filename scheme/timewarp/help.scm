@@ -5,6 +5,7 @@
   #:use-module (ice-9 documentation)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
+  #:export (help-groups)
   ;; beside (ice-9 session), which has another one
   #:replace (help))
 
@@ -49,7 +50,8 @@ A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again
 (define last-lines
   "
 (help add-body!) or ,describe add-body! shows all of a procedure; ,apropos TEXT finds names.
-Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword.
+Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
+whose description ends with its default.
 After an error the prompt is as before; ,option on-error debug enters Guile's debugger there.
 (exit) or Ctrl-D leaves.
 ")

@@ -98,9 +98,18 @@ names defined so far, but bodies of the old world are no bodies of the new one."
 
 (define-keyword-procedure
   (scene #:key title duration gravity accuracy fps seed policy group-check-rate)
-  "Set defaults of the current world: title (a string), duration in seconds (10), gravity
-(#(0 0 -9.81)), accuracy (1e-6), fps (30), seed (0) and policy ('timewarp).  The command line's
-options take precedence."
+  "Set defaults of the current world; what a call leaves out stays.  Options of the command line go
+first.
+
+#:title     a string, shown in the frames; none
+#:duration  s that `run!' and the command line simulate, 0 or more; 10
+#:gravity   m/s^2, the acceleration #(x y z); #(0 0 -9.81)
+#:accuracy  relative, 1e-12 to 0.1, before the first run; 1e-6 (--accuracy)
+#:fps       frames per second of pictures, poses and frame observers, positive; 30 (--fps)
+#:seed      of random numbers, an integer, 0 or more, before bodies are added; 0 (--seed)
+#:policy    'timewarp, the only one that is there yet; 'timewarp (--policy)
+#:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
+            the first run; 480 (--group-check-rate)"
   (let ((world (current-world)))
     (when (%inside-callback?) (raise-error "scene was used inside a callback; expected it outside"))
     (when title
