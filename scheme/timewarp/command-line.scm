@@ -92,8 +92,8 @@
     ;; also where nothing is left to run: frame 0 is due
     (when (and (= end start) (zero? start)) (run-world! world end))))
 
-;; The scene fills the world that -l and -c may have filled before; where it starts afresh by itself,
-;; the new world is what runs.
+;; The scene fills the world that -l and -c may have filled before; where it starts afresh by
+;; itself, the new world is what runs.
 (define (simulate-scene! scene options)
   (call-with-recorders
     (lambda ()

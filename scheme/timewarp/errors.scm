@@ -51,11 +51,12 @@
        (not (string=? file "timewarp.scm"))
        (not (any (lambda (folder) (string-prefix? folder file)) system-folders))))
 
-;; Looking a frame's line and name up takes about a millisecond; code never moves, so answers are kept by
-;; its address.
+;; Looking a frame's line and name up takes about a millisecond; code never moves, so answers are
+;; kept by its address.
 (define frames-by-address (make-hash-table))
 
-;; (PLACE . NAME) of a frame in one of the user's files, `form' of one that stands for a form, or #f.
+;; (PLACE . NAME) of a frame in one of the user's files, `form' of one that stands for a form, or
+;; #f.
 (define (user-frame frame)
   (let* ((address (frame-instruction-pointer frame))
          (handle (hashv-get-handle frames-by-address address)))
@@ -102,8 +103,8 @@
   (match place
     ((file line column) (format #f "~a:~a:~a" file line column))))
 
-;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE) is running, or #f.  The loader's
-;; port tells only where it ends; so the file is read again.
+;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE) is running, or #f.  The
+;; loader's port tells only where it ends; so the file is read again.
 (define (loaded-form-place)
   (let ((port (current-load-port)))
     (and port
@@ -139,9 +140,9 @@
      (lambda ()
        (throw 'timewarp-error #f "~A" (list message) (list place backtrace))))))
 
-;; An error that nothing catches is printed by Guile itself, where it is thrown, below a backtrace in
-;; which our frames and Guile's are all that can be seen of a script that is interpreted.  The message
-;; has what there is of the user's.
+;; An error that nothing catches is printed by Guile itself, where it is thrown, below a backtrace
+;; in which our frames and Guile's are all that can be seen of a script that is interpreted.  The
+;; message has what there is of the user's.
 (define (without-guiles-backtrace thunk)
   (if (memq 'backtrace (debug-options))
       (dynamic-wind
@@ -297,8 +298,9 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
                           (display "interrupted; the world is usable at its last committed time"
                                    port)))
 
-;; Guile's REPL and its printer of uncaught errors hand over the FRAME that raised an error, in which
-;; they say it was before its printer is asked.  Of ours that is no news; the user's frames are.
+;; Guile's REPL and its printer of uncaught errors hand over the FRAME that raised an error, in
+;; which they say it was before its printer is asked.  Of ours that is no news; the user's frames
+;; are.
 (let ((print print-exception))
   (module-set! the-root-module 'print-exception
                (lambda (port frame key args)

@@ -1,9 +1,10 @@
 ;; Running one top-level form of a scene.
 ;;
-;; A form is expanded, then walked where it holds no procedure and no loop, else compiled.  Walking takes
-;; microseconds where the compiler takes a millisecond, so that a scene may have a hundred thousand forms;
-;; and it tells the place of each call exactly, also where compiled code would leave no frame.  What is called again and again is compiled: it is
-;; faster, and its frames keep their lines.
+;; A form is expanded, then walked where it holds no procedure and no loop, else compiled.  Walking
+;; takes microseconds where the compiler takes a millisecond, so that a scene may have a hundred
+;; thousand forms; and it tells the place of each call exactly, also where compiled code would leave
+;; no frame.  What is called again and again is compiled: it is faster, and its frames keep their
+;; lines.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp forms)
   #:use-module (timewarp primitives)
@@ -12,9 +13,10 @@
   #:use-module (system base compile)
   #:use-module (system vm loader)
   #:use-module (system vm program)
+  #:use-module (system foreign)
   #:use-module (ice-9 match)
   #:use-module (srfi srfi-1)
-  #:export (run-form))
+  #:export (run-form hold-all-units!))
 
 (define (run-form form)
   "Run FORM, syntax or a datum, in the current module."
@@ -31,8 +33,22 @@
   (let ((thunk (load-thunk-from-memory
                 (compile expanded #:from 'tree-il #:to 'bytecode #:env (current-module)
                          #:optimization-level 1 #:warning-level 0))))
-    (%hold-unit! (find-mapped-elf-image (program-code thunk)))
+    (hold! (find-mapped-elf-image (program-code thunk)))
     thunk))
+
+;; addresses of the units of code whose data is no root set of the collector any more, of which there
+;; may be 2047 only
+(define held (make-hash-table))
+
+(define (hold! unit)
+  (let ((address (pointer-address (bytevector->pointer unit))))
+    (unless (hashv-ref held address)
+      (hashv-set! held address #t)
+      (%hold-unit! unit))))
+
+(define (hold-all-units!)
+  "Let all code that is loaded now, whoever has compiled it, need no root set of the collector."
+  (for-each hold! (all-mapped-elf-images)))
 
 ;; ---- walked ----
 

@@ -1,5 +1,5 @@
-;; The loader: reads and runs a scene form by form, and remembers where each began: the place of an error
-;; that knows no better one.
+;; The loader: reads and runs a scene form by form, and remembers where each began: the place of an
+;; error that knows no better one.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp loader)
   #:use-module (timewarp errors)
@@ -97,11 +97,11 @@ error is raised as a timewarp-error with its place in the file."
                          file)))))))
 
 (define (load-scene file)
-  "Start afresh, as reset! does, and fill the new world by running the scene FILE.  On an error, or when
-it is interrupted, the world that was current before is current again, just as it was; names that the
-scene has defined by then stay defined.  FILE is relative to the scene that is being loaded, else to the
-current folder.  A scene that shares a part with others takes it in by Guile's `load' or `include':
-load-scene in a scene leaves behind what was in the world before."
+  "Start afresh, as reset! does, and fill the new world by running the scene FILE.  On an error, or
+when it is interrupted, the world that was current before is current again, just as it was; names
+that the scene has defined by then stay defined.  FILE is relative to the scene that is being loaded,
+else to the current folder.  A scene that shares a part with others takes it in by Guile's `load' or
+`include': load-scene in a scene leaves behind what was in the world before."
   (unless (string? file) (bad-value "the scene" file "a file name"))
   (let ((file (scene-file file))
         (old (start-afresh! "load-scene"))

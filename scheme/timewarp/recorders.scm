@@ -1,5 +1,5 @@
-;; Recorders: what a run writes to files, opened before it, attached when it begins, closed however it
-;; ends.
+;; Recorders: what a run writes to files, opened before it, attached when it begins, closed however
+;; it ends.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp recorders)
   #:use-module (timewarp primitives)
@@ -11,8 +11,8 @@
   #:use-module (srfi srfi-9)
   #:export (call-with-recorders))
 
-;; A recorder: FOLLOW lets a world feed it from that world's next run on, PACE is called between slices
-;; and FLUSH once a second, CLOSE with whether the run was interrupted.
+;; A recorder: FOLLOW lets a world feed it from that world's next run on, PACE is called between
+;; slices and FLUSH once a second, CLOSE with whether the run was interrupted.
 (define-record-type <recorder>
   (make-recorder follow pace flush close)
   recorder?
@@ -28,8 +28,8 @@
     (make-recorder
      (lambda (world)
        (when attached
-         (raise-error (string-append what " record a world that has run already; expected a new world "
-                                     "(reset!, load-scene) before the first run")))
+         (raise-error (string-append what " record a world that has run already; expected a new "
+                                     "world (reset!, load-scene) before the first run")))
        (at-first-run! world
          (lambda ()
            (unless attached
@@ -58,8 +58,8 @@
                       (lambda (world interrupted?)
                         (when world (close-frames! world drawer interrupted?))))))
 
-;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a second,
-;; and a full disk shows as soon.
+;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a
+;; second, and a full disk shows as soon.
 (define (make-pacer recorders)
   (let ((last (current-time)))
     (lambda (world until)

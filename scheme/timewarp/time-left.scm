@@ -1,10 +1,10 @@
 ;; How long a run will still take: a number that is right to a factor of two, or none.
 ;;
-;; Nobody knows what is yet to be simulated.  But a cost that has been steady for as long as the run still
-;; takes, in simulated time, is likely to stay so: then its recent rate tells the time left.  So the
-;; avalanche shows nothing while it falls, and a run of constant cost shows it from a little beyond its
-;; middle on.  A change of the cost after that cannot be foreseen; it hides the number as soon as it is
-;; there.
+;; Nobody knows what is yet to be simulated.  But a cost that has been steady for as long as the run
+;; still takes, in simulated time, is likely to stay so: then its recent rate tells the time left.
+;; So the avalanche shows nothing while it falls, and a run of constant cost shows it from a little
+;; beyond its middle on.  A change of the cost after that cannot be foreseen; it hides the number as
+;; soon as it is there.
 ;;
 ;; A course is a list of samples (SIMULATED-TIME . WALL-TIME), latest first, both in seconds.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
@@ -61,8 +61,8 @@
                          (/ (- time sample-time) (- (car later) sample-time))))))))))
 
 (define (time-left course until)
-  "Return how many seconds of wall time a run with this COURSE will take up to the simulated time UNTIL,
-or #f where nothing can be said."
+  "Return how many seconds of wall time a run with this COURSE will take up to the simulated time
+UNTIL, or #f where nothing can be said."
   (match course
     (((time . _) . _)
      (let* ((start (car (last course)))

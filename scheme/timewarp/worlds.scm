@@ -56,14 +56,15 @@
 (set-object-property! current-world 'documentation
                       "The world that scenes fill and procedures act on: a parameter object.")
 
-;; Procedures that are called with each world that takes the current one's place: what was to be done
-;; with that (recording it) is to be done with this.
+;; Procedures that are called with each world that takes the current one's place: what was to be
+;; done with that (recording it) is to be done with this.
 (define current-world-followers (make-parameter '()))
 
 (define (start-afresh! who)
   "Let a new world take the current one's place for WHO, and return the current one."
   (when (%inside-callback?)
-    (raise-error (string-append who " was used inside a callback or observer; expected it outside")))
+    (raise-error
+     (string-append who " was used inside a callback or observer; expected it outside")))
   (let ((old (current-world))
         (new (make-world)))
     (for-each (lambda (follow) (follow new)) (current-world-followers))
@@ -71,9 +72,9 @@
     old))
 
 (define (reset!)
-  "Let a new, empty world take the current one's place: no bodies, time 0, and the settings of `scene',
-camera, light and sky as they are at the start.  What the command line set, -D included, stays; so do the
-names defined so far, but bodies of the old world are no bodies of the new one."
+  "Let a new, empty world take the current one's place: no bodies, time 0, and the settings of
+`scene', camera, light and sky as they are at the start.  What the command line set, -D included,
+stays; so do the names defined so far, but bodies of the old world are no bodies of the new one."
   (start-afresh! "reset!")
   (if #f #f))
 

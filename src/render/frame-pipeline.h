@@ -40,8 +40,8 @@ class FramePipeline {
   // Queues the next frame; waits while 64 are queued.  Raises the first error of drawing or
   // writing, once the thread has met one; frames before it stay on disk.
   void submit(DrawFrame frame);
-  // Waits until at most `most` of the frames submitted are not on disk, but no longer than `seconds`;
-  // tells whether it is so.  Raises as submit() does.
+  // Waits until at most `most` of the frames submitted are not on disk, but no longer than
+  // `seconds`; tells whether it is so.  Raises as submit() does.
   bool wait(std::size_t most, double seconds);
   // Waits until all frames are written.  Raises the first error, once.  No submit() afterwards.
   void finish();

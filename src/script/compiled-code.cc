@@ -1,8 +1,8 @@
 // Keeps what compiled code refers to alive, for any number of loaded units of code.
 //
-// Guile's loader registers the writable data of each unit it loads (variables, symbols, strings of the
-// code) as a root set of the collector, which ends the program at the 2048th.  A unit's data is moved
-// here from there: into a list without limit, which the collector is shown by a hook.
+// Guile's loader registers the writable data of each unit it loads (variables, symbols, strings of
+// the code) as a root set of the collector, which ends the program at the 2048th.  A unit's data is
+// moved here from there: into a list without limit, which the collector is shown by a hook.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gc/gc.h>
@@ -77,7 +77,8 @@ TW_PRIMITIVE(hold_unit, "%hold-unit!", (SCM unit),
              "Take the data of a loaded unit of code, its memory as a bytevector, out of the "
              "collector's root sets and keep it alive without one.") {
   if (!scm_is_bytevector(unit)) throw BadValue{"the unit", unit, "a bytevector"};
-  const std::span<char> roots = roots_of_unit(reinterpret_cast<char*>(SCM_BYTEVECTOR_CONTENTS(unit)));
+  const std::span<char> roots =
+      roots_of_unit(reinterpret_cast<char*>(SCM_BYTEVECTOR_CONTENTS(unit)));
   if (roots.empty()) return SCM_BOOL_F;
   hold(roots.data(), roots.data() + roots.size());
   GC_remove_roots(roots.data(), roots.data() + roots.size());

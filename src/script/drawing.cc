@@ -167,7 +167,8 @@ TW_PRIMITIVE(frames_written, "%frames-written", (SCM object), "Return how many a
 }
 
 TW_PRIMITIVE(await_frames, "%await-frames", (SCM object, SCM most, SCM seconds),
-             "Wait until at most so many frames are not on disk, but no longer; tell whether it is so.") {
+             "Wait until at most so many frames are not on disk, or that long; tell whether they "
+             "are so few.") {
   const DrawerBox& box = to_drawer(object);
   if (!box.drawer) return SCM_BOOL_T;
   const auto left = static_cast<std::size_t>(to_integer(most, "the number of frames"));

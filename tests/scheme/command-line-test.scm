@@ -264,6 +264,12 @@
   (string-contains
    (run-output (shell (string-append "echo '(body-name (add-body! #:shape (sphere 1)))' | " timewarp " -q")))
    "\"body-0\""))
+(test-assert "thousands of expressions can be typed"
+  (string-contains
+   (run-output (shell (string-append "{ echo \"(define x 2)\"; yes \"(list 'a x \\\"s\\\")\" | head -2500; "
+                                     "echo \"(gc)\"; echo \"(* x 321)\"; } | "
+                                     timewarp " -q")))
+   "= 642"))
 (test-assert "-i has the scene's world and names after the run"
   (string-match "bounce 0.452(.|\n)*\"ball\" 1"
                 (run-output

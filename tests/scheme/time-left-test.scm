@@ -5,8 +5,9 @@
 
 (test-begin "time left")
 
-;; Runs a course from time 0 to 10 that costs (COST time) seconds of wall time a second, sampled each 0.2 s
-;; of wall time.  Returns ((TIME ESTIMATE TRUE) ...) of what was shown, and the longest course kept.
+;; Runs a course from time 0 to 10 that costs (COST time) seconds of wall time a second, sampled
+;; each 0.2 s of wall time.  Returns ((TIME ESTIMATE TRUE) ...) of what was shown, and the longest
+;; course kept.
 (define (shown cost)
   (define dt 0.002)
   (define walls                         ; at k dt
