@@ -5,7 +5,7 @@
 (eval-when (expand load eval)
   (define public-modules
     '(((timewarp worlds)
-       make-world current-world scene scene-random-state world-time world-bodies find-body)
+       make-world current-world reset! scene scene-random-state world-time world-bodies find-body)
       ((timewarp parameters) define-scene-parameter)
       ((timewarp shapes))
       ((timewarp bodies))

@@ -19,11 +19,31 @@
 (define* (add-body! #:key name shape density mass inertia center-of-mass position orientation
                     velocity angular-velocity fixed? motion max-speed material color slots visible?
                     #:allow-other-keys #:rest given)
-  "Add a body to the current world and return it.  Mass properties come from the shape and the
-density (1000 kg/m^3) unless mass, inertia (about the centre of mass, body axes) and center-of-mass
-say otherwise; with #:shape #f the body touches nothing and needs all of them.  `position' is the body
-frame's origin, `velocity' the centre of mass's.  `motion', keyframes or a procedure of time that
-returns position and orientation and obeys max-speed, makes the body kinematic."
+  "Add a body to the current world and return it.  Without a mass or an inertia, its mass properties
+come from the shape and the density.
+
+#:shape       what sphere, box, ... return; #f for a body that touches nothing and is given
+              #:mass, #:inertia and #:center-of-mass.  The only keyword that must be there
+#:name        a string that no other body has; body-N
+#:density     kg/m^3, positive; 1000
+#:mass        kg, positive: the shape's inertia is scaled to it; volume times density
+#:inertia     kg m^2 about the centre of mass, body axes: principal moments #(Ixx Iyy Izz) or a
+              matrix as three rows; the shape's
+#:center-of-mass  m, a point #(x y z) of the body's frame; the shape's centroid
+#:position    m, of the origin of the body's frame; #(0 0 0)
+#:orientation a quaternion #(w x y z), made a unit one; #(1 0 0 0)
+#:velocity    m/s, of the centre of mass; #(0 0 0)
+#:angular-velocity  rad/s, world frame; #(0 0 0)
+#:fixed?      #t: it never moves; #f
+#:motion      makes the body kinematic: what keyframes returns, or a procedure of the time (s)
+              that returns a position and an orientation (two values) and depends on nothing
+              else; #f
+#:max-speed   m/s, with a procedure as #:motion, and needed there: no point of the surface is
+              faster
+#:material    a symbol that set-contact-parameters! can name; none
+#:color       #(r g b), sRGB, 0 to 1; chosen for each body
+#:slots       an alist of names (symbols) and values, which callbacks can change; ()
+#:visible?    #f: it is not drawn; #t"
   (check-keywords 'add-body! given body-keywords)
   (let ((shape? (memq #:shape given)))
     (unless shape?
@@ -55,9 +75,12 @@ returns position and orientation and obeys max-speed, makes the body kinematic."
              (else properties))))))
 
 (define-keyword-procedure (keyframes list #:key smooth?)
-  "Return a motion through the keyframes LIST: ((time position [orientation]) ...), times
-increasing.  The body rests before the first and after the last.  Lines and constant angular velocity
-in between; with smooth? the same path at minimum jerk, at rest at every keyframe."
+  "Return a motion for add-body! through the keyframes LIST: ((TIME POSITION [ORIENTATION]) ...),
+times in s, increasing, positions in m, orientations quaternions #(w x y z).  The body rests
+before the first and after the last.
+
+#:smooth?  #f: straight lines at constant velocity and angular velocity; #t: the same path at
+           minimum jerk, at rest at every keyframe; #f"
   (%keyframes list smooth?))
 
 ;; ---- asking ----

@@ -14,9 +14,11 @@
             frame-time frame-index frame-views))
 
 (define-keyword-procedure (add-callback! targets procedure #:key start period)
-  "Call PROCEDURE with the time and a view of each of TARGETS (a body or a list of bodies) at start +
-k period; without a period it returns its next time, or #f for never again.  Start is the current
-time unless given.  It may run again after a rollback: it must touch only what it is handed."
+  "Call PROCEDURE with the time and a view of each of TARGETS, a body or a list of bodies, at start
++ k period.  It may run again after a rollback: it must change only what it is handed, by set!.
+
+#:start   s, not before the world's time; at once
+#:period  s, positive; #f: PROCEDURE returns its next time, or #f for never again; #f"
   (%add-callback! (current-world)
                   (if (body? targets) (list targets) targets)
                   (watched procedure) start period (caller-place)))

@@ -92,12 +92,14 @@
     ;; also where nothing is left to run: frame 0 is due
     (when (and (= end start) (zero? start)) (run-world! world end))))
 
-(define (simulate-scene! world scene options)
-  (call-with-recorders world
+;; The scene fills the world that -l and -c may have filled before; where it starts afresh by
+;; itself, the new world is what runs.
+(define (simulate-scene! scene options)
+  (call-with-recorders
     (lambda ()
-      (load-scene scene)
+      (run-scene-file scene)
       (check-definitions)
-      (run-to-end! world options))
+      (run-to-end! (current-world) options))
     #:frames (option-ref options 'frames)
     #:poses (option-ref options 'poses)
     #:events (option-ref options 'events)))
@@ -111,7 +113,7 @@
     (format #t "~a\n" (%history-hash world)))
   (force-output (current-output-port)))
 
-(define (run-scene world scene options)
+(define (run-scene scene options)
   (call-with-values (if (option-ref options 'quiet)
                         (lambda () (values (const #f) (const #f)))
                         make-progress)
@@ -119,13 +121,13 @@
       (parameterize ((current-slice-hooks (list progress)))
         (dynamic-wind
           (const #t)
-          (lambda () (simulate-scene! world scene options))
+          (lambda () (simulate-scene! scene options))
           end-progress))))
-  (report-results world options))
+  (report-results (current-world) options))
 
 ;; With -i an error of the scene, or Ctrl-C, leads to the prompt, too.
-(define (run-scene-then-repl world scene options)
-  (exit-status (lambda () (run-scene world scene options)))
+(define (run-scene-then-repl scene options)
+  (exit-status (lambda () (run-scene scene options)))
   (start-repl* options))
 
 ;; ---- REPL and -c ----
@@ -180,8 +182,8 @@
         (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
         (for-each evaluate-command (option-values options 'command))
         (cond ((and scene (option-ref options 'interactive))
-               (run-scene-then-repl (current-world) scene options))
-              (scene (run-scene (current-world) scene options))
+               (run-scene-then-repl scene options))
+              (scene (run-scene scene options))
               ((or (option-ref options 'interactive) (not (option-ref options 'command)))
                (start-repl* options))))))))
 

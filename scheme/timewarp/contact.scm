@@ -12,9 +12,20 @@
 (define-keyword-procedure
   (set-contact-parameters! a b #:key restitution friction stiffness damping fusion-speed
                            friction-law impact-law)
-  "Set what holds where A and B touch; each is a body, a material (a symbol), or #t for all.  Looked up
-keyword by keyword: a body goes before a material, a material before #t, the later call before the
-earlier.  Defaults: restitution 0.3, friction 0.5."
+  "Set what holds where A and B touch; each is a body, a material (a symbol), or #t for all.  Looked
+up keyword by keyword: a body goes before a material, a material before #t, the later call before
+the earlier.
+
+#:restitution   the share of the approach speed that is left after an impact, 0 to 1; 0.3
+#:friction      Coulomb's coefficient, 0 or more; 0.5
+#:stiffness     N/m of a lasting contact, positive; such that the weight of the lighter body
+                compresses it by 2.5e-4 of the smaller size (less in groups of unequal masses)
+#:damping       s/m of a lasting contact, 0 or more; such that it oscillates at half the critical
+                damping
+#:fusion-speed  m/s, 0 or more: an impact that leaves less becomes a lasting contact; 0.07 sqrt(g
+                size)
+#:friction-law  'anchored (a spring holds what sticks) or 'smooth; 'anchored
+#:impact-law    'chatterjee-ruina or 'stronge; 'chatterjee-ruina"
   (%set-contact! (current-world) a b
                  (let loop ((names '(restitution friction stiffness damping fusion-speed
                                                  friction-law impact-law))

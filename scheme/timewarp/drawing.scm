@@ -10,6 +10,7 @@
   ;; for the other modules
   #:export (open-frames
             attach-frames!
+            await-frames
             close-frames!
             frames-written
             require-drawing))
@@ -51,10 +52,27 @@
   (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)
                    (draw-contacts? contacts?)))
 
-(define (close-frames! world drawer)
-  "Wait until all frames are on disk."
-  (world-set! world 'drawer #f)
-  (%close-frames! world drawer))
+;; s of wall time: Ctrl-C has its say between two waits
+(define patience 0.05)
+
+(define (await-frames drawer most)
+  "Wait until at most MOST frames of DRAWER are not on disk."
+  (unless (%await-frames drawer most patience)
+    (await-frames drawer most)))
+
+(define (close-frames! world drawer interrupted?)
+  "Let WORLD no longer feed DRAWER, when all its frames are on disk; if INTERRUPTED?, or when Ctrl-C
+interrupts the waiting, only the one that is being drawn."
+  (let ((all? #f))
+    (dynamic-wind
+      (const #t)
+      (lambda ()
+        (unless interrupted?
+          (await-frames drawer 0)
+          (set! all? #t)))
+      (lambda ()
+        (world-set! world 'drawer #f)
+        (%close-frames! world drawer all?)))))
 
 (define (frames-written world)
   "Return how many frames of WORLD are on disk in this run, or #f where none are drawn."
@@ -62,9 +80,13 @@
     (and drawer (%frames-written drawer))))
 
 (define-keyword-procedure (render! file #:key size quality contacts?)
-  "Draw the current world as it is now into FILE (PNG).  Size is (WIDTH HEIGHT), 1280 by 720 unless
-given; quality 'draft, 'normal or 'best.  With contacts? a line along the normal shows each contact that
-carries load, its length by the logarithm of the force, its colour whether it sticks or slips."
+  "Draw the current world as it is now into FILE (PNG), a name relative to the scene's file.
+
+#:size       (WIDTH HEIGHT) in pixels, 1 to 16384 each; --size, else (1280 720)
+#:quality    'draft, 'normal or 'best; --quality, else 'normal
+#:contacts?  #t: a line along the normal shows each contact that carries load, its length by the
+             logarithm of the force, its colour whether it sticks or slips; #f, or #t with
+             --contacts"
   (require-drawing "render!")
   (let ((world (current-world)))
     (call-with-values (lambda () (picture-size size))

@@ -18,6 +18,7 @@
             caller-place
             place->string
             describe-error
+            print-user-frames
             error-text
             not-there-yet))
 
@@ -36,7 +37,10 @@
           (map (lambda (name) (string-append folder "/" name ".scm"))
                '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
-                 "progress" "repl" "command-line")))))
+                 "time-left" "progress" "help" "repl" "command-line")))))
+
+;; a frame in this file stands for a form of a scene
+(define forms-file (string-append (own-directory) "/forms.scm"))
 
 (define system-folders
   '("ice-9/" "srfi/" "system/" "language/" "oop/" "rnrs/" "sxml/" "texinfo/"))
@@ -47,37 +51,46 @@
        (not (string=? file "timewarp.scm"))
        (not (any (lambda (folder) (string-prefix? folder file)) system-folders))))
 
-;; Looking a frame's line up takes about a millisecond; code never moves, so answers are kept by its
-;; address.
-(define places-by-address (make-hash-table))
+;; Looking a frame's line and name up takes about a millisecond; code never moves, so answers are
+;; kept by its address.
+(define frames-by-address (make-hash-table))
 
-;; (FILE LINE COLUMN) of a frame in one of the user's files, or #f.
-(define (frame-place frame)
+;; (PLACE . NAME) of a frame in one of the user's files, `form' of one that stands for a form, or
+;; #f.
+(define (user-frame frame)
   (let* ((address (frame-instruction-pointer frame))
-         (handle (hashv-get-handle places-by-address address)))
+         (handle (hashv-get-handle frames-by-address address)))
     (if handle
         (cdr handle)
-        (let ((place (look-up-place frame)))
-          (hashv-set! places-by-address address place)
-          place))))
+        (let ((found (look-up-frame frame)))
+          (hashv-set! frames-by-address address found)
+          found))))
 
-(define (look-up-place frame)
+(define (look-up-frame frame)
   (match (frame-source frame)
     ((_ file line . column)
-     (and (users-file? file) (list file (1+ line) (1+ column))))
+     (cond ((equal? file forms-file) 'form)
+           ((users-file? file)
+            (cons (list file (1+ line) (1+ column)) (frame-procedure-name frame)))
+           (else #f)))
     (_ #f)))
 
 (define (user-frames most)
   "Return up to MOST frames of the user's files on the stack, innermost first, as ((PLACE . NAME) ...)."
   (let ((stack (make-stack #t)))
-    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()))
+    ;; only the innermost form has its place at hand
+    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (current-form-place)))
       (if (or (not frame) (= (length frames) most))
           (reverse frames)
-          (let ((place (frame-place frame)))
-            (loop (frame-previous frame)
-                  (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
-                      (acons place (frame-procedure-name frame) frames)
-                      frames)))))))
+          (match (user-frame frame)
+            (#f (loop (frame-previous frame) frames form))
+            ('form (loop (frame-previous frame) (add-frame form #f frames) #f))
+            ((place . name) (loop (frame-previous frame) (add-frame place name frames) form)))))))
+
+(define (add-frame place name frames)
+  (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
+      (acons place name frames)
+      frames))
 
 (define (caller-place)
   "Return the place in the user's files that is being run, or #f."
@@ -89,6 +102,25 @@
   "Return FILE:LINE:COLUMN."
   (match place
     ((file line column) (format #f "~a:~a:~a" file line column))))
+
+;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE) is running, or #f.  The
+;; loader's port tells only where it ends; so the file is read again.
+(define (loaded-form-place)
+  (let ((port (current-load-port)))
+    (and port
+         (port-filename port)
+         (false-if-exception
+          (call-with-input-file (port-filename port)
+            (lambda (again)
+              (let loop ()
+                (let ((form (read-syntax again)))
+                  (cond ((eof-object? form) #f)
+                        ((< (port-line again) (port-line port)) (loop))
+                        (else
+                         (let ((source (syntax-source form)))
+                           (list (port-filename port)
+                                 (1+ (assq-ref source 'line))
+                                 (1+ (assq-ref source 'column))))))))))))))
 
 ;; "  scene.scm:12:4 (swing)" for each frame but the first, which the message itself names
 (define (backtrace-text places)
@@ -103,8 +135,21 @@
 
 (define* (raise-error message #:optional place (backtrace ""))
   "Raise a timewarp-error with MESSAGE at PLACE, by default where the user's files call."
-  (throw 'timewarp-error #f "~A" (list message)
-         (list (or place (caller-place)) backtrace)))
+  (let ((place (or place (caller-place) (loaded-form-place))))
+    (without-guiles-backtrace
+     (lambda ()
+       (throw 'timewarp-error #f "~A" (list message) (list place backtrace))))))
+
+;; An error that nothing catches is printed by Guile itself, where it is thrown, below a backtrace
+;; in which our frames and Guile's are all that can be seen of a script that is interpreted.  The
+;; message has what there is of the user's.
+(define (without-guiles-backtrace thunk)
+  (if (memq 'backtrace (debug-options))
+      (dynamic-wind
+        (lambda () (debug-disable 'backtrace))
+        thunk
+        (lambda () (debug-enable 'backtrace)))
+      (thunk)))
 
 (define (bad-value name value expected)
   "Raise the error `NAME is VALUE; expected EXPECTED'."
@@ -229,7 +274,8 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
     (vector (error-text key args)
             (or (own-place key args)
                 (and (pair? places) (caar places))
-                (current-form-place))
+                (current-form-place)
+                (loaded-form-place))
             backtrace)))
 
 ;; ---- showing ----
@@ -251,6 +297,25 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
                         (lambda (port key args default-printer)
                           (display "interrupted; the world is usable at its last committed time"
                                    port)))
+
+;; Guile's REPL and its printer of uncaught errors hand over the FRAME that raised an error, in
+;; which they say it was before its printer is asked.  Of ours that is no news; the user's frames
+;; are.
+(let ((print print-exception))
+  (module-set! the-root-module 'print-exception
+               (lambda (port frame key args)
+                 (match key
+                   ((or 'timewarp-error 'timewarp-interrupted)
+                    (print port #f key args)
+                    (when (and frame (= (length (user-frames 2)) 2))
+                      (print-user-frames port)))
+                   (_ (print port frame key args))))))
+
+(define (print-user-frames port)
+  "Print the frames of the user's files on the stack to PORT, one a line."
+  (match (user-frames 12)
+    (() #t)
+    (places (format port "~a~%" (backtrace-text places)))))
 
 ;; what the C++ side calls to raise its errors, and to describe those of callbacks
 (%set-error-hooks!

@@ -1,16 +1,16 @@
-;; The loader: reads, compiles and runs a scene form by form, and remembers where each began.
-;;
-;; Compiled code keeps its lines, which interpreted code doesn't; a compiled tail call leaves no frame,
-;; for which the place of the form is the fallback.  The plain compiler is used (-O1): a form compiles
-;; in 2 ms rather than 30.
+;; The loader: reads and runs a scene form by form, and remembers where each began: the place of an
+;; error that knows no better one.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp loader)
   #:use-module (timewarp errors)
   #:use-module (timewarp files)
-  #:use-module (system base compile)
+  #:use-module (timewarp forms)
+  #:use-module (timewarp worlds)
   #:use-module (ice-9 match)
   #:use-module (ice-9 textual-ports)
-  #:export (load-scene read-scene-forms))
+  #:export (load-scene)
+  ;; for the command line
+  #:export (run-scene-file read-scene-forms))
 
 ;; Skips blanks and line comments, so that the port stands where the next form begins.
 (define (skip-blanks port)
@@ -70,9 +70,6 @@
     (for-each-form (lambda (form place) (set! forms (cons (syntax->datum form) forms))) file)
     (reverse forms)))
 
-(define (run-form form)
-  (compile form #:env (current-module) #:optimization-level 1 #:warning-level 0))
-
 ;; Errors that know no better place get that of the form; others pass as they are.
 (define (call-placing-errors place thunk)
   (let ((description #f))
@@ -84,13 +81,12 @@
           (_ (apply throw key args))))
       (lambda (key . args)
         (unless (memq key '(quit timewarp-interrupted))
-          (parameterize ((current-form-place place))
-            (set! description (describe-error key args))))))))
+          ;; where it was thrown the form's place still stands, or a more exact one
+          (set! description (describe-error key args)))))))
 
-(define (load-scene file)
-  "Load the scene FILE: run its forms in the current module, so that they fill the current world.  An
+(define (run-scene-file file)
+  "Run the forms of the scene FILE in the current module, so that they fill the current world.  An
 error is raised as a timewarp-error with its place in the file."
-  (unless (string? file) (bad-value "the scene" file "a file name"))
   (parameterize ((current-scene-directory (dirname file)))
     (call-with-current-folder-loadable
      (lambda ()
@@ -99,6 +95,25 @@ error is raised as a timewarp-error with its place in the file."
           (for-each-form (lambda (form place)
                            (call-placing-errors place (lambda () (run-form form))))
                          file)))))))
+
+(define (load-scene file)
+  "Start afresh, as reset! does, and fill the new world by running the scene FILE.  On an error, or
+when it is interrupted, the world that was current before is current again, just as it was; names
+that the scene has defined by then stay defined.  FILE is relative to the scene that is being loaded,
+else to the current folder.  A scene that shares a part with others takes it in by Guile's `load' or
+`include': load-scene in a scene leaves behind what was in the world before."
+  (unless (string? file) (bad-value "the scene" file "a file name"))
+  (let ((file (scene-file file))
+        (old (start-afresh! "load-scene"))
+        (loaded? #f))
+    (dynamic-wind
+      (const #t)
+      (lambda ()
+        (run-scene-file file)
+        (set! loaded? #t))
+      (lambda ()
+        (unless loaded? (current-world old))))
+    (if #f #f)))
 
 ;; Guile's `load' makes a name relative to the file it is in, and looks what is still relative up in
 ;; the load path.

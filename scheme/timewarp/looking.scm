@@ -33,8 +33,13 @@
           (else (loop (cdr alist))))))
 
 (define-keyword-procedure (camera #:key eye target up fov follow)
-  "Place the camera: eye and target (points), up (a direction), fov (vertical, radians), and a body
-to follow, with which eye and target move.  What is not given is chosen so that the scene is in view."
+  "Place the camera of the current world.  A call says all: what it leaves out is as at the start.
+
+#:eye     m, the point from which it looks; chosen so that the scene is in view
+#:target  m, the point at which it looks; chosen likewise
+#:up      the direction that is up in the picture; #(0 0 1)
+#:fov     rad, the vertical angle of view, between 0 and pi; 0.7
+#:follow  a body with which eye and target move; none"
   (when fov
     (unless (and (real? fov) (< 0 fov 3.1415))
       (bad-value "fov" fov "an angle in radians between 0 and pi")))
@@ -43,12 +48,21 @@ to follow, with which eye and target move.  What is not given is chosen so that 
   (keep! 'camera `((eye . ,eye) (target . ,target) (up . ,up)) `((fov . ,fov) (follow . ,follow))))
 
 (define-keyword-procedure (light #:key direction color)
-  "Set the light: the direction in which it shines, and its colour #(r g b), sRGB 0..1."
+  "Set the light of the current world.  A call says all: what it leaves out is as at the start.
+
+#:direction  in which the light shines, of any length; #(-0.75 0.35 -1)
+#:color      #(r g b), sRGB, 0 to 1; #(1 0.97 0.91)"
   (keep! 'light `((direction . ,direction) (color . ,color)) '()))
 
 (define-keyword-procedure (sky #:key zenith horizon ground fog)
-  "Set the colours #(r g b), sRGB 0..1, of the sky at the zenith, at the horizon and of the ground below
-it, and the fog: the share of the light that is lost per metre."
+  "Set the sky of the current world.  A call says all: what it leaves out is as at the start.
+Colours are #(r g b), sRGB, 0 to 1.
+
+#:zenith   colour of the sky above; #(0.33 0.53 0.8)
+#:horizon  colour of the sky at the horizon, and of the fog; #(0.8 0.86 0.92)
+#:ground   colour below the horizon where there is no body; #(0.48 0.51 0.55)
+#:fog      1/m, the share of the light that is lost in a metre, 0 to 1; 0.04 over the distance of
+           the camera from its target"
   (when fog
     (unless (and (real? fog) (<= 0 fog) (< fog 1)) (bad-value "fog" fog "a share per metre, 0..1")))
   (keep! 'sky `((zenith . ,zenith) (horizon . ,horizon) (ground . ,ground)) `((fog . ,fog))))

@@ -1,5 +1,5 @@
-;; Recorders: what a run writes to files, opened before it, attached when it begins, closed however it
-;; ends.
+;; Recorders: what a run writes to files, opened before it, attached when it begins, closed however
+;; it ends.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp recorders)
   #:use-module (timewarp primitives)
@@ -8,58 +8,104 @@
   #:use-module (timewarp running)
   #:use-module (timewarp drawing)
   #:use-module (ice-9 match)
+  #:use-module (srfi srfi-9)
   #:export (call-with-recorders))
 
-;; Opens a CSV recorder and lets WORLD feed it from its next run on.  Returns a pair of thunks that flush
-;; and close it.
-(define (start-csv! world open file)
+;; A recorder: FOLLOW lets a world feed it from that world's next run on, PACE is called between
+;; slices and FLUSH once a second, CLOSE with whether the run was interrupted.
+(define-record-type <recorder>
+  (make-recorder follow pace flush close)
+  recorder?
+  (follow recorder-follow)
+  (pace recorder-pace)
+  (flush recorder-flush)
+  (close recorder-close))
+
+;; A recorder that ATTACH feeds from one world only, the first to run of those it is told to follow.
+;; CLOSE is given that world, or #f, and whether the run was interrupted.
+(define (record-one-world what attach pace flush close)
+  (let ((attached #f))
+    (make-recorder
+     (lambda (world)
+       (when attached
+         (raise-error (string-append what " record a world that has run already; expected a new "
+                                     "world (reset!, load-scene) before the first run")))
+       (at-first-run! world
+         (lambda ()
+           (unless attached
+             (attach world)
+             (set! attached world)))))
+     pace
+     flush
+     (lambda (interrupted?) (close attached interrupted?)))))
+
+(define (csv-recorder what open file)
   (let ((recorder (open file)))
-    (at-first-run! world (lambda () (%attach-recorder! world recorder (world-fps world))))
-    (cons (lambda () (%flush-recorder! recorder))
-          (lambda () (%close-recorder! world recorder)))))
+    (record-one-world what
+                      (lambda (world) (%attach-recorder! world recorder (world-fps world)))
+                      (const #f)
+                      (lambda () (%flush-recorder! recorder))
+                      (lambda (world interrupted?)
+                        (%close-recorder! (or world (current-world)) recorder)))))
 
-(define (start-frames! world frames size quality contacts?)
+(define (frames-recorder frames size quality contacts?)
   (let ((drawer (open-frames frames size quality)))
-    (at-first-run! world (lambda () (attach-frames! world drawer (world-fps world) contacts?)))
-    (cons (lambda () #f)
-          (lambda () (close-frames! world drawer)))))
+    (record-one-world "frames"
+                      (lambda (world) (attach-frames! world drawer (world-fps world) contacts?))
+                      ;; one is being drawn, one is waiting: more would only fill memory
+                      (lambda () (await-frames drawer 2))
+                      (const #f)
+                      (lambda (world interrupted?)
+                        (when world (close-frames! world drawer interrupted?))))))
 
-;; A slice hook: what is recorded reaches the files once a second, and a full disk shows as soon.
-(define (make-flusher recorders)
+;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a
+;; second, and a full disk shows as soon.
+(define (make-pacer recorders)
   (let ((last (current-time)))
     (lambda (world until)
+      (for-each (lambda (recorder) ((recorder-pace recorder))) recorders)
       (unless (= (current-time) last)
         (set! last (current-time))
-        (for-each (match-lambda ((flush . _) (flush))) recorders)))))
+        (for-each (lambda (recorder) ((recorder-flush recorder))) recorders)))))
 
 ;; Every recorder is closed, also where closing another fails; the first failure is raised.
-(define (close-all recorders)
-  (let loop ((recorders recorders) (failure #f))
+(define (close-all recorders interrupted?)
+  (let loop ((recorders recorders) (interrupted? interrupted?) (failure #f))
     (match recorders
       (() (when failure (apply throw failure)))
-      (((_ . close) . rest)
-       (loop rest
-             (catch 'timewarp-error
-               (lambda () (close) failure)
-               (lambda args (or failure args))))))))
+      ((recorder . rest)
+       (match (catch #t
+                (lambda () ((recorder-close recorder) interrupted?) #f)
+                list)
+         (#f (loop rest interrupted? failure))
+         (raised (loop rest
+                       (or interrupted? (eq? (car raised) 'timewarp-interrupted))
+                       (or failure raised))))))))
 
-(define* (call-with-recorders world thunk #:key frames size quality contacts? poses events)
-  "Call THUNK while WORLD is recorded: frames to pictures, poses and events to CSV files."
-  (let ((recorders
-         (append (if poses (list (start-csv! world %open-poses poses)) '())
-                 (if events (list (start-csv! world %open-events events)) '())
-                 (if frames (list (start-frames! world frames size quality contacts?)) '()))))
+(define* (call-with-recorders thunk #:key frames size quality contacts? poses events)
+  "Call THUNK while the current world, or one that takes its place before anything has run, is
+recorded: frames to pictures, poses and events to CSV files."
+  (let* ((recorders
+          (append (if poses (list (csv-recorder "poses" %open-poses poses)) '())
+                  (if events (list (csv-recorder "events" %open-events events)) '())
+                  (if frames (list (frames-recorder frames size quality contacts?)) '())))
+         (follows (map recorder-follow recorders)))
+    (for-each (lambda (follow) (follow (current-world))) follows)
     (call-with-values
         (lambda ()
           (catch #t
             (lambda ()
               (parameterize ((current-slice-hooks
-                              (cons (make-flusher recorders) (current-slice-hooks))))
+                              (cons (make-pacer recorders) (current-slice-hooks)))
+                             (current-world-followers
+                              (append follows (current-world-followers))))
                 (thunk)))
             (lambda (key . args)
               ;; what made the run stop is what is told, not what came of it
-              (catch 'timewarp-error (lambda () (close-all recorders)) (const #f))
+              (catch #t
+                (lambda () (close-all recorders (eq? key 'timewarp-interrupted)))
+                (const #f))
               (apply throw key args))))
       (lambda results
-        (close-all recorders)
+        (close-all recorders #f)
         (apply values results)))))

@@ -1,9 +1,19 @@
-;; The REPL: Guile's own, with (timewarp) at hand, readline where it is installed, and a short banner.
+;; The REPL: Guile's own, with (timewarp) at hand, readline where it is installed, and a short
+;; banner.
+;;
+;; There is one level of it: an error is shown with the user's frames, and the prompt is there
+;; again.  So (exit) and Ctrl-D leave it at any time; `,option on-error debug' brings Guile's nested
+;; prompts, with their debugger, back.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp repl)
   #:use-module (timewarp primitives)
+  #:use-module (timewarp errors)
+  #:use-module (timewarp running)
+  #:use-module (timewarp forms)
+  #:use-module (timewarp help)
   #:use-module (system repl repl)
   #:use-module (system repl common)
+  #:use-module (ice-9 match)
   #:export (start-timewarp-repl))
 
 (define (activate-readline-if-there)
@@ -20,23 +30,30 @@
          (set-current-module (resolve-module '(guile-user)))
          (primitive-load file))))))
 
+;; Guile adds "Enter `,help' for help."
 (define (banner)
-  (format #f "timewarp ~a on Guile ~a.  ,help for help, ,describe NAME for a procedure's, (exit) to leave."
+  (format #f "timewarp ~a on Guile ~a.  (help) says what to type, (exit) leaves."
           (%version) (version)))
 
+;; Guile compiles each expression that is typed into a unit of its own.
+(define hold-now-and-then
+  (let ((expressions 0))
+    (lambda _
+      (set! expressions (1+ expressions))
+      (when (zero? (remainder expressions 256))
+        (hold-all-units!)))))
+
 (define* (start-timewarp-repl #:key (init? #t))
-  "Run a REPL in (guile-user) until the user leaves it."
+  "Run a REPL in (guile-user) until the user leaves it; (exit STATUS) throws quit as everywhere."
+  (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
   (when init? (load-user-init))
   (activate-readline-if-there)
   (set-current-module (resolve-module '(guile-user)))
   (module-set! (resolve-module '(system repl common)) '*version* (banner))
-  (call-with-sigint start-repl))
-
-;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt.
-(define (call-with-sigint thunk)
-  (let ((outer #f))
-    (dynamic-wind
-      (lambda ()
-        (set! outer (sigaction SIGINT (lambda (signal) (%interrupt!)))))
-      thunk
-      (lambda () (sigaction SIGINT (car outer) (cdr outer))))))
+  (repl-default-option-set! 'on-error 'report)
+  (add-hook! before-eval-hook hold-now-and-then)
+  (add-hook! after-error-hook (lambda () (print-user-frames (current-error-port))))
+  ;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt
+  (match (call-with-interrupts start-repl)
+    (() #t)
+    (status (apply throw 'quit status))))

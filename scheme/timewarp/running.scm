@@ -49,8 +49,10 @@
   (if #f #f))
 
 (define-keyword-procedure (run! #:key until)
-  "Run the current world; return when everything up to and including the time `until' (by default the
-scene's duration) is committed and observed.  Ctrl-C interrupts; the world stays usable."
+  "Run the current world; return when everything up to and including the time to run to is committed
+and observed.  Ctrl-C interrupts; the world stays usable.
+
+#:until  s, the time to run to; the scene's duration"
   (let ((world (current-world)))
     (run-world! world (or until (world-duration world)))))
 

@@ -36,7 +36,10 @@ count the overlap twice."
   (%union shapes))
 
 (define-keyword-procedure (placed shape #:key position orientation)
-  "Return SHAPE moved within the body's frame: turned by orientation, then shifted by position."
+  "Return SHAPE moved within the body's frame: turned, then shifted.
+
+#:position     m, the shift; #(0 0 0)
+#:orientation  a quaternion #(w x y z), as rotation returns; #(1 0 0 0)"
   (%placed shape position orientation))
 
 ;; ---- rocks ----
@@ -69,10 +72,12 @@ count the overlap twice."
                     (search (1- tries) best best-distance))))))))
 
 (define-keyword-procedure (rock #:key size vertices random-state)
-  "Return an irregular boulder: the convex hull of up to `vertices' (16) points near an ellipsoid.  It
-has the volume of a ball whose diameter is `size' metres (1), and its centroid at the origin.  It is a
-function of these and of `random-state', by default (scene-random-state), which is the same each time:
-draw rocks that differ from one random state."
+  "Return an irregular boulder: the convex hull of points near an ellipsoid, its centroid at the
+origin.  It is a function of its arguments alone: draw rocks that differ from one random state.
+
+#:size          m, the diameter of the ball that has the rock's volume, positive; 1
+#:vertices      how many points at most, 4 to 200; 16
+#:random-state  a Guile random state, which is advanced; (scene-random-state), the same each time"
   (let ((size (or size 1)) (count (or vertices 16)) (state (or random-state (scene-random-state))))
     (unless (and (real? size) (< 0 size +inf.0))
       (bad-value "size" size "a positive number of metres"))

@@ -10,14 +10,23 @@
 
 (define-keyword-procedure (simulate! #:key until frames movie record poses events size quality
                                     contacts?)
-  "Run the current world to the time `until' (by default the scene's duration) and write frames (a
-folder or a pattern like out/%05d.png; size (WIDTH HEIGHT), quality 'draft, 'normal or 'best; with
-contacts? they show the contacts as render! does), poses and events (CSV files) on the way.  File names
-are relative to the scene's file."
+  "Run the current world and write what happens to files, as the command line does.  File names are
+relative to the scene's file.
+
+#:until      s, the time to run to; the scene's duration
+#:frames     a folder, made where it is missing, or a pattern like out/%05d.png: pictures (PNG);
+             none
+#:size       of the frames, (WIDTH HEIGHT) in pixels, 1 to 16384 each; --size, else (1280 720)
+#:quality    of the frames, 'draft, 'normal or 'best; --quality, else 'normal
+#:contacts?  #t: the frames show the contacts as render! does; #f, or #t with --contacts
+#:poses      a CSV file of the poses and velocities of moving bodies at every frame time; none
+#:events     a CSV file of every collision, fusion and fission; none
+#:movie      not there yet
+#:record     not there yet"
   (when movie (not-there-yet "#:movie" "the movie writer"))
   (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))
-    (call-with-recorders world
+    (call-with-recorders
       (lambda () (run-world! world (or until (world-duration world))))
       #:frames (and frames (scene-file frames))
       #:size size

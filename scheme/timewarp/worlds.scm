@@ -7,6 +7,7 @@
   #:use-module (oop goops)
   #:export (make-world
             current-world
+            reset!
             scene
             scene-random-state
             world-time
@@ -21,7 +22,9 @@
             world-duration
             world-seed
             at-first-run!
-            start-first-run!))
+            start-first-run!
+            start-afresh!
+            current-world-followers))
 
 ;; ---- overrides: what the command line says, whatever scenes say ----
 
@@ -53,6 +56,28 @@
 (set-object-property! current-world 'documentation
                       "The world that scenes fill and procedures act on: a parameter object.")
 
+;; Procedures that are called with each world that takes the current one's place: what was to be
+;; done with that (recording it) is to be done with this.
+(define current-world-followers (make-parameter '()))
+
+(define (start-afresh! who)
+  "Let a new world take the current one's place for WHO, and return the current one."
+  (when (%inside-callback?)
+    (raise-error
+     (string-append who " was used inside a callback or observer; expected it outside")))
+  (let ((old (current-world))
+        (new (make-world)))
+    (for-each (lambda (follow) (follow new)) (current-world-followers))
+    (current-world new)
+    old))
+
+(define (reset!)
+  "Let a new, empty world take the current one's place: no bodies, time 0, and the settings of
+`scene', camera, light and sky as they are at the start.  What the command line set, -D included,
+stays; so do the names defined so far, but bodies of the old world are no bodies of the new one."
+  (start-afresh! "reset!")
+  (if #f #f))
+
 (define* (world-ref world name #:optional default)
   (hashq-ref (%world-table world) name default))
 
@@ -74,9 +99,18 @@
 
 (define-keyword-procedure
   (scene #:key title duration gravity accuracy fps seed policy group-check-rate)
-  "Set defaults of the current world: title (a string), duration in seconds (10), gravity
-(#(0 0 -9.81)), accuracy (1e-6), fps (30), seed (0) and policy ('timewarp).  The command line's
-options take precedence."
+  "Set defaults of the current world; what a call leaves out stays.  Options of the command line go
+first.
+
+#:title     a string, shown in the frames; none
+#:duration  s that `run!' and the command line simulate, 0 or more; 10
+#:gravity   m/s^2, the acceleration #(x y z); #(0 0 -9.81)
+#:accuracy  relative, 1e-12 to 0.1, before the first run; 1e-6 (--accuracy)
+#:fps       frames per second of pictures, poses and frame observers, positive; 30 (--fps)
+#:seed      of random numbers, an integer, 0 or more, before bodies are added; 0 (--seed)
+#:policy    'timewarp, the only one that is there yet; 'timewarp (--policy)
+#:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
+            the first run; 480 (--group-check-rate)"
   (let ((world (current-world)))
     (when (%inside-callback?) (raise-error "scene was used inside a callback; expected it outside"))
     (when title

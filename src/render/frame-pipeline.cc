@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/frame-pipeline.h"
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <utility>
@@ -16,7 +17,8 @@ namespace tw {
 
 namespace {
 
-constexpr std::size_t queue_length = 2;
+// a bound for memory; those who feed the queue keep it shorter, by wait()
+constexpr std::size_t queue_length = 64;
 
 // Starts a thread in which no signal handler ever runs: signals are for the main thread.
 template <class Work>
@@ -54,6 +56,10 @@ FramePipeline::FramePipeline(const FrameSettings& settings, const DrawScene& sce
 }
 
 FramePipeline::~FramePipeline() {
+  abandon();
+}
+
+void FramePipeline::abandon() {
   {
     const std::lock_guard lock(mutex_);
     abandoned_ = true;
@@ -88,6 +94,15 @@ void FramePipeline::submit(DrawFrame frame) {
   changed_.notify_all();
 }
 
+bool FramePipeline::wait(std::size_t most, double seconds) {
+  std::unique_lock lock(mutex_);
+  const bool reached = changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
+    return failed_ || queue_.size() + (in_hand_ ? 1 : 0) <= most;
+  });
+  raise_error(lock);
+  return reached;
+}
+
 void FramePipeline::finish() {
   join();
   std::unique_lock lock(mutex_);
@@ -101,6 +116,7 @@ void FramePipeline::work() {
     const std::lock_guard lock(mutex_);
     error_ = std::current_exception();
     failed_ = true;
+    in_hand_ = false;
     queue_.clear();
   }
   changed_.notify_all();
@@ -124,6 +140,7 @@ std::optional<DrawFrame> FramePipeline::next_frame() {
   if (abandoned_ || queue_.empty()) return std::nullopt;
   DrawFrame frame = std::move(queue_.front());
   queue_.pop_front();
+  in_hand_ = true;
   changed_.notify_all();
   return frame;
 }
@@ -133,6 +150,8 @@ void FramePipeline::note_progress(const Renderer& renderer, const DrawFrame& fra
   const double cpu_seconds = drawing_cpu_seconds();
   const std::lock_guard lock(mutex_);
   ++written_;
+  in_hand_ = false;
+  changed_.notify_all();
   cpu_seconds_ = cpu_seconds;
   if (skipped_ == 0 && renderer.skipped_poses() > 0)
     std::fprintf(stderr,

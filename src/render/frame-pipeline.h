@@ -32,16 +32,21 @@ class FramePipeline {
   // size or the scene's camera, light, sky or colours are wrong, and where no OpenGL library is
   // found.  Call it from the main thread.
   FramePipeline(const FrameSettings& settings, const DrawScene& scene);
-  // Gives up what is still queued, unless finish() was called.
+  // Abandons, unless finish() was called.
   ~FramePipeline();
   FramePipeline(const FramePipeline&) = delete;
   FramePipeline& operator=(const FramePipeline&) = delete;
 
-  // Queues the next frame; waits while two are queued.  Raises the first error of drawing or
+  // Queues the next frame; waits while 64 are queued.  Raises the first error of drawing or
   // writing, once the thread has met one; frames before it stay on disk.
   void submit(DrawFrame frame);
+  // Waits until at most `most` of the frames submitted are not on disk, but no longer than
+  // `seconds`; tells whether it is so.  Raises as submit() does.
+  bool wait(std::size_t most, double seconds);
   // Waits until all frames are written.  Raises the first error, once.  No submit() afterwards.
   void finish();
+  // Waits until the frame in hand is written and drops those queued.  No submit() afterwards.
+  void abandon();
 
   long frames_written() const;
   // Of drawing and writing so far, in all threads.
@@ -66,6 +71,7 @@ class FramePipeline {
   std::deque<DrawFrame> queue_;
   std::exception_ptr error_;
   bool closing_ = false, abandoned_ = false, failed_ = false;
+  bool in_hand_ = false;  // the thread draws a frame
   long written_ = 0, skipped_ = 0;
   double cpu_seconds_ = 0;
   std::thread thread_;

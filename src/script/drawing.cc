@@ -166,8 +166,17 @@ TW_PRIMITIVE(frames_written, "%frames-written", (SCM object), "Return how many a
   return scm_from_long(box.drawer ? box.drawer->pipeline().frames_written() : 0);
 }
 
-TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object),
-             "Wait until all frames are written.") {
+TW_PRIMITIVE(await_frames, "%await-frames", (SCM object, SCM most, SCM seconds),
+             "Wait until at most so many frames are not on disk, or that long; tell whether they "
+             "are so few.") {
+  const DrawerBox& box = to_drawer(object);
+  if (!box.drawer) return SCM_BOOL_T;
+  const auto left = static_cast<std::size_t>(to_integer(most, "the number of frames"));
+  return scm_from_bool(box.drawer->pipeline().wait(left, to_real(seconds, "the time to wait")));
+}
+
+TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object, SCM all),
+             "Stop drawing, when all frames are written or only the one in hand.") {
   DrawerBox& box = to_drawer(object);
   const std::shared_ptr<FrameDrawer> drawer = std::move(box.drawer);
   box.drawer.reset();
@@ -175,7 +184,10 @@ TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object),
   WorldBox& world_box = to_world_box(world);
   world_box.world.remove_frame_sink(drawer.get());
   world_box.frames = std::max<std::int64_t>(world_box.frames, drawer->frames());
-  drawer->pipeline().finish();
+  if (to_bool(all))
+    drawer->pipeline().finish();
+  else
+    drawer->pipeline().abandon();
   world_box.draw_cpu_seconds += drawer->pipeline().draw_cpu_seconds();
   return SCM_UNSPECIFIED;
 }

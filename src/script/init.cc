@@ -10,6 +10,7 @@
 namespace tw {
 
 void define_border();
+void define_compiled_code();
 void define_interrupt();
 void define_shapes();
 void define_bodies();
@@ -30,6 +31,7 @@ void define_drawing();
 extern "C" void tw_init_guile() {
   tw::define_types();
   tw::define_border();
+  tw::define_compiled_code();
   tw::define_interrupt();
   tw::define_shapes();
   tw::define_bodies();

@@ -61,7 +61,10 @@ TEST(FramePipeline, a_full_disk_is_raised_once_and_earlier_frames_remain) {
   FramePipeline pipeline(settings_for(folder.path().string()), ball_over_ground());
   std::string message;
   for (int i = 0; i < 20 && message.empty(); ++i)
-    message = user_error_of([&] { pipeline.submit(frame_at(i)); });
+    message = user_error_of([&] {
+      pipeline.submit(frame_at(i));
+      pipeline.wait(2, 60);
+    });
   EXPECT_TRUE(contains(message, "00002.png': No space left on device")) << message;
   EXPECT_EQ(user_error_of([&] { pipeline.finish(); }), "");
   EXPECT_EQ(pipeline.frames_written(), 2);
@@ -99,6 +102,22 @@ TEST(FramePipeline, it_can_be_given_up_with_frames_in_the_queue) {
   const TemporaryFolder folder;
   FramePipeline pipeline(settings_for(folder.path().string()), ball_over_ground());
   for (int i = 0; i < 3; ++i) pipeline.submit(frame_at(i));
+}
+
+TEST(FramePipeline, abandoned_it_writes_the_frame_in_hand_and_no_other) {
+  TW_SKIP_WITHOUT_OPENGL();
+  const TemporaryFolder folder;
+  FrameSettings settings = settings_for(folder.path().string());
+  settings.render.size = {1280, 720};
+  settings.render.quality = Quality::best;
+  FramePipeline pipeline(settings, ball_over_ground());
+  for (int i = 0; i < 20; ++i) pipeline.submit(frame_at(i));
+  EXPECT_FALSE(pipeline.wait(0, 0.001));
+  EXPECT_TRUE(pipeline.wait(19, 60));
+  pipeline.abandon();
+  EXPECT_GE(pipeline.frames_written(), 1);
+  EXPECT_LE(pipeline.frames_written(), 3);
+  EXPECT_FALSE(fs::exists(folder / "00005.png"));
 }
 
 TEST(FramePipeline, lost_bodies_are_counted) {

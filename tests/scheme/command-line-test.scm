@@ -230,7 +230,10 @@
             "(define ball (add-body! #:shape (sphere 1)))"
             "(add-callback! ball (lambda (time view) (usleep 4000)) #:period 0.01)")
 (test-assert "long ones do, in plain lines"
-  (string-match "^[0-9.]+ of 8.00 s simulated, [0-9.]+ s left, 0 rollbacks\n" (run-errors (run "slow.scm"))))
+  (string-match "^[0-9.]+ of 8.00 s simulated(, [0-9.]+ s left)?, 0 rollbacks\n" (run-errors (run "slow.scm"))))
+(test-assert "runs of many small pieces do, too"
+  (string-match "^[0-9.]+ of [0-9.]+ s simulated, 0 rollbacks\n"
+                (run-errors (run "slow.scm" "--pieces=40"))))
 (test-equal "--quiet" "" (run-errors (run "slow.scm" "--quiet")))
 
 ;; ---- Ctrl-C ----
@@ -264,6 +267,12 @@
   (string-contains
    (run-output (shell (string-append "echo '(body-name (add-body! #:shape (sphere 1)))' | " timewarp " -q")))
    "\"body-0\""))
+(test-assert "thousands of expressions can be typed"
+  (string-contains
+   (run-output (shell (string-append "{ echo \"(define x 2)\"; yes \"(list 'a x \\\"s\\\")\" | head -2500; "
+                                     "echo \"(gc)\"; echo \"(* x 321)\"; } | "
+                                     timewarp " -q")))
+   "= 642"))
 (test-assert "-i has the scene's world and names after the run"
   (string-match "bounce 0.452(.|\n)*\"ball\" 1"
                 (run-output

@@ -2,7 +2,7 @@
 ;; plain guile has the same binding as the program.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
-(use-modules (ice-9 documentation) (ice-9 format))
+(use-modules (ice-9 documentation) (ice-9 format) (ice-9 session) (timewarp help))
 
 (define (exports module)
   (sort (module-map (lambda (name variable) (cons name (variable-ref variable)))
@@ -22,11 +22,38 @@
              (exports module)))
  '((timewarp) (timewarp vectors)))
 
+;; a docstring is the whole reference: a line for each keyword, "#:name  ..."
+(define (keywords procedure)
+  (map car (or (assq-ref (or (procedure-arguments procedure) '()) 'keyword) '())))
+
+(define with-keywords
+  (filter (match-lambda ((name . value) (and (procedure? value) (pair? (keywords value)))))
+          (exports '(timewarp))))
+(test-assert "there are procedures with keywords" (> (length with-keywords) 10))
+(for-each
+ (match-lambda
+   ((name . procedure)
+    (test-equal (format #f "~a: each keyword has a line in the docstring" name) '()
+      (remove (lambda (keyword)
+                (string-match (format #f "(^|\n)~a +[^ ]"
+                                      (regexp-quote (format #f "~s" keyword)))
+                              (object-documentation procedure)))
+              (keywords procedure)))))
+ with-keywords)
+
+;; (help)
+(test-equal "(help) lists every export, and nothing else" '()
+  (let ((listed (append-map cddr help-groups)) (exported (map car (exports '(timewarp)))))
+    (append (lset-difference eq? listed exported) (lset-difference eq? exported listed))))
+(test-assert "(help PROCEDURE) shows keywords and description"
+  (string-match "^.camera #:eye #:target(.|\n)*Place the camera"
+                (with-output-to-string (lambda () (help camera)))))
+
 ;; the names that scenes rely on
 (for-each
  (lambda (name)
    (test-assert (format #f "~a is exported" name) (assq name (exports '(timewarp)))))
- '(scene define-scene-parameter scene-random-state make-world current-world world-time world-bodies
+ '(scene define-scene-parameter scene-random-state make-world current-world reset! load-scene world-time world-bodies
    find-body sphere box convex half-space union placed rotation shape-volume shape-inertia add-body!
    keyframes set-contact-parameters! disable-collisions! enable-collisions! add-callback!
    on-collision! collision-time collision-point collision-normal collision-speed collision-impulse

@@ -1,7 +1,7 @@
 ;; Drawing from scenes and the command line; and that nothing of it is loaded where nothing is drawn.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
-(use-modules (timewarp primitives))
+(use-modules (timewarp primitives) (ice-9 ftw))
 
 (test-begin "drawing")
 
@@ -37,6 +37,13 @@
        (string-prefix? "\x89PNG" (call-with-input-file (in-folder name)
                                    (lambda (port) (list->string (map (lambda (_) (read-char port)) (iota 8))))
                                    #:encoding "ISO-8859-1"))))
+
+;; the last chunk of a PNG file
+(define (whole-png? name)
+  (and (png? name) (string-suffix? "IEND\xae\x42\x60\x82" (bytes name))))
+
+(define (list-files name)
+  (scandir (in-folder name) (lambda (file) (not (string-prefix? "." file)))))
 
 (define (hash-of . options)
   (last (lines-of (run-output (apply run "ball.scm" "--quiet" "--hash" options)))))
@@ -92,6 +99,23 @@
     (and (equal? (bytes "bare.png") (bytes "bare/00001.png"))
          (equal? (bytes "lines.png") (bytes "lines/00001.png"))))
   (test-equal "and so does simulate!" (bytes "lines/00001.png") (bytes "own-lines/00001.png"))
+  ;; Ctrl-C: the frame in hand is finished, those that wait are dropped.  Counted, since how long a frame
+  ;; takes depends on what else the machine does: one may be finished between the count and the signal
+  (let* ((result
+          (shell (string-append
+                  "{ " timewarp " ball.scm --quiet --until=100 --frames=slow --quality=best"
+                  " --size=1920x1080 & p=$!; until [ -e slow/00001.png ]; do sleep 0.1; done;"
+                  " ls slow | wc -l; kill -INT $p; wait $p; s=$?; ls slow | wc -l; (exit $s); }")))
+         (counts (map string->number (lines-of (run-output result)))))
+    (test-equal "Ctrl-C while frames are drawn: status 130" 130 (run-status result))
+    (test-assert (format #f "frames before it and in the end: ~a" counts)
+      (<= (second counts) (+ 2 (first counts))))
+    (test-assert "there are frames, and all are whole"
+      (match (list-files "slow")
+        (() #f)
+        (files (every (lambda (file)
+                        (and (string-suffix? ".png" file) (whole-png? (string-append "slow/" file))))
+                      files)))))
   (let ((result (run "ball.scm" "--frames=out" "--size=99999x10")))
     (test-equal "a picture too large: status 2" 2 (run-status result)))
   (write-file "bad-size.scm" "(use-modules (timewarp))" "(render! \"x.png\" #:size 5)")

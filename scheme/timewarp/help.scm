@@ -1,0 +1,107 @@
+;; (help): what to type first, and the procedures by group; (help NAME): a procedure's docstring.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(define-module (timewarp help)
+  #:use-module (timewarp errors)
+  #:use-module (ice-9 documentation)
+  #:use-module (ice-9 format)
+  #:use-module (ice-9 match)
+  #:export (help-groups)
+  ;; beside (ice-9 session), which has another one
+  #:replace (help))
+
+(define help-groups
+  '(("World" "settings, the bodies there are, starting afresh"
+     scene define-scene-parameter scene-random-state world-time world-bodies find-body reset!
+     load-scene make-world current-world)
+    ("Shapes" "what bodies are made of"
+     sphere box cylinder convex half-space union placed rock rotation shape-volume shape-inertia
+     shape-centroid shape-radius shape?)
+    ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
+     add-body! keyframes position orientation velocity angular-velocity applied-force
+     applied-torque kinetic-energy slot slot? random-real! body-name body-mass body-kind view-body
+     body? view?)
+    ("Contact" "restitution and friction, who collides, the contacts at present"
+     set-contact-parameters! contact-parameters disable-collisions! enable-collisions! contacts
+     contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
+     contact-slipping? contact?)
+    ("Callbacks" "procedures that change what happens (may run again after a rollback)"
+     add-callback! on-collision! collision-time collision-point collision-normal
+     collision-speed collision-impulse collision-bodies collision?)
+    ("Observers" "procedures that look at what is final, once and in order"
+     observe! frame-time frame-index frame-views)
+    ("Running" "Ctrl-C interrupts; the world stays usable"
+     run! run-for! step! simulate! checkpoint restore! statistics show-statistics state-queue
+     total-energy total-momentum)
+    ("Looking" "pictures"
+     camera light sky render!)))
+
+(define first-lines
+  "A ball that falls on a floor, to type in:
+
+  (add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)
+  (define ball (add-body! #:shape (sphere 0.1) #:position #(0 0 1)))
+  (run! #:until 2)
+  (position ball)
+  (render! \"ball.png\")
+
+A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again: (reset!).
+")
+
+(define last-lines
+  "
+(help add-body!) or ,describe add-body! shows all of a procedure; ,apropos TEXT finds names.
+Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
+whose description ends with its default.
+After an error the prompt is as before; ,option on-error debug enters Guile's debugger there.
+(exit) or Ctrl-D leaves.
+")
+
+;; "  name name ..." in lines of at most 78 columns
+(define (names->lines names)
+  (let loop ((names (map symbol->string names)) (line " ") (lines '()))
+    (match names
+      (() (string-join (reverse (cons line lines)) "\n"))
+      ((name . rest)
+       (if (> (+ (string-length line) 1 (string-length name)) 78)
+           (loop names " " (cons line lines))
+           (loop rest (string-append line " " name) lines))))))
+
+(define (show-page)
+  (display first-lines)
+  (for-each (match-lambda
+              ((group what . names)
+               (format #t "~%~a: ~a~%~a~%" group what (names->lines names))))
+            help-groups)
+  (display last-lines))
+
+(define (show-help name value)
+  (let ((text (object-documentation value)))
+    (unless (string? text)
+      (bad-value "help's argument" name "a name or a procedure that has a description"))
+    (format #t "~a~a~%" (if (procedure? value) (signature value) "") text)))
+
+;; "(NAME ARG ... [#:key KEY ...])" and a newline
+(define (signature procedure)
+  (let ((name (procedure-name procedure))
+        (arguments (false-if-exception ((@ (ice-9 session) procedure-arguments) procedure))))
+    (if (and name arguments)
+        (format #f "~a~%~%"
+                (append (list name)
+                        (assq-ref arguments 'required)
+                        (map list (assq-ref arguments 'optional))
+                        (map car (assq-ref arguments 'keyword))))
+        "")))
+
+(define* (help #:optional (what #f))
+  "(help) shows what to type first and the procedures by group; (help PROCEDURE), (help 'NAME) and
+(help \"NAME\") show the description of one."
+  (match what
+    (#f (show-page))
+    ((? string? name) (help (string->symbol name)))
+    ((? symbol? name)
+     (let ((variable (module-variable (current-module) name)))
+       (unless (and variable (variable-bound? variable))
+         (bad-value "help's argument" name "a name that is defined; ,apropos TEXT finds names"))
+       (show-help name (variable-ref variable))))
+    (value (show-help value value)))
+  (if #f #f))
