@@ -14,15 +14,25 @@
 ;; and close it.
 (define (start-csv! world open file)
   (let ((recorder (open file)))
-    (at-first-run! world (lambda () (%attach-recorder! world recorder (world-fps world))))
-    (cons (lambda () (%flush-recorder! recorder))
-          (lambda () (%close-recorder! world recorder)))))
+    (attach-at-first-run! world
+                          (lambda () (%attach-recorder! world recorder (world-fps world)))
+                          (lambda () (%flush-recorder! recorder))
+                          (lambda () (%close-recorder! world recorder)))))
 
 (define (start-frames! world frames size quality contacts?)
   (let ((drawer (open-frames frames size quality)))
-    (at-first-run! world (lambda () (attach-frames! world drawer (world-fps world) contacts?)))
-    (cons (lambda () #f)
-          (lambda () (close-frames! world drawer)))))
+    (attach-at-first-run! world
+                          (lambda () (attach-frames! world drawer (world-fps world) contacts?))
+                          (lambda () #f)
+                          (lambda () (close-frames! world drawer)))))
+
+;; A recorder that is closed before the world ever ran must not be attached to it later.
+(define (attach-at-first-run! world attach flush close)
+  (at-first-run! world attach)
+  (cons flush
+        (lambda ()
+          (withdraw-first-run! world attach)
+          (close))))
 
 ;; A slice hook: what is recorded reaches the files once a second, and a full disk shows as soon.
 (define (make-flusher recorders)

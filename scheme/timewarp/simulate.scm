@@ -1,6 +1,7 @@
 ;; simulate!: from a scene's program what the command line does.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp simulate)
+  #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp files)
@@ -14,6 +15,7 @@
 folder or a pattern like out/%05d.png; size (WIDTH HEIGHT), quality 'draft, 'normal or 'best; with
 contacts? they show the contacts as render! does), poses and events (CSV files) on the way.  File names
 are relative to the scene's file."
+  (%require-outside-callbacks "simulate!")
   (when movie (not-there-yet "#:movie" "the movie writer"))
   (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))

@@ -21,6 +21,7 @@
             world-duration
             world-seed
             at-first-run!
+            withdraw-first-run!
             start-first-run!))
 
 ;; ---- overrides: what the command line says, whatever scenes say ----
@@ -49,7 +50,15 @@
       ((seed head-start every?) (%set-adversary! world seed head-start every?)))
     world))
 
-(define current-world (make-parameter (make-world)))
+(define (check-world world)
+  (%require-outside-callbacks "setting current-world")
+  (unless (world? world) (bad-value "current-world" world "a world, as (make-world) returns"))
+  world)
+
+(define (world? object)
+  (and (struct? object) (eq? (struct-vtable object) <world>)))
+
+(define current-world (make-parameter (make-world) check-world))
 (set-object-property! current-world 'documentation
                       "The world that scenes fill and procedures act on: a parameter object.")
 
@@ -77,8 +86,8 @@
   "Set defaults of the current world: title (a string), duration in seconds (10), gravity
 (#(0 0 -9.81)), accuracy (1e-6), fps (30), seed (0) and policy ('timewarp).  The command line's
 options take precedence."
+  (%require-outside-callbacks "scene")
   (let ((world (current-world)))
-    (when (%inside-callback?) (raise-error "scene was used inside a callback; expected it outside"))
     (when title
       (unless (string? title) (bad-value "title" title "a string"))
       (world-set! world 'title title))
@@ -129,14 +138,22 @@ options take precedence."
 ;; ---- before the first run ----
 
 (define (at-first-run! world thunk)
-  "Call THUNK when WORLD runs next."
-  (world-set! world 'first-run (cons thunk (world-ref world 'first-run '()))))
+  "Call THUNK when WORLD runs next, unless it is withdrawn before."
+  (world-set! world 'first-run (append (world-ref world 'first-run '()) (list thunk))))
+
+(define (withdraw-first-run! world thunk)
+  "Forget a THUNK given to at-first-run!, if it has not been called yet."
+  (world-set! world 'first-run (delq thunk (world-ref world 'first-run '()))))
 
 (define (start-first-run! world)
-  "Call what at-first-run! has gathered, oldest first."
-  (let ((thunks (reverse (world-ref world 'first-run '()))))
-    (world-set! world 'first-run '())
-    (for-each (lambda (thunk) (thunk)) thunks)))
+  "Call what at-first-run! has gathered, oldest first.  What one that fails has kept from being called
+waits for the next run."
+  (match (world-ref world 'first-run '())
+    (() #t)
+    ((thunk . rest)
+     (world-set! world 'first-run rest)
+     (thunk)
+     (start-first-run! world))))
 
 ;; ---- how things are written ----
 

@@ -198,6 +198,12 @@ TW_PRIMITIVE(is_inside_call, "%inside-callback?", (), "Is a callback or observer
   return scm_from_bool(inside_call());
 }
 
+TW_PRIMITIVE(check_outside, "%require-outside-callbacks", (SCM what),
+             "Raise an error if a callback or observer is running; WHAT, a string, was asked for.") {
+  require_outside_callbacks(text_of(what).c_str());
+  return SCM_UNSPECIFIED;
+}
+
 TW_PRIMITIVE(live_objects, "%live-objects", (),
              "Return an alist of the numbers of living C++ objects by kind.") {
   SCM list = SCM_EOL;
