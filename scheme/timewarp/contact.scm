@@ -15,15 +15,24 @@
   "Set what holds where A and B touch; each is a body, a material (a symbol), or #t for all.  Looked up
 keyword by keyword: a body goes before a material, a material before #t, the later call before the
 earlier.  Defaults: restitution 0.3, friction 0.5."
+  (check-impact-law impact-law)
   (%set-contact! (current-world) a b
                  (let loop ((names '(restitution friction stiffness damping fusion-speed
-                                                 friction-law impact-law))
+                                                 friction-law))
                             (values (list restitution friction stiffness damping fusion-speed
-                                          friction-law impact-law)))
+                                          friction-law)))
                    (cond ((null? names) '())
                          ((car values) (acons (car names) (car values)
                                               (loop (cdr names) (cdr values))))
                          (else (loop (cdr names) (cdr values)))))))
+
+;; Chatterjee and Ruina's law is the only one so far.
+(define (check-impact-law law)
+  (case law
+    ((#f chatterjee-ruina) #t)
+    ((stronge)
+     (not-there-yet "#:impact-law 'stronge" "Stronge's law (expected 'chatterjee-ruina)"))
+    (else (bad-value "impact-law" law "'chatterjee-ruina"))))
 
 (define (contact-parameters a b)
   "Return the restitution, the friction and whether they collide for the bodies A and B, as a list."

@@ -9,6 +9,8 @@
   #:use-module (srfi srfi-1)
   #:use-module (ice-9 match)
   #:use-module (ice-9 regex)
+  #:use-module ((ice-9 control) #:select (let/ec))
+  #:use-module ((rnrs bytevectors) #:select (bytevector? bytevector-length))
   #:use-module (system vm frame)
   #:export (raise-error
             bad-value
@@ -114,12 +116,59 @@
   "Raise the error that WHAT comes later, since it NEEDS something."
   (raise-error (format #f "~a is not there yet: it needs ~a, in a later version" what needs)))
 
-;; A value as it is written, cut where it is long.
+;; what a message shows of a value
+(define most-characters 200)
+
+;; What has no parts, as it is written; of what is written at length only that it is so.
+(define (atom-text value)
+  (define (long? integer) (> (integer-length integer) 700))
+  (cond ((string? value)
+         (format #f "~s" (substring value 0 (min (1+ most-characters) (string-length value)))))
+        ((and (exact-integer? value) (long? value))
+         (format #f "an integer of ~a bits" (integer-length value)))
+        ((and (number? value) (exact? value)
+              (or (long? (numerator value)) (long? (denominator value))))
+         "a fraction of long integers")
+        ((and (bytevector? value) (> (bytevector-length value) most-characters))
+         (format #f "an array of ~a bytes" (bytevector-length value)))
+        (else (format #f "~s" value))))
+
+;; A list of as many elements of a vector as a message could show.
+(define (start-of vector)
+  (map (lambda (i) (vector-ref vector i)) (iota (min most-characters (vector-length vector)))))
+
+;; VALUE as it is written, cut where it is long; a circular one is long.
 (define (short-text value)
-  (let ((text (format #f "~s" value)))
-    (if (> (string-length text) 200)
-        (string-append (substring text 0 200) "...")
-        text)))
+  (define left most-characters)
+  (call-with-output-string
+    (lambda (port)
+      (let/ec stop
+        (define (put text)
+          (let ((size (string-length text)))
+            (display (substring text 0 (min size left)) port)
+            (when (> size left)
+              (display "..." port)
+              (stop))
+            (set! left (- left size))))
+        (define (put-rest rest)
+          (cond ((pair? rest)
+                 (put " ")
+                 (put-value (car rest))
+                 (put-rest (cdr rest)))
+                ((null? rest) (put ")"))
+                (else (put " . ") (put-value rest) (put ")"))))
+        (define (put-value value)
+          (cond ((pair? value)
+                 (put "(")
+                 (put-value (car value))
+                 (put-rest (cdr value)))
+                ((vector? value)
+                 (put "#")
+                 (if (zero? (vector-length value))
+                     (put "()")
+                     (put-value (start-of value))))
+                (else (put (atom-text value)))))
+        (put-value value)))))
 
 ;; ---- keywords ----
 

@@ -84,7 +84,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
                    [](const auto& x, const auto& y) { return x.first > y.first; });
 
   ContactParameters result;
-  std::array<bool, 8> open;
+  std::array<bool, 7> open;
   open.fill(true);
   for (const auto& [specificity, rule] : found) {
     const ContactSettings& s = rule->settings;
@@ -94,8 +94,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
     take(open[3], s.damping, result.damping);
     take(open[4], s.fusion_speed, result.fusion_speed);
     take(open[5], s.friction_law, result.friction_law);
-    take(open[6], s.impact_law, result.impact_law);
-    take(open[7], s.collide, result.collide);
+    take(open[6], s.collide, result.collide);
   }
   return result;
 }

@@ -131,7 +131,7 @@
 (callback-error "statistics was used inside" (view other) (statistics))
 (callback-error "add-body! was used inside" (view other) (add-body! #:shape (sphere 1)))
 (callback-error "run! was used inside" (view other) (run! #:until 2))
-(callback-error "callback was used inside" (view other) (add-callback! (find-body "ball") list))
+(callback-error "add-callback! was used inside" (view other) (add-callback! (find-body "ball") list))
 (callback-error "set-contact-parameters! was used inside" (view other) (set-contact-parameters! #t #t #:friction 1))
 (callback-error "position of body ball was set through a view" (view other) (set! (position view) #(0 0 0)))
 (callback-error "body ball has no slot n" (view other) (slot view 'n))
