@@ -12,6 +12,7 @@
   #:use-module ((ice-9 control) #:select (let/ec))
   #:use-module ((rnrs bytevectors) #:select (bytevector? bytevector-length))
   #:use-module (system vm frame)
+  #:use-module (system vm vm)
   #:export (raise-error
             bad-value
             check-keywords
@@ -20,6 +21,8 @@
             caller-place
             place->string
             describe-error
+            call-with-bounded-stack
+            call-with-run-stack
             error-text
             not-there-yet))
 
@@ -69,17 +72,21 @@
      (and (users-file? file) (list file (1+ line) (1+ column))))
     (_ #f)))
 
+;; a recursion without end has millions of frames, one like the other
+(define most-frames 10000)
+
 (define (user-frames most)
   "Return up to MOST frames of the user's files on the stack, innermost first, as ((PLACE . NAME) ...)."
   (let ((stack (make-stack #t)))
-    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()))
-      (if (or (not frame) (= (length frames) most))
+    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (walked 0))
+      (if (or (not frame) (= (length frames) most) (= walked most-frames))
           (reverse frames)
           (let ((place (frame-place frame)))
             (loop (frame-previous frame)
                   (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
                       (acons place (frame-procedure-name frame) frames)
-                      frames)))))))
+                      frames)
+                  (1+ walked)))))))
 
 (define (caller-place)
   "Return the place in the user's files that is being run, or #f."
@@ -280,6 +287,27 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
                 (and (pair? places) (caar places))
                 (current-form-place))
             backtrace)))
+
+;; ---- stacks ----
+
+;; Of 8 bytes.  In callbacks a list of some hundred thousand elements can be mapped, and a recursion without
+;; end is found and described in less than half a second.
+(define most-words-in-run 4000000)
+;; for scenes and the REPL, where nobody waits for a run to go on
+(define most-words 32000000)
+
+(define* (call-with-bounded-stack thunk #:optional (words most-words))
+  "Call THUNK; an error is raised where recursion makes the stack grow by more than WORDS.  (Guile alone would
+go on until the memory is full.)"
+  (call-with-stack-overflow-handler words thunk
+    (lambda ()
+      (raise-error (format #f "a procedure calls itself without end, or too often: the stack has ~
+                               grown by ~a MB; expected a recursion that ends"
+                           (quotient (* 8 words) 1000000))))))
+
+(define (call-with-run-stack thunk)
+  "Call THUNK, which runs a world, with a bounded stack."
+  (call-with-bounded-stack thunk most-words-in-run))
 
 ;; ---- showing ----
 

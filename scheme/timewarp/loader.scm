@@ -107,7 +107,8 @@ error is raised as a timewarp-error with its place in the file."
        (save-module-excursion
         (lambda ()
           (for-each-form (lambda (form place)
-                           (call-placing-errors place (lambda () (run-form form))))
+                           (call-placing-errors
+                            place (lambda () (call-with-bounded-stack (lambda () (run-form form))))))
                          file)))))))
 
 ;; Guile's `load' makes a name relative to the file it is in, and looks what is still relative up in

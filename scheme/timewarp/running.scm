@@ -41,7 +41,7 @@
    (lambda ()
      (%take-interrupt!)
      (let loop ()
-       (let ((finished? (%advance! world until slice)))
+       (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
          (check-interrupt)
          (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
          (unless finished? (loop))))))
@@ -64,7 +64,8 @@ scene's duration) is committed and observed.  Ctrl-C interrupts; the world stays
   (%require-outside-callbacks "step!")
   (let ((world (current-world)))
     (start-first-run! world)
-    (call-with-interrupts (lambda () (%step! world)))
+    (call-with-interrupts
+     (lambda () (call-with-run-stack (lambda () (%step! world)))))
     (if #f #f)))
 
 (define (statistics)

@@ -54,6 +54,38 @@
                         "(run! #:until 0.35)" "(exit 0)")
              2))
 
+;; ---- recursions without end ----
+
+(define (seconds) (/ (get-internal-real-time) internal-time-units-per-second 1.0))
+
+(define (overflows name pattern . lines)
+  (let ((start (seconds)))
+    (apply fails-with name (string-append pattern "a procedure calls itself without end.*; expected") lines)
+    (test-assert (format #f "~a: ~a s" name (- (seconds) start)) (< (- (seconds) start) 2))))
+
+(overflows "a callback that calls itself" "^crash.scm:3:.*"
+           "(define (f x) (+ 1 (f x)))"
+           "(add-callback! ball (lambda (time view) (f 1)) #:period 0.1)")
+(overflows "a callback whose frames alternate" "^crash.scm:[345]:.*"
+           "(define (f x) (cons x"
+           "                    (g x)))"
+           "(define (g x) (map f (list x x)))"
+           "(add-callback! ball (lambda (time view) (f 1)) #:period 0.1)")
+(overflows "a callback that overflows the stack of C" "crash.scm:4:.*"
+           "(define (f x) (sort '(2 1) (lambda (a b) (f x))))"
+           "(add-callback! ball (lambda (time view) (f 1)) #:period 0.1)")
+(overflows "an observer that calls itself" "^crash.scm:3:.*"
+           "(define (f x) (+ 1 (f x)))" "(observe! 'frame f)")
+(overflows "a motion that calls itself" "^crash.scm:3:.*"
+           "(define (f x) (+ 1 (f x)))"
+           "(add-body! #:shape (sphere 1) #:position #(5 0 0) #:max-speed 1 #:motion f)")
+(overflows "a scene that calls itself" "^crash.scm:3:.*"
+           "(define (f x) (+ 1 (f x)))" "(f 1)")
+(passes "a list of a million elements is mapped in a scene" "(map 1+ (iota 1000000))")
+(passes "a list of 100000 elements is mapped in a callback"
+        "(add-callback! ball (lambda (time view) (map 1+ (iota 100000))) #:period 0.1)"
+        "(run! #:until 0.5)")
+
 ;; ---- long scenes ----
 
 (let ((count 2500))
