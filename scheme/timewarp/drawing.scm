@@ -32,6 +32,11 @@
       (bad-value "quality" quality "'draft, 'normal or 'best"))
     quality))
 
+;; No other format is written, whatever a name promises.
+(define (check-picture-name what file)
+  (unless (and (string? file) (string-suffix-ci? ".png" file))
+    (bad-value what file "a name that ends in .png, the only format that is written")))
+
 (define (draw-contacts? contacts?)
   (->bool (or contacts? (override 'contacts))))
 
@@ -41,6 +46,9 @@
 (define (open-frames frames size quality)
   "Prepare drawing into the folder or pattern FRAMES; refuse at once what cannot be written."
   (require-drawing "drawing frames")
+  ;; a pattern says what the files are called, a folder does not
+  (when (and (string? frames) (string-index frames #\%))
+    (check-picture-name "the pattern of frames" frames))
   (call-with-values (lambda () (picture-size size))
     (lambda (width height)
       (%open-frames frames width height (picture-quality quality)))))
@@ -65,7 +73,9 @@
   "Draw the current world as it is now into FILE (PNG).  Size is (WIDTH HEIGHT), 1280 by 720 unless
 given; quality 'draft, 'normal or 'best.  With contacts? a line along the normal shows each contact that
 carries load, its length by the logarithm of the force, its colour whether it sticks or slips."
+  (%require-outside-callbacks "render!")
   (require-drawing "render!")
+  (check-picture-name "the picture's file" file)
   (let ((world (current-world)))
     (call-with-values (lambda () (picture-size size))
       (lambda (width height)

@@ -301,9 +301,9 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
 go on until the memory is full.)"
   (call-with-stack-overflow-handler words thunk
     (lambda ()
-      (raise-error (format #f "a procedure calls itself without end, or too often: the stack has ~
-                               grown by ~a MB; expected a recursion that ends"
-                           (quotient (* 8 words) 1000000))))))
+      (raise-error (format #f "a procedure calls itself without end, or too often: the stack ~a"
+                           (format #f "has grown by ~a MB; expected a recursion that ends"
+                                   (quotient (* 8 words) 1000000)))))))
 
 (define (call-with-run-stack thunk)
   "Call THUNK, which runs a world, with a bounded stack."

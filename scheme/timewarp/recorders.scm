@@ -53,8 +53,30 @@
                (lambda () (close) failure)
                (lambda args (or failure args))))))))
 
+;; Two recorders would write over one another, and so would pictures over tables.
+(define (check-files poses events)
+  (define (check-table what file)
+    (when (and (string? file) (string-suffix-ci? ".png" file))
+      (bad-value what file "a name for a CSV file, not for a picture")))
+  (check-table "the poses file" poses)
+  (check-table "the events file" events)
+  (when (and poses events (same-file? poses events))
+    (bad-value "the events file" events "another file than that of the poses")))
+
+;; Whether two names lead to one file on a disk, there or not yet.
+(define (same-file? a b)
+  (define (identity file)
+    (match (stat file #f)
+      (#f (match (stat (dirname file) #f)
+            (#f file)
+            (folder (list (stat:dev folder) (stat:ino folder) (basename file)))))
+      (there (and (eq? (stat:type there) 'regular) (list (stat:dev there) (stat:ino there))))))
+  (let ((one (identity a)))
+    (and one (equal? one (identity b)))))
+
 (define* (call-with-recorders world thunk #:key frames size quality contacts? poses events)
   "Call THUNK while WORLD is recorded: frames to pictures, poses and events to CSV files."
+  (check-files poses events)
   (let ((recorders
          (append (if poses (list (start-csv! world %open-poses poses)) '())
                  (if events (list (start-csv! world %open-events events)) '())

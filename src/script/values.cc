@@ -108,6 +108,9 @@ Quat to_quat(SCM value, const char* name) {
   if (!read_reals(value, x, 4) || !std::isfinite(x[0] + x[1] + x[2] + x[3]))
     throw BadValue{name, value, "a quaternion #(w x y z) of finite numbers"};
   Quat q(x[0], x[1], x[2], x[3]);
+  // squares that would overflow or vanish: scaled first
+  const double largest = q.coeffs().cwiseAbs().maxCoeff();
+  if (largest > 0 && (largest < 1e-100 || largest > 1e100)) q.coeffs() /= largest;
   const double norm = q.norm();
   if (!(norm > 0) || !std::isfinite(norm))
     throw BadValue{name, value, "a quaternion #(w x y z) that is not zero"};

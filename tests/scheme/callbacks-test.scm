@@ -81,6 +81,14 @@
   (times-of #:start 0.1 #:period 0.3))
 (test-equal "without a period it returns its next time, or #f" '(0.0 0.25 0.5) (times-of))
 
+(test-equal "ticks before the first run are not made up for" '(0.0 0.25 0.5 0.75 1.0)
+  (times-of #:start -0.5 #:period 0.25))
+(in-world ()
+  (let ((ball (add-body! #:name "ball" #:shape (sphere 1))))
+    (test-message "a start before the first run" "start of callback of ball is -1; expected a time after"
+      (begin (add-callback! ball list #:start -1)
+             (run! #:until 1)))))
+
 (in-world ()
   (let* ((ball (add-body! #:shape (sphere 1)))
          (calls '()))
