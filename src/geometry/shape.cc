@@ -178,6 +178,11 @@ ShapePtr make_hull(const std::vector<Vec3>& points) {
     TW_REQUIRE(p.cwiseAbs().maxCoeff() <= greatest_length,
                "a point of a hull is " + show(p) + "; expected coordinates of at most " +
                    tw::show(greatest_length) + " m");
+  Aabb box;
+  for (const Vec3& p : points) box.add(p);
+  TW_REQUIRE(points.empty() || box.size().maxCoeff() >= least_length,
+             "the points of a hull are " + tw::show(box.size().maxCoeff()) +
+                 " m apart; expected lengths " + lengths_text());
   const ConvexPart part = polyhedron_part(convex_hull(points));
   return finish_shape({part}, "hull", polyhedron_mass(*part.core));
 }

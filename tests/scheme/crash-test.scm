@@ -95,5 +95,16 @@
               (string-join (map (lambda (i) (format #f "(define x~a ~a)" i i)) (iota count)) "\n")
               "" "(error \"no good\")"))
 
+;; ---- validators ----
+
+(write-file "outside.scm" "(use-modules (timewarp))"
+            "(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t)"
+            "(add-body! #:shape (rock #:size 0.48) #:inertia #(1 1 1) #:center-of-mass #(1.7 -0.93 0.02)"
+            "           #:orientation (rotation #(0 0 1) 0.3) #:angular-velocity #(1.39 -0.49 0.85)"
+            "           #:position #(2.2 2.2 0))"
+            "(add-body! #:shape (box 0.2 0.7 0.5) #:center-of-mass #(1 0 1) #:position #(0 0 2))")
+(test-equal "--check takes a centre of mass outside its shape" '(0 "" "")
+  (run "outside.scm" "--until=0.8" "--quiet" "--check"))
+
 (clean-up)
 (test-end "crash")

@@ -46,10 +46,18 @@
   (newline out)
   (force-output out))
 
-;; What calls may take long without being at fault: they run worlds.
+;; What calls may take long without being at fault: they run worlds, or draw on a busy machine.
 (define (runs? call)
-  (or (memq (car call) '(run! run-for! simulate! step!))
+  (or (memq (car call) '(run! run-for! simulate! step! render!))
       (any (lambda (part) (and (pair? part) (list? part) (runs? part))) (cdr call))))
+
+;; what the calls of a child came to
+(define returned 0)
+(define simulated 0)  ; s
+(define collisions 0)
+(define (account!)
+  (set! simulated (+ simulated (world-time)))
+  (set! collisions (+ collisions (assq-ref (statistics) 'collisions))))
 
 (define (message-of key args)
   (match (cons key args)
@@ -61,7 +69,9 @@
   (let ((interrupted? #f) (fault #f) (start (get-internal-real-time)))
     (setitimer ITIMER_REAL 0 0 patience 0)
     (catch #t
-      (lambda () (keep! (eval call (current-module))))
+      (lambda ()
+        (keep! (eval call (current-module)))
+        (set! returned (1+ returned)))
       (lambda (key . args)
         (let ((message (if (eq? key 'timewarp-interrupted) "interrupted" (message-of key args))))
           (cond ((eq? key 'timewarp-interrupted) (set! interrupted? #t))
@@ -89,13 +99,14 @@
     (scene #:duration 0.05)
     (for-each
      (lambda (number)
-       (let ((call (if (< number bodies-at-start) (a-body-to-add) (a-call 2))))
+       (let ((call (if (< number bodies-at-start) (a-body-to-add number) (a-call 2))))
          (unless (memv number without)
            (say "call " number " " (object->string call))
            (match (trial call)
              (#f #t)
              (fault (say "fault " fault) (exit 3))))))
-     (iota calls-in-episode))))
+     (iota calls-in-episode))
+    (account!)))
 
 (define (child)
   (sigaction SIGALRM (lambda (signal) (%interrupt!)))
@@ -107,7 +118,7 @@
               (say "episode " episode)
               (run-episode episode))
             episodes)
-  (say "end"))
+  (say (format #f "end ~a calls returned, ~,1f s simulated, ~a collisions" returned simulated collisions)))
 
 ;; ---- the parent ----
 
@@ -153,6 +164,7 @@
             (cond ((string-prefix? "episode " line)
                    (loop (string->number (substring line 8)) '() fault))
                   ((string-prefix? "call " line) (loop episode (cons line calls) fault))
+                  ((string-prefix? "end " line) (loop episode (list line) fault))
                   ((string-prefix? "fault " line) (loop episode calls (substring line 6)))
                   (else (loop episode calls fault))))))))))
 
@@ -176,8 +188,9 @@
   (match (if (options 'episode #f)
              (episode-without (car episodes) without)
              (run-child (format #f "--calls=~a" (options 'calls "1000"))))
-    ((#f . _)
-     (format #t "seed ~a, setting ~a: ~a episodes end well~%" seed setting (length episodes))
+    ((#f _ (end . _))
+     (format #t "seed ~a, setting ~a: ~a episodes end well: ~a~%" seed setting (length episodes)
+             (substring end 4))
      0)
     ((fault #f calls) (format #t "the child ~a before it began~%" fault) 2)
     ((fault episode calls)

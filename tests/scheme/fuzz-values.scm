@@ -79,7 +79,7 @@
 (define numbers
   '(0 1 -1 2 0.5 -0.5 1e-3 10 0.0 -0.0 1/3 1e10 1e-10 1e300 -1e300 1e-300 5e-324 1e30 1e-30 1e15 1e18
     +nan.0 +inf.0 -inf.0 +i 4294967296 9223372036854775808 -5 (expt 10 400) (/ (expt 10 400) 3)))
-(define times '(0 0.01 0.02 0.05 -1 +nan.0 +inf.0 -inf.0 1e300 -1e300 "0" #t (expt 10 400)))
+(define times '(0 0.01 0.05 0.1 0.1 0.2 0.3 0.5 0.7 -1 +nan.0 +inf.0 -inf.0 1e300 -1e300 "0" #t (expt 10 400)))
 (define names '("ball" "body-0" "x" "" "alien" "a b" "ä"))
 (define files '("a.png" "b.png" "a.csv" "b.csv" "scene.scm" "none/a.png" "" "." "frames" "f/%03d.png" "%d%d"
                 "a.jpg"))
@@ -240,7 +240,9 @@
     ((run! simulate!)
      (append (list #:until (one-of times))
              (some-keywords (delq #:until keywords) depth wildness)))
-    ((render!) (append '(#:size '(16 16)) (some-keywords (delq #:size keywords) depth wildness)))
+    ((render!)
+     (append '(#:size '(16 16) #:quality 'draft)
+             (some-keywords (delq #:quality (delq #:size keywords)) depth wildness)))
     (else (some-keywords keywords depth wildness))))
 
 (define (call-of entry depth)
@@ -260,7 +262,20 @@
 ;; What makes scenes interesting comes more often.
 (define favourites '(add-body! add-callback! on-collision! observe! run-for! run! step!))
 
-(define (a-body-to-add) (call-of (assq 'add-body! procedures) 2))
+;; The bodies that an episode begins with: well apart over a ground, so that runs happen.
+(define (a-body-to-add number)
+  (if (zero? number)
+      `(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t #:material 'steel)
+      (match (call-of (assq 'add-body! procedures) 2)
+        ((name . arguments)
+         (cons name (with-position (vector (* 2.2 (modulo number 3)) (* 2.2 (quotient number 3)) 0)
+                      arguments))))))
+
+(define (with-position position arguments)
+  (match arguments
+    (() (list #:position position))
+    ((#:position _ . rest) (cons* #:position position rest))
+    ((argument . rest) (cons argument (with-position position rest)))))
 
 (define (a-call depth)
   (call-of (if (chance 0.4)
