@@ -290,15 +290,15 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
 
 ;; ---- stacks ----
 
-;; Of 8 bytes.  In callbacks a list of some hundred thousand elements can be mapped, and a recursion without
-;; end is found and described in less than half a second.
+;; Of 8 bytes.  In callbacks a list of some hundred thousand elements can be mapped, and a recursion
+;; without end is found and described in less than half a second.
 (define most-words-in-run 4000000)
 ;; for scenes and the REPL, where nobody waits for a run to go on
 (define most-words 32000000)
 
 (define* (call-with-bounded-stack thunk #:optional (words most-words))
-  "Call THUNK; an error is raised where recursion makes the stack grow by more than WORDS.  (Guile alone would
-go on until the memory is full.)"
+  "Call THUNK; an error is raised where recursion makes the stack grow by more than WORDS.  (Guile
+alone would go on until the memory is full.)"
   (call-with-stack-overflow-handler words thunk
     (lambda ()
       (raise-error (format #f "a procedure calls itself without end, or too often: the stack ~a"

@@ -4,8 +4,8 @@
 ;; for which the place of the form is the fallback.  The plain compiler is used (-O1): a form compiles
 ;; in 2 ms rather than 30.
 ;;
-;; Each compiled form stays in memory as a root of the garbage collector, of which a program can have
-;; some 2000: what comes after the first thousand forms is interpreted.
+;; Each compiled form stays in memory as a root of the garbage collector, of which a program can
+;; have some 2000: what comes after the first thousand forms is interpreted.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp loader)
   #:use-module (timewarp errors)
@@ -107,8 +107,8 @@ error is raised as a timewarp-error with its place in the file."
        (save-module-excursion
         (lambda ()
           (for-each-form (lambda (form place)
-                           (call-placing-errors
-                            place (lambda () (call-with-bounded-stack (lambda () (run-form form))))))
+                           (call-placing-errors place
+                             (lambda () (call-with-bounded-stack (lambda () (run-form form))))))
                          file)))))))
 
 ;; Guile's `load' makes a name relative to the file it is in, and looks what is still relative up in

@@ -1,8 +1,9 @@
 ;; --check: callbacks are watched for changing variables of the scene, which no rollback undoes.
 ;;
-;; The data in the scene's variables is copied before a call and compared after it; so are the slots of
-;; what the callback is handed, whose pairs could be changed in place.  What hides behind procedures and
-;; records is not seen, nor what comes after the first thousands of parts of a value, which may be circular.
+;; The data in the scene's variables is copied before a call and compared after it; so are the slots
+;; of what the callback is handed, whose pairs could be changed in place.  What hides behind
+;; procedures and records is not seen, nor what comes after the first thousands of parts of a value,
+;; which may be circular.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp purity)
   #:use-module (timewarp primitives)
@@ -60,8 +61,8 @@
   (unless (equal? before (map copy values))
     (raise-error
      (string-append
-      "a callback changed a pair in a slot in place, which a rollback would not undo; expected it to "
-      "give the slot a new value by set!"))))
+      "a callback changed a pair in a slot in place, which a rollback would not undo; expected it "
+      "to give the slot a new value by set!"))))
 
 (define (watched procedure)
   "Return PROCEDURE, under --check one that raises an error where it changes variables of the scene."

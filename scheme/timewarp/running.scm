@@ -94,8 +94,8 @@ scene's duration) is committed and observed.  Ctrl-C interrupts; the world stays
   (%checkpoint (current-world)))
 
 (define (restore! checkpoint)
-  "Bring the current world back to the time at which it made CHECKPOINT.  What was added since then is an
-error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
+  "Bring the current world back to the time at which it made CHECKPOINT.  What was added since then
+is an error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
 bit, as if the world had never run further."
   (%restore! (current-world) checkpoint))
 

@@ -146,8 +146,8 @@ options take precedence."
   (world-set! world 'first-run (delq thunk (world-ref world 'first-run '()))))
 
 (define (start-first-run! world)
-  "Call what at-first-run! has gathered, oldest first.  What one that fails has kept from being called
-waits for the next run."
+  "Call what at-first-run! has gathered, oldest first.  What one that fails has kept from being
+called waits for the next run."
   (match (world-ref world 'first-run '())
     (() #t)
     ((thunk . rest)

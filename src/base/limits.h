@@ -1,16 +1,16 @@
 // How large and how small what a user gives may be.
 //
-// The limits lie far beyond what anyone simulates, and close enough that products of several such numbers
-// (the inertia of a body is a density by a fifth power of lengths) stay well within doubles, and that sums of
-// times and places still change.  Each is inclusive.
+// The limits lie far beyond what anyone simulates, and close enough that products of several such
+// numbers (the inertia of a body is a density by a fifth power of lengths) stay well within
+// doubles, and that sums of times and places still change.  Each is inclusive.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 namespace tw {
 
-// m: of radii, edges, widths and what places parts in shapes.  Below the size of atoms; beyond the orbit of
-// Saturn.  Fifth powers: 1e-60 to 1e60.
+// m: of radii, edges, widths and what places parts in shapes.  Below the size of atoms; beyond the
+// orbit of Saturn.  Fifth powers: 1e-60 to 1e60.
 inline constexpr double least_length = 1e-12, greatest_length = 1e12;
 
 // m, of a coordinate of a body: doubles there are an eighth of a metre apart.
@@ -28,7 +28,8 @@ inline constexpr double speed_limit = 1e12;
 // rad/s: points a metre away have the greatest speed.
 inline constexpr double greatest_angular_speed = 1e12;
 
-// m/s^2, of gravity and of what an applied force does: the greatest speed is reached within a second.
+// m/s^2, of gravity and of what an applied force does: the greatest speed is reached within a
+// second.
 inline constexpr double greatest_acceleration = 1e12;
 
 // s, of the time of anything: 30 years, where doubles are 1.2e-7 s apart.

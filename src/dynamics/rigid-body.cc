@@ -20,8 +20,8 @@ void require_mass(const std::optional<double>& value, const std::string& what) {
   TW_REQUIRE(std::isfinite(*value) && *value > 0,
              what + " is " + show(*value) + "; expected a positive number");
   TW_REQUIRE(*value >= least_mass && *value <= greatest_mass,
-             what + " is " + show(*value) + "; expected a number from " + show(least_mass) + " to " +
-                 show(greatest_mass));
+             what + " is " + show(*value) + "; expected a number from " + show(least_mass) +
+                 " to " + show(greatest_mass));
 }
 
 // I about the centre of mass + the shift to another point: the parallel axis theorem.

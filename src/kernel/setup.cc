@@ -244,8 +244,8 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   callback.committed_next = def.start;
   callback.next = {def.start, 0, KeyKind::callback, number};
   // ticks before the present are not made up for
-  if (def.period)
-    callback.next = first_tick(callback, {time, 0, begun ? KeyKind::group_check : KeyKind::birth, 0});
+  const KeyKind present = begun ? KeyKind::group_check : KeyKind::birth;
+  if (def.period) callback.next = first_tick(callback, {time, 0, present, 0});
   for (const BodyId id : def.targets) bodies[id]->callbacks.push_back(number);
   schedule_callback(number);
   return number;

@@ -104,8 +104,8 @@ Place place_of(SCM place) {
   // where the stack of C is full Guile unwinds first: nothing could be described
   static const SCM key_overflow = scm_gc_protect_object(scm_from_utf8_symbol("stack-overflow"));
   if (scm_is_eq(state.key, key_overflow))
-    throw SchemeError("a procedure calls itself without end, or too often; expected a recursion that ends",
-                      {}, "");
+    throw SchemeError(
+        "a procedure calls itself without end, or too often; expected a recursion that ends", {}, "");
   const SCM d = state.description;
   if (!scm_is_vector(d) || SCM_SIMPLE_VECTOR_LENGTH(d) != 3)
     throw SchemeError("a Scheme procedure failed, and so did describing its error", {}, "");
@@ -205,7 +205,7 @@ TW_PRIMITIVE(is_inside_call, "%inside-callback?", (), "Is a callback or observer
 }
 
 TW_PRIMITIVE(check_outside, "%require-outside-callbacks", (SCM what),
-             "Raise an error if a callback or observer is running; WHAT, a string, was asked for.") {
+             "Raise an error if a callback or observer is running; WHAT was asked for.") {
   require_outside_callbacks(text_of(what).c_str());
   return SCM_UNSPECIFIED;
 }

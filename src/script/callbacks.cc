@@ -213,7 +213,8 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
   const CollisionKind wanted = name == "fusion"    ? CollisionKind::fusion
                                : name == "fission" ? CollisionKind::fission
                                                    : CollisionKind::collision;
-  const auto hook = std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
+  const auto hook =
+      std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
   to_world(world).add_collision_observer([hook](const Collision& collision) {
     SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
     call_hook(*hook, arguments, collision.time, [&] {

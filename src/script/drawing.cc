@@ -156,8 +156,8 @@ TW_PRIMITIVE(attach_frames, "%attach-frames!",
   DrawerBox& box = to_drawer(object);
   const double rate = to_real(fps, "fps");
   box.settings.first_frame = first_frame(w, rate);
-  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(world, looks), hud_lines(title),
-                                             to_bool(contacts));
+  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(world, looks),
+                                             hud_lines(title), to_bool(contacts));
   w.add_frame_sink(box.drawer, rate);
   return SCM_UNSPECIFIED;
 }

@@ -40,8 +40,8 @@ std::uint64_t hash_value(std::uint64_t hash, SCM value) {
   return hash_value(hash, value);
 }
 
-// Copies a value so that nothing reaches the copy but through the slot.  Vectors and strings of the copy
-// are read-only, as constants in a program are; pairs have no such mark.
+// Copies a value so that nothing reaches the copy but through the slot.  Vectors and strings of the
+// copy are read-only, as constants in a program are; pairs have no such mark.
 class Freezer {
  public:
   explicit Freezer(SCM slot) : slot_(slot) {}
@@ -60,17 +60,19 @@ class Freezer {
   }
 
  private:
-  // A slot is copied whenever it is set, and hashed with the history: far beyond what anyone keeps there.
+  // A slot is copied whenever it is set, and hashed with the history: far beyond what anyone keeps
+  // there.
   static constexpr long most_parts = 1000000;
   static constexpr int most_depth = 1000;
 
   static constexpr const char* frozen =
-      "what no callback can change behind a rollback: a number, boolean, symbol, keyword, character, "
-      "string or body, or a list or vector of such";
+      "what no callback can change behind a rollback: a number, boolean, symbol, keyword, "
+      "character, string or body, or a list or vector of such";
   static constexpr const char* frozen_parts =
-      "only parts that no callback can change behind a rollback: numbers, booleans, symbols, keywords, "
-      "characters, strings, bodies, lists and vectors";
-  static constexpr const char* shallow = "a value nested at most 1000 deep (a circular one never ends)";
+      "only parts that no callback can change behind a rollback: numbers, booleans, symbols, "
+      "keywords, characters, strings, bodies, lists and vectors";
+  static constexpr const char* shallow =
+      "a value nested at most 1000 deep (a circular one never ends)";
   static constexpr const char* small =
       "a value of at most 1000000 parts (a circular one never ends)";
 

@@ -85,7 +85,8 @@ TW_PRIMITIVE(angular_velocity, "%angular-velocity", (SCM object), "Angular veloc
 
 TW_PRIMITIVE(kinetic_energy, "%kinetic-energy", (SCM object), "Kinetic energy, J.") {
   if (is_view(object)) return scm_from_double(to_view(object).kinetic_energy());
-  return scm_from_double(readable_world(object, "kinetic-energy").kinetic_energy(to_own_body(object)));
+  return scm_from_double(
+      readable_world(object, "kinetic-energy").kinetic_energy(to_own_body(object)));
 }
 
 TW_PRIMITIVE(applied_force, "%applied-force", (SCM object), "Applied force, N, world frame.") {

@@ -85,7 +85,8 @@
   (times-of #:start -0.5 #:period 0.25))
 (in-world ()
   (let ((ball (add-body! #:name "ball" #:shape (sphere 1))))
-    (test-message "a start before the first run" "start of callback of ball is -1; expected a time after"
+    (test-message "a start before the first run"
+      "start of callback of ball is -1; expected a time after"
       (begin (add-callback! ball list #:start -1)
              (run! #:until 1)))))
 

@@ -1,4 +1,5 @@
-;; Scenes that once killed or hung the program: each ends with a message, or as if nothing had been wrong.
+;; Scenes that once killed or hung the program: each ends with a message, or as if nothing had been
+;; wrong.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
 
@@ -16,7 +17,8 @@
       (string-match pattern (run-errors result)))))
 
 (define (passes name . lines)
-  (test-equal name '(0 "done") (list-head (apply run-scene (append lines '("(display \"done\")"))) 2)))
+  (test-equal name '(0 "done") 
+    (list-head (apply run-scene (append lines '("(display \"done\")"))) 2)))
 
 ;; ---- callbacks that name their next time ----
 
@@ -60,7 +62,8 @@
 
 (define (overflows name pattern . lines)
   (let ((start (seconds)))
-    (apply fails-with name (string-append pattern "a procedure calls itself without end.*; expected") lines)
+    (apply fails-with name
+           (string-append pattern "a procedure calls itself without end.*; expected") lines)
     (test-assert (format #f "~a: ~a s" name (- (seconds) start)) (< (- (seconds) start) 2))))
 
 (overflows "a callback that calls itself" "^crash.scm:3:.*"
@@ -99,7 +102,8 @@
 
 (write-file "outside.scm" "(use-modules (timewarp))"
             "(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t)"
-            "(add-body! #:shape (rock #:size 0.48) #:inertia #(1 1 1) #:center-of-mass #(1.7 -0.93 0.02)"
+            "(add-body! #:shape (rock #:size 0.48) #:inertia #(1 1 1)"
+            "           #:center-of-mass #(1.7 -0.93 0.02)"
             "           #:orientation (rotation #(0 0 1) 0.3) #:angular-velocity #(1.39 -0.49 0.85)"
             "           #:position #(2.2 2.2 0))"
             "(add-body! #:shape (box 0.2 0.7 0.5) #:center-of-mass #(1 0 1) #:position #(0 0 2))")

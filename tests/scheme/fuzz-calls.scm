@@ -1,14 +1,16 @@
-;; Random calls of every exported procedure: none may kill or hang the program, whatever it is given.
+;; Random calls of every exported procedure: none may kill or hang the program, whatever it is
+;; given.
 ;;
 ;;   guile fuzz-calls.scm --seed=S --calls=N [--setting=NAME] [--verbose]
-;;   guile fuzz-calls.scm --seed=S --episode=E [--without=I,J,...]      one episode again, call by call
+;;   guile fuzz-calls.scm --seed=S --episode=E [--without=I,J,...]    one episode, call by call
 ;;
-;; Calls come in episodes of 40, each with a fresh world; an episode is a function of the seed and its
-;; number.  They are made in a child process, which says what it does before it does it.  Where the child
-;; dies, or says nothing for long, the parent repeats the episode without one call after the other and
-;; prints those that are needed.  A call may return or raise an error that has a message.
-;; Settings: plain, check (validators after every event), adversary (events out of order), undo (every
-;; discontinuity taken back and done again).
+;; Calls come in episodes of 40, each with a fresh world; an episode is a function of the seed and
+;; its number.  They are made in a child process, which says what it does before it does it.  Where
+;; the child dies, or says nothing for long, the parent repeats the episode without one call after
+;; the other and prints those that are needed.  A call may return or raise an error that has a
+;; message.
+;; Settings: plain, check (validators after every event), adversary (events out of order),
+;; undo (every discontinuity taken back and done again).
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "fuzz-values.scm")
 (use-modules (timewarp worlds)
@@ -19,14 +21,15 @@
 
 (define calls-in-episode 40)
 (define bodies-at-start 6)
-;; s: after the first a call is interrupted as by Ctrl-C, which only a run may need; after the second
-;; it is taken for hanging
+;; s: after the first a call is interrupted as by Ctrl-C, which only a run may need; after the
+;; second it is taken for hanging
 (define patience 3)
 (define last-patience 15)
 
 (define options
-  (let ((given (getopt-long (command-line) '((seed (value #t)) (calls (value #t)) (episode (value #t))
-                                             (without (value #t)) (setting (value #t)) (child) (verbose)))))
+  (let ((given (getopt-long (command-line)
+                            '((seed (value #t)) (calls (value #t)) (setting (value #t))
+                              (episode (value #t)) (without (value #t)) (child) (verbose)))))
     (lambda (name default) (option-ref given name default))))
 (define seed (string->number (options 'seed "0")))
 (define setting (string->symbol (options 'setting "plain")))
@@ -76,7 +79,8 @@
         (let ((message (if (eq? key 'timewarp-interrupted) "interrupted" (message-of key args))))
           (cond ((eq? key 'timewarp-interrupted) (set! interrupted? #t))
                 ((not (string? message)) (set! fault (format #f "~s has no message" key)))
-                ((string-null? (string-trim message)) (set! fault (format #f "~s has an empty message" key)))
+                ((string-null? (string-trim message))
+                 (set! fault (format #f "~s has an empty message" key)))
                 ((string-contains message "internal error") (set! fault message))))))
     (setitimer ITIMER_REAL 0 0 0 0)
     (let ((taken (/ (- (get-internal-real-time) start) 1.0 internal-time-units-per-second)))
@@ -118,7 +122,8 @@
               (say "episode " episode)
               (run-episode episode))
             episodes)
-  (say (format #f "end ~a calls returned, ~,1f s simulated, ~a collisions" returned simulated collisions)))
+  (say (format #f "end ~a calls returned, ~,1f s simulated, ~a collisions"
+               returned simulated collisions)))
 
 ;; ---- the parent ----
 
@@ -151,12 +156,14 @@
            ((? eof-object?)
             (let ((status (cdr (waitpid pid))))
               (list (cond (fault fault)
-                          ((status:term-sig status) => (lambda (signal) (format #f "dies of signal ~a" signal)))
+                          ((status:term-sig status)
+                           => (lambda (signal) (format #f "dies of signal ~a" signal)))
                           ((zero? (status:exit-val status)) #f)
                           (else (format #f "exits with status ~a" (status:exit-val status))))
                     episode calls)))
            (line
-            (when (and (options 'verbose #f) (or (options 'episode #f) (string-prefix? "slow" line)))
+            (when (and (options 'verbose #f)
+                       (or (options 'episode #f) (string-prefix? "slow" line)))
               (when (string-prefix? "slow" line) (format #t "episode ~a: ~a~%" episode (car calls)))
               (display line)
               (newline)
@@ -195,7 +202,8 @@
     ((fault #f calls) (format #t "the child ~a before it began~%" fault) 2)
     ((fault episode calls)
      (format #t "seed ~a, setting ~a, episode ~a: ~a~%" seed setting episode fault)
-     (format #t "again: fuzz-calls.scm --seed=~a --setting=~a --episode=~a --verbose~%" seed setting episode)
+     (format #t "again: fuzz-calls.scm --seed=~a --setting=~a --episode=~a --verbose~%"
+             seed setting episode)
      (for-each (lambda (line) (format #t "  ~a~%" line))
                (reverse (if (null? without) (shrunk episode calls) calls)))
      1)))

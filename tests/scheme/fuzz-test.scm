@@ -9,8 +9,10 @@
 
 (for-each
  (lambda (setting)
-   (let ((result (shell (format #f "guile --no-auto-compile ~a --seed=1 --calls=500 --setting=~a" fuzzer setting))))
-     (test-equal (format #f "500 calls, setting ~a: ~a~a" setting (run-output result) (run-errors result))
+   (let ((result (shell (format #f "guile --no-auto-compile ~a --seed=1 --calls=500 --setting=~a"
+                                fuzzer setting))))
+     (test-equal (format #f "500 calls, setting ~a: ~a~a" setting (run-output result)
+                         (run-errors result))
        0 (run-status result))
      (test-assert (format #f "worlds run, setting ~a" setting)
        (string-match "[1-9][0-9]* collisions" (run-output result)))))

@@ -1,7 +1,8 @@
 ;; Random calls of everything that (timewarp) and (timewarp vectors) export, as expressions.
 ;;
-;; What is drawn never depends on what earlier calls did, so that an episode without some of its calls has
-;; the others unchanged: bodies and the like are named by number, which counts modulo those there are.
+;; What is drawn never depends on what earlier calls did, so that an episode without some of its
+;; calls has the others unchanged: bodies and the like are named by number, which counts modulo
+;; those there are.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (use-modules (timewarp)
              (timewarp vectors)
@@ -77,13 +78,17 @@
 (define (short x) (/ (round (* 100 x)) 100))
 
 (define numbers
-  '(0 1 -1 2 0.5 -0.5 1e-3 10 0.0 -0.0 1/3 1e10 1e-10 1e300 -1e300 1e-300 5e-324 1e30 1e-30 1e15 1e18
+  '(0 1 -1 2 0.5 -0.5 1e-3 10 0.0 -0.0 1/3 1e10 1e-10 1e300 -1e300 1e-300 5e-324 1e30
+    1e-30 1e15 1e18
     +nan.0 +inf.0 -inf.0 +i 4294967296 9223372036854775808 -5 (expt 10 400) (/ (expt 10 400) 3)))
-(define times '(0 0.01 0.05 0.1 0.1 0.2 0.3 0.5 0.7 -1 +nan.0 +inf.0 -inf.0 1e300 -1e300 "0" #t (expt 10 400)))
+(define times
+  '(0 0.01 0.05 0.1 0.1 0.2 0.3 0.5 0.7 -1 +nan.0 +inf.0 -inf.0 1e300 -1e300 "0" #t (expt 10 400)))
 (define names '("ball" "body-0" "x" "" "alien" "a b" "ä"))
-(define files '("a.png" "b.png" "a.csv" "b.csv" "scene.scm" "none/a.png" "" "." "frames" "f/%03d.png" "%d%d"
+(define files
+  '("a.png" "b.png" "a.csv" "b.csv" "scene.scm" "none/a.png" "" "." "frames" "f/%03d.png" "%d%d"
                 "a.jpg"))
-(define symbols '('rubber 'steel 'collision 'frame 'fusion 'fission 'timewarp 'best 'draft 'normal 'anchored
+(define symbols
+  '('rubber 'steel 'collision 'frame 'fusion 'fission 'timewarp 'best 'draft 'normal 'anchored
                   'smooth 'n 'list 'chatterjee-ruina 'stronge 'conservative))
 
 (define (a-vector)
@@ -134,7 +139,8 @@
                 `(a-kept 'view ,(draw 20)) `(a-kept 'collision ,(draw 20)) `(a-kept 'contact ,(draw 20))
                 `(a-kept 'struct ,(draw 20)) '(circular 1 2) '(list (circular 1 2)) '(shared 50)
                 ''(1 . 2) ''(a b) ''((a . 1)) '(make-hash-table) '(make-thing 1) '(u8vector 1 2 3)
-                '(make-array 0 2 2) '(make-array 0) '(current-output-port) '(make-string 300 #\x) #() '(delay 1)
+                '(make-array 0 2 2) '(make-array 0) '(current-output-port) '(make-string 300 #\x)
+                #() '(delay 1)
                 `(list ,@(map (lambda _ (one-of numbers)) (iota (draw 4))))
                 '(make-vector 1000 0) 'car '(random-state-from-platform)))
 
@@ -144,13 +150,16 @@
     ((shape s) (a-shape))
     ((radius length x y z size) (a-length))
     ((points) `(list ,@(map (lambda _ (a-vector)) (iota (+ 4 (draw 8))))))
-    ((position velocity angular-velocity eye target normal axis center-of-mass up direction v gravity)
+    ((position velocity angular-velocity eye target normal axis center-of-mass up direction v
+               gravity)
      (a-vector))
     ((color zenith horizon ground) (one-of '(#(1 0 0) #(0.2 0.5 1) #(0 0 0))))
     ((orientation q) (a-quaternion))
     ((body view contact-body) (if (chance 0.7) `(a-body ,(draw 10)) `(a-kept 'view ,(draw 20))))
     ((follow) `(a-body ,(draw 10)))
-    ((targets) (if (chance 0.5) `(a-body ,(draw 10)) `(list (a-body ,(draw 10)) (a-body ,(draw 10)))))
+    ((targets) (if (chance 0.5) 
+                   `(a-body ,(draw 10))
+                   `(list (a-body ,(draw 10)) (a-body ,(draw 10)))))
     ((a b) (one-of-these `(a-body ,(draw 10)) `(a-body ,(draw 10)) #t ''rubber))
     ((collision) `(a-kept 'collision ,(draw 20)))
     ((contact) `(a-kept 'contact ,(draw 20)))
@@ -161,7 +170,8 @@
     ((inertia) (one-of '(#(1 1 1) #(1 2 3) #(1 1 3) #(1e-300 1e-300 1e-300) #(1e300 1e300 1e300))))
     ((fixed? smooth? visible? contacts?) (one-of '(#t #f)))
     ((motion) (some-keyframes))
-    ((list) (one-of '('((0 #(0 0 0)) (1 #(0 0 1))) '((0 #(0 0 0) #(0 1 0 0))) '() '((0 #(1e300 0 0)) (1 #(0 0 0))))))
+    ((list) (one-of '('((0 #(0 0 0)) (1 #(0 0 1))) '((0 #(0 0 0) #(0 1 0 0))) '()
+                      '((0 #(1e300 0 0)) (1 #(0 0 0))))))
     ((max-speed) (one-of '(1 0.5 10 1e-3 #f)))
     ((material) (one-of '('rubber 'steel)))
     ((name) (if (chance 0.5) ''n (one-of names)))
@@ -253,7 +263,9 @@
                                (if (and rest? (null? keywords))
                                    (map (lambda _ (a-wild-value)) (iota (draw 4)))
                                    '())
-                               (if (null? keywords) '() (keywords-for name keywords depth wildness)))))
+                               (if (null? keywords)
+                                   '()
+                                   (keywords-for name keywords depth wildness)))))
        (cons name
              (cond ((chance 0.97) arguments)
                    ((and (pair? arguments) (chance 0.5)) (cdr arguments))

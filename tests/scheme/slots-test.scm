@@ -11,8 +11,10 @@
 (define circular (list 1 2))
 (set-cdr! (cdr circular) circular)
 ;; 2^60 parts, if it is walked as a tree
-(define shared (let loop ((value '(1)) (n 60)) (if (zero? n) value (loop (cons value value) (1- n)))))
-(define (nested wrap) (let loop ((value '()) (n 1000000)) (if (zero? n) value (loop (wrap value) (1- n)))))
+(define shared
+  (let loop ((value '(1)) (n 60)) (if (zero? n) value (loop (cons value value) (1- n)))))
+(define (nested wrap)
+  (let loop ((value '()) (n 1000000)) (if (zero? n) value (loop (wrap value) (1- n)))))
 (define-record-type <thing> (make-thing part) thing? (part thing-part))
 
 (define (refused name value)
