@@ -160,7 +160,9 @@ needs an integrator that comes later."
 (define slot
   (let ((slot (lambda (body name)
                 "Return the value of the slot NAME (a symbol) of BODY, a body or a view; with set!.
-Values are immutable: set! copies pairs, vectors and strings.  A slot that the body lacks is an error."
+Values are numbers, booleans, symbols, keywords, characters, strings, bodies, and lists and vectors
+of such: set! copies them, and what is read is not to be changed in place (--check looks).  A slot
+that the body lacks is an error."
                 (%slot body name))))
     (make-procedure-with-setter
      slot

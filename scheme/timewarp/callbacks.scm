@@ -31,6 +31,7 @@ B; each is a body, a material, or #t for all.  It may run again after a rollback
 (define (observe! kind procedure)
   "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,
 'fission (with the collision) or 'frame (with the frame)."
+  (%require-outside-callbacks "observe!")
   (let ((world (current-world))
         (place (caller-place)))
     (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))

@@ -231,6 +231,7 @@
              (set! options (parse-command-line args))
              (for-each (lambda (folder) (set! %load-path (cons folder %load-path)))
                        (reverse (option-values options 'load-path)))
-             (call-with-interrupts (lambda () (work options)))
+             (call-with-interrupts
+              (lambda () (call-with-bounded-stack (lambda () (work options)))))
              (force-output (current-output-port))))))
     (primitive-exit status)))

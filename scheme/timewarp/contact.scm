@@ -25,16 +25,25 @@ the earlier.
 #:fusion-speed  m/s, 0 or more: an impact that leaves less becomes a lasting contact; 0.07 sqrt(g
                 size)
 #:friction-law  'anchored (a spring holds what sticks) or 'smooth; 'anchored
-#:impact-law    'chatterjee-ruina or 'stronge; 'chatterjee-ruina"
+#:impact-law    'chatterjee-ruina, the only one that is there yet"
+  (check-impact-law impact-law)
   (%set-contact! (current-world) a b
                  (let loop ((names '(restitution friction stiffness damping fusion-speed
-                                                 friction-law impact-law))
+                                                 friction-law))
                             (values (list restitution friction stiffness damping fusion-speed
-                                          friction-law impact-law)))
+                                          friction-law)))
                    (cond ((null? names) '())
                          ((car values) (acons (car names) (car values)
                                               (loop (cdr names) (cdr values))))
                          (else (loop (cdr names) (cdr values)))))))
+
+;; Chatterjee and Ruina's law is the only one so far.
+(define (check-impact-law law)
+  (case law
+    ((#f chatterjee-ruina) #t)
+    ((stronge)
+     (not-there-yet "#:impact-law 'stronge" "Stronge's law (expected 'chatterjee-ruina)"))
+    (else (bad-value "impact-law" law "'chatterjee-ruina"))))
 
 (define (contact-parameters a b)
   "Return the restitution, the friction and whether they collide for the bodies A and B, as a list."

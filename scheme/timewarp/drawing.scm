@@ -33,6 +33,11 @@
       (bad-value "quality" quality "'draft, 'normal or 'best"))
     quality))
 
+;; No other format is written, whatever a name promises.
+(define (check-picture-name what file)
+  (unless (and (string? file) (string-suffix-ci? ".png" file))
+    (bad-value what file "a name that ends in .png, the only format that is written")))
+
 (define (draw-contacts? contacts?)
   (->bool (or contacts? (override 'contacts))))
 
@@ -42,6 +47,9 @@
 (define (open-frames frames size quality)
   "Prepare drawing into the folder or pattern FRAMES; refuse at once what cannot be written."
   (require-drawing "drawing frames")
+  ;; a pattern says what the files are called, a folder does not
+  (when (and (string? frames) (string-index frames #\%))
+    (check-picture-name "the pattern of frames" frames))
   (call-with-values (lambda () (picture-size size))
     (lambda (width height)
       (%open-frames frames width height (picture-quality quality)))))
@@ -87,7 +95,9 @@ interrupts the waiting, only the one that is being drawn."
 #:contacts?  #t: a line along the normal shows each contact that carries load, its length by the
              logarithm of the force, its colour whether it sticks or slips; #f, or #t with
              --contacts"
+  (%require-outside-callbacks "render!")
   (require-drawing "render!")
+  (check-picture-name "the picture's file" file)
   (let ((world (current-world)))
     (call-with-values (lambda () (picture-size size))
       (lambda (width height)

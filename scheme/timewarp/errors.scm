@@ -9,7 +9,10 @@
   #:use-module (srfi srfi-1)
   #:use-module (ice-9 match)
   #:use-module (ice-9 regex)
+  #:use-module ((ice-9 control) #:select (let/ec))
+  #:use-module ((rnrs bytevectors) #:select (bytevector? bytevector-length))
   #:use-module (system vm frame)
+  #:use-module (system vm vm)
   #:export (raise-error
             bad-value
             check-keywords
@@ -19,6 +22,8 @@
             place->string
             describe-error
             print-user-frames
+            call-with-bounded-stack
+            call-with-run-stack
             error-text
             not-there-yet))
 
@@ -75,17 +80,22 @@
            (else #f)))
     (_ #f)))
 
+;; a recursion without end has millions of frames, one like the other
+(define most-frames 10000)
+
 (define (user-frames most)
   "Return up to MOST frames of the user's files on the stack, innermost first, as ((PLACE . NAME) ...)."
   (let ((stack (make-stack #t)))
     ;; only the innermost form has its place at hand
-    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (current-form-place)))
-      (if (or (not frame) (= (length frames) most))
+    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (current-form-place))
+               (walked 0))
+      (if (or (not frame) (= (length frames) most) (= walked most-frames))
           (reverse frames)
           (match (user-frame frame)
-            (#f (loop (frame-previous frame) frames form))
-            ('form (loop (frame-previous frame) (add-frame form #f frames) #f))
-            ((place . name) (loop (frame-previous frame) (add-frame place name frames) form)))))))
+            (#f (loop (frame-previous frame) frames form (1+ walked)))
+            ('form (loop (frame-previous frame) (add-frame form #f frames) #f (1+ walked)))
+            ((place . name)
+             (loop (frame-previous frame) (add-frame place name frames) form (1+ walked))))))))
 
 (define (add-frame place name frames)
   (if (and place (not (and (pair? frames) (equal? place (caar frames)))))
@@ -159,12 +169,59 @@
   "Raise the error that WHAT comes later, since it NEEDS something."
   (raise-error (format #f "~a is not there yet: it needs ~a, in a later version" what needs)))
 
-;; A value as it is written, cut where it is long.
+;; what a message shows of a value
+(define most-characters 200)
+
+;; What has no parts, as it is written; of what is written at length only that it is so.
+(define (atom-text value)
+  (define (long? integer) (> (integer-length integer) 700))
+  (cond ((string? value)
+         (format #f "~s" (substring value 0 (min (1+ most-characters) (string-length value)))))
+        ((and (exact-integer? value) (long? value))
+         (format #f "an integer of ~a bits" (integer-length value)))
+        ((and (number? value) (exact? value)
+              (or (long? (numerator value)) (long? (denominator value))))
+         "a fraction of long integers")
+        ((and (bytevector? value) (> (bytevector-length value) most-characters))
+         (format #f "an array of ~a bytes" (bytevector-length value)))
+        (else (format #f "~s" value))))
+
+;; A list of as many elements of a vector as a message could show.
+(define (start-of vector)
+  (map (lambda (i) (vector-ref vector i)) (iota (min most-characters (vector-length vector)))))
+
+;; VALUE as it is written, cut where it is long; a circular one is long.
 (define (short-text value)
-  (let ((text (format #f "~s" value)))
-    (if (> (string-length text) 200)
-        (string-append (substring text 0 200) "...")
-        text)))
+  (define left most-characters)
+  (call-with-output-string
+    (lambda (port)
+      (let/ec stop
+        (define (put text)
+          (let ((size (string-length text)))
+            (display (substring text 0 (min size left)) port)
+            (when (> size left)
+              (display "..." port)
+              (stop))
+            (set! left (- left size))))
+        (define (put-rest rest)
+          (cond ((pair? rest)
+                 (put " ")
+                 (put-value (car rest))
+                 (put-rest (cdr rest)))
+                ((null? rest) (put ")"))
+                (else (put " . ") (put-value rest) (put ")"))))
+        (define (put-value value)
+          (cond ((pair? value)
+                 (put "(")
+                 (put-value (car value))
+                 (put-rest (cdr value)))
+                ((vector? value)
+                 (put "#")
+                 (if (zero? (vector-length value))
+                     (put "()")
+                     (put-value (start-of value))))
+                (else (put (atom-text value)))))
+        (put-value value)))))
 
 ;; ---- keywords ----
 
@@ -277,6 +334,27 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
                 (current-form-place)
                 (loaded-form-place))
             backtrace)))
+
+;; ---- stacks ----
+
+;; Of 8 bytes.  In callbacks a list of some hundred thousand elements can be mapped, and a recursion
+;; without end is found and described in less than half a second.
+(define most-words-in-run 4000000)
+;; for scenes and the REPL, where nobody waits for a run to go on
+(define most-words 32000000)
+
+(define* (call-with-bounded-stack thunk #:optional (words most-words))
+  "Call THUNK; an error is raised where recursion makes the stack grow by more than WORDS.  (Guile
+alone would go on until the memory is full.)"
+  (call-with-stack-overflow-handler words thunk
+    (lambda ()
+      (raise-error (format #f "a procedure calls itself without end, or too often: the stack ~a"
+                           (format #f "has grown by ~a MB; expected a recursion that ends"
+                                   (quotient (* 8 words) 1000000)))))))
+
+(define (call-with-run-stack thunk)
+  "Call THUNK, which runs a world, with a bounded stack."
+  (call-with-bounded-stack thunk most-words-in-run))
 
 ;; ---- showing ----
 

@@ -93,7 +93,8 @@ error is raised as a timewarp-error with its place in the file."
        (save-module-excursion
         (lambda ()
           (for-each-form (lambda (form place)
-                           (call-placing-errors place (lambda () (run-form form))))
+                           (call-placing-errors place
+                             (lambda () (call-with-bounded-stack (lambda () (run-form form))))))
                          file)))))))
 
 (define (load-scene file)

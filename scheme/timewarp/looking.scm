@@ -4,14 +4,14 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
-  #:use-module (timewarp bodies)
   #:use-module (ice-9 match)
+  #:use-module (srfi srfi-4)
   #:export (camera light sky))
 
 (define (check-vector name value)
   (let ((elements (cond ((vector? value) (vector->list value))
                         ((list? value) value)
-                        ((array? value) (array->list value))
+                        ((f64vector? value) (f64vector->list value))
                         (else '()))))
     (unless (and (= (length elements) 3)
                  (and-map (lambda (x) (and (real? x) (not (nan? x)) (not (inf? x)))) elements))
@@ -19,6 +19,7 @@
 
 ;; Keeps the settings that are given (alist of names and values) and the vectors among them right.
 (define (keep! key vectors others)
+  (%require-outside-callbacks (symbol->string key))
   (for-each (match-lambda ((name . value)
                            (when value (check-vector (symbol->string name) value))))
             vectors)
@@ -43,8 +44,7 @@
   (when fov
     (unless (and (real? fov) (< 0 fov 3.1415))
       (bad-value "fov" fov "an angle in radians between 0 and pi")))
-  (when follow
-    (unless (body? follow) (bad-value "follow" follow "a body")))
+  (when follow (%check-followed (current-world) follow))
   (keep! 'camera `((eye . ,eye) (target . ,target) (up . ,up)) `((fov . ,fov) (follow . ,follow))))
 
 (define-keyword-procedure (light #:key direction color)

@@ -37,7 +37,11 @@
              (set! attached world)))))
      pace
      flush
-     (lambda (interrupted?) (close attached interrupted?)))))
+     ;; what is closed before a world ran must not be fed by it later
+     (lambda (interrupted?)
+       (let ((world (and (not (eq? attached 'closed)) attached)))
+         (set! attached 'closed)
+         (close world interrupted?))))))
 
 (define (csv-recorder what open file)
   (let ((recorder (open file)))
@@ -82,9 +86,31 @@
                        (or interrupted? (eq? (car raised) 'timewarp-interrupted))
                        (or failure raised))))))))
 
+;; Two recorders would write over one another, and so would pictures over tables.
+(define (check-files poses events)
+  (define (check-table what file)
+    (when (and (string? file) (string-suffix-ci? ".png" file))
+      (bad-value what file "a name for a CSV file, not for a picture")))
+  (check-table "the poses file" poses)
+  (check-table "the events file" events)
+  (when (and poses events (same-file? poses events))
+    (bad-value "the events file" events "another file than that of the poses")))
+
+;; Whether two names lead to one file on a disk, there or not yet.
+(define (same-file? a b)
+  (define (identity file)
+    (match (stat file #f)
+      (#f (match (stat (dirname file) #f)
+            (#f file)
+            (folder (list (stat:dev folder) (stat:ino folder) (basename file)))))
+      (there (and (eq? (stat:type there) 'regular) (list (stat:dev there) (stat:ino there))))))
+  (let ((one (identity a)))
+    (and one (equal? one (identity b)))))
+
 (define* (call-with-recorders thunk #:key frames size quality contacts? poses events)
   "Call THUNK while the current world, or one that takes its place before anything has run, is
 recorded: frames to pictures, poses and events to CSV files."
+  (check-files poses events)
   (let* ((recorders
           (append (if poses (list (csv-recorder "poses" %open-poses poses)) '())
                   (if events (list (csv-recorder "events" %open-events events)) '())

@@ -35,14 +35,13 @@
   "Run WORLD until everything up to and including UNTIL is committed and observed."
   (unless (and (real? until) (not (nan? until)) (not (inf? until)))
     (bad-value "until" until "a finite time in seconds"))
-  (when (%inside-callback?)
-    (raise-error "run! was used inside a callback or observer; expected it outside"))
+  (%require-outside-callbacks "run!")
   (start-first-run! world)
   (call-with-interrupts
    (lambda ()
      (%take-interrupt!)
      (let loop ()
-       (let ((finished? (%advance! world until slice)))
+       (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
          (check-interrupt)
          (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
          (unless finished? (loop))))))
@@ -58,14 +57,17 @@ and observed.  Ctrl-C interrupts; the world stays usable.
 
 (define (run-for! seconds)
   "Run the current world for SECONDS more."
+  (%require-outside-callbacks "run-for!")
   (unless (real? seconds) (bad-value "the duration" seconds "a number of seconds"))
   (run-world! (current-world) (+ (world-time) seconds)))
 
 (define (step!)
   "Process one event of the current world."
+  (%require-outside-callbacks "step!")
   (let ((world (current-world)))
     (start-first-run! world)
-    (call-with-interrupts (lambda () (%step! world)))
+    (call-with-interrupts
+     (lambda () (call-with-run-stack (lambda () (%step! world)))))
     (if #f #f)))
 
 (define (statistics)
@@ -87,17 +89,17 @@ and observed.  Ctrl-C interrupts; the world stays usable.
 
 (define (state-queue body)
   "Return the states kept of BODY, oldest first: (time kind microstep committed? position velocity)."
-  (%state-queue body))
+  (%state-queue (current-world) body))
 
 (define (checkpoint)
   "Return the present of the current world, for restore!.  Slots and random generators are part of it."
   (%checkpoint (current-world)))
 
 (define (restore! checkpoint)
-  "Bring the world of CHECKPOINT back to the time at which it was made.  What was added since then is an
-error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
+  "Bring the current world back to the time at which it made CHECKPOINT.  What was added since then
+is an error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
 bit, as if the world had never run further."
-  (%restore! checkpoint))
+  (%restore! (current-world) checkpoint))
 
 (define (total-energy)
   "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity, J."

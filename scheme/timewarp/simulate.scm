@@ -1,6 +1,7 @@
 ;; simulate!: from a scene's program what the command line does.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp simulate)
+  #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp files)
@@ -23,6 +24,7 @@ relative to the scene's file.
 #:events     a CSV file of every collision, fusion and fission; none
 #:movie      not there yet
 #:record     not there yet"
+  (%require-outside-callbacks "simulate!")
   (when movie (not-there-yet "#:movie" "the movie writer"))
   (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))

@@ -52,7 +52,15 @@
       ((seed head-start every?) (%set-adversary! world seed head-start every?)))
     world))
 
-(define current-world (make-parameter (make-world)))
+(define (check-world world)
+  (%require-outside-callbacks "setting current-world")
+  (unless (world? world) (bad-value "current-world" world "a world, as (make-world) returns"))
+  world)
+
+(define (world? object)
+  (and (struct? object) (eq? (struct-vtable object) <world>)))
+
+(define current-world (make-parameter (make-world) check-world))
 (set-object-property! current-world 'documentation
                       "The world that scenes fill and procedures act on: a parameter object.")
 
@@ -111,8 +119,8 @@ first.
 #:policy    'timewarp, the only one that is there yet; 'timewarp (--policy)
 #:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
             the first run; 480 (--group-check-rate)"
+  (%require-outside-callbacks "scene")
   (let ((world (current-world)))
-    (when (%inside-callback?) (raise-error "scene was used inside a callback; expected it outside"))
     (when title
       (unless (string? title) (bad-value "title" title "a string"))
       (world-set! world 'title title))
@@ -164,13 +172,17 @@ first.
 
 (define (at-first-run! world thunk)
   "Call THUNK when WORLD runs next."
-  (world-set! world 'first-run (cons thunk (world-ref world 'first-run '()))))
+  (world-set! world 'first-run (append (world-ref world 'first-run '()) (list thunk))))
 
 (define (start-first-run! world)
-  "Call what at-first-run! has gathered, oldest first."
-  (let ((thunks (reverse (world-ref world 'first-run '()))))
-    (world-set! world 'first-run '())
-    (for-each (lambda (thunk) (thunk)) thunks)))
+  "Call what at-first-run! has gathered, oldest first.  What one that fails has kept from being
+called waits for the next run."
+  (match (world-ref world 'first-run '())
+    (() #t)
+    ((thunk . rest)
+     (world-set! world 'first-run rest)
+     (thunk)
+     (start-first-run! world))))
 
 ;; ---- how things are written ----
 

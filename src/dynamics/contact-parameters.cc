@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/limits.h"
 
 namespace tw {
 namespace {
@@ -59,10 +60,13 @@ std::optional<int> match_specificity(const ContactSide& x, const ContactSide& y,
 void ContactTable::add(const ContactSide& a, const ContactSide& b,
                        const ContactSettings& settings) {
   require_range(settings.restitution, "restitution", 0, 1, "a number from 0 to 1");
-  require_range(settings.friction, "friction", 0, 1e9, "a coefficient of friction, 0 or more");
-  require_range(settings.stiffness, "stiffness", 1e-300, 1e300, "a positive number of N/m");
-  require_range(settings.damping, "damping", 0, 1e300, "a number of s/m, 0 or more");
-  require_range(settings.fusion_speed, "fusion-speed", 0, 1e300, "a speed in m/s, 0 or more");
+  require_range(settings.friction, "friction", 0, 1e9, "a coefficient of friction, from 0 to 1e9");
+  require_range(settings.stiffness, "stiffness", least_stiffness, greatest_stiffness,
+                "a positive number of N/m, from 1e-30 to 1e30");
+  require_range(settings.damping, "damping", 0, greatest_damping,
+                "a number of s/m, from 0 to 1e30");
+  require_range(settings.fusion_speed, "fusion-speed", 0, speed_limit,
+                "a speed in m/s, from 0 to 1e12");
   rules_.push_back({a, b, settings});
   ++version_;
 }
@@ -84,7 +88,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
                    [](const auto& x, const auto& y) { return x.first > y.first; });
 
   ContactParameters result;
-  std::array<bool, 8> open;
+  std::array<bool, 7> open;
   open.fill(true);
   for (const auto& [specificity, rule] : found) {
     const ContactSettings& s = rule->settings;
@@ -94,8 +98,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
     take(open[3], s.damping, result.damping);
     take(open[4], s.fusion_speed, result.fusion_speed);
     take(open[5], s.friction_law, result.friction_law);
-    take(open[6], s.impact_law, result.impact_law);
-    take(open[7], s.collide, result.collide);
+    take(open[6], s.collide, result.collide);
   }
   return result;
 }

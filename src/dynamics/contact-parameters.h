@@ -15,7 +15,6 @@
 namespace tw {
 
 enum class FrictionLaw : unsigned char { anchored, smooth };
-enum class ImpactLaw : unsigned char { chatterjee_ruina, stronge };
 
 // One side of a rule.
 struct ContactSide {
@@ -32,7 +31,6 @@ struct ContactSettings {
   std::optional<double> damping;       // s/m, Hunt-Crossley's b
   std::optional<double> fusion_speed;  // m/s
   std::optional<FrictionLaw> friction_law;
-  std::optional<ImpactLaw> impact_law;
   std::optional<bool> collide;         // set by disable/enable-collisions!
 };
 
@@ -42,7 +40,6 @@ struct ContactParameters {
   double friction = 0.5;
   std::optional<double> stiffness, damping, fusion_speed;
   FrictionLaw friction_law = FrictionLaw::anchored;
-  ImpactLaw impact_law = ImpactLaw::chatterjee_ruina;
   bool collide = true;
 };
 

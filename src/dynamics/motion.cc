@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/limits.h"
 
 namespace tw {
 namespace {
@@ -128,6 +129,17 @@ Quat unit_orientation(const Quat& q, const std::string& where) {
   return q.normalized();
 }
 
+// A smooth motion is up to twice as fast as its mean.
+void require_speed(const Segment& s, std::size_t i) {
+  const double speed = 2 * (s.p1 - s.p0).norm() / s.length();
+  const double angular_speed = 2 * s.turn.norm() / s.length();
+  TW_REQUIRE(speed <= speed_limit && angular_speed <= greatest_angular_speed,
+             "keyframes " + std::to_string(i) + " and " + std::to_string(i + 1) + " are " +
+                 show(s.length()) + " s apart; expected a motion of at most " +
+                 show(0.5 * speed_limit) + " m/s and " + show(0.5 * greatest_angular_speed) +
+                 " rad/s");
+}
+
 }  // namespace
 
 MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
@@ -140,10 +152,17 @@ MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
     const std::string where = "keyframe " + std::to_string(i);
     TW_REQUIRE(std::isfinite(k.time), "time of " + where + " is " + show(k.time) +
                                           "; expected a finite number of seconds");
+    TW_REQUIRE(std::abs(k.time) <= greatest_time, "time of " + where + " is " + show(k.time) +
+                                                      " s; expected at most " +
+                                                      show(greatest_time) + " s");
     TW_REQUIRE(i == 0 || k.time > keyframes[i - 1].time,
                "time of " + where + " is " + show(k.time) + "; expected a time after that of the "
                "keyframe before it (" + show(keyframes[i == 0 ? 0 : i - 1].time) + ")");
     TW_REQUIRE(is_finite(k.position), "position of " + where + " is not finite");
+    TW_REQUIRE(k.position.cwiseAbs().maxCoeff() <= farthest,
+               "position of " + where + " has a coordinate of " +
+                   show(k.position.cwiseAbs().maxCoeff()) + " m; expected at most " +
+                   show(farthest) + " m");
     Quat q = Quat::Identity();
     if (i > 0) q = poses.back().q;
     if (k.orientation) q = unit_orientation(*k.orientation, where);
@@ -151,9 +170,11 @@ MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
   }
 
   std::vector<Segment> segments;
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i)
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     segments.push_back({keyframes[i].time, keyframes[i + 1].time, poses[i].p, poses[i + 1].p,
                         poses[i].q, turn_between(poses[i].q, poses[i + 1].q)});
+    require_speed(segments.back(), i);
+  }
   return std::make_shared<Keyframes>(std::move(segments), poses.front(), poses.back(), smooth);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/limits.h"
 
 namespace tw {
 namespace {
@@ -13,10 +14,14 @@ namespace {
 // Off-diagonal elements below this share of the largest moment are rounding, not inertia.
 constexpr double diagonal_tolerance = 1e-14;
 
-void require_positive(const std::optional<double>& value, const std::string& what) {
+// A mass or a density.
+void require_mass(const std::optional<double>& value, const std::string& what) {
   if (!value) return;
   TW_REQUIRE(std::isfinite(*value) && *value > 0,
              what + " is " + show(*value) + "; expected a positive number");
+  TW_REQUIRE(*value >= least_mass && *value <= greatest_mass,
+             what + " is " + show(*value) + "; expected a number from " + show(least_mass) +
+                 " to " + show(greatest_mass));
 }
 
 // I about the centre of mass + the shift to another point: the parallel axis theorem.
@@ -53,6 +58,10 @@ void check_moments(const Vec3& m, const std::string& name) {
   TW_REQUIRE(is_finite(m) && m.minCoeff() > 0,
              "inertia of " + name + " has principal moments " + show(m[0]) + ", " + show(m[1]) +
                  ", " + show(m[2]) + "; expected three positive numbers of kg m^2");
+  TW_REQUIRE(m.minCoeff() >= least_inertia && largest <= greatest_inertia,
+             "inertia of " + name + " has principal moments " + show(m[0]) + ", " + show(m[1]) +
+                 ", " + show(m[2]) + "; expected numbers from " + show(least_inertia) + " to " +
+                 show(greatest_inertia) + " kg m^2");
   TW_REQUIRE(sum - largest >= largest * (1 - 1e-9),
              "inertia of " + name + " has principal moments " + show(m[0]) + ", " + show(m[1]) +
                  ", " + show(m[2]) +
@@ -63,8 +72,8 @@ void check_moments(const Vec3& m, const std::string& name) {
 
 RigidInertia resolve_inertia(const MassSpecification& given, const Shape* shape,
                              const std::string& name) {
-  require_positive(given.density, "density of " + name);
-  require_positive(given.mass, "mass of " + name);
+  require_mass(given.density, "density of " + name);
+  require_mass(given.mass, "mass of " + name);
   TW_REQUIRE(!given.density || !given.mass,
              "both #:density and #:mass are given for " + name + "; expected one of them");
   const bool bounded = shape && shape->bounded();
@@ -87,7 +96,12 @@ RigidInertia resolve_inertia(const MassSpecification& given, const Shape* shape,
     result.mass = *given.mass;
     center = given.center_of_mass.value_or(Vec3::Zero());
   }
+  require_mass(result.mass, "mass of " + name);
   TW_REQUIRE(is_finite(center), "center of mass of " + name + " is not finite");
+  TW_REQUIRE(center.cwiseAbs().maxCoeff() <= greatest_length,
+             "center of mass of " + name + " is " + show(center.norm()) +
+                 " m from the origin; expected coordinates of at most " + show(greatest_length) +
+                 " m");
   if (given.inertia) inertia = *given.inertia;
   TW_REQUIRE(inertia.allFinite() && (inertia - inertia.transpose()).norm() <= 1e-9 * inertia.norm(),
              "inertia of " + name + " is not a symmetric tensor of finite numbers");

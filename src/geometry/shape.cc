@@ -3,10 +3,12 @@
 #include "geometry/shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "geometry/hull.h"
 #include "geometry/mass-properties.h"
 #include "geometry/polyhedron.h"
@@ -97,12 +99,15 @@ ConvexPart polyhedron_part(Polyhedron polyhedron) {
   return part;
 }
 
-// The largest size for which products of six lengths (inertia is a fifth power) stay finite.
-constexpr double longest = 1e50;
+std::string lengths_text() {
+  return "from " + tw::show(least_length) + " to " + tw::show(greatest_length) + " m";
+}
 
 void require_length(const char* what, double value) {
-  TW_REQUIRE(value > 0 && value < longest,
+  TW_REQUIRE(value > 0 && std::isfinite(value),
              std::string(what) + " is " + show(value) + "; expected a positive number of metres");
+  TW_REQUIRE(value >= least_length && value <= greatest_length,
+             std::string(what) + " is " + show(value) + " m; expected a length " + lengths_text());
 }
 
 std::string show(const Vec3& v) {
@@ -124,6 +129,11 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
   shape->mass_ = shape->bounded_ ? mass : MassProperties{};
   shape->least_width_ =
       shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
+  TW_REQUIRE(!shape->bounded_ || (shape->least_width_ >= least_length &&
+                                  shape->radius_about_origin_ <= 4 * greatest_length),
+             "a " + shape->kind_name_ + " is " + show(shape->least_width_) +
+                 " m wide and reaches " + show(shape->radius_about_origin_) +
+                 " m from its origin; expected lengths " + lengths_text());
   return shape;
 }
 
@@ -164,16 +174,27 @@ ShapePtr make_cylinder(double radius, double length) {
 }
 
 ShapePtr make_hull(const std::vector<Vec3>& points) {
+  for (const Vec3& p : points)
+    TW_REQUIRE(p.cwiseAbs().maxCoeff() <= greatest_length,
+               "a point of a hull is " + show(p) + "; expected coordinates of at most " +
+                   tw::show(greatest_length) + " m");
+  Aabb box;
+  for (const Vec3& p : points) box.add(p);
+  TW_REQUIRE(points.empty() || box.size().maxCoeff() >= least_length,
+             "the points of a hull are " + tw::show(box.size().maxCoeff()) +
+                 " m apart; expected lengths " + lengths_text());
   const ConvexPart part = polyhedron_part(convex_hull(points));
   return finish_shape({part}, "hull", polyhedron_mass(*part.core));
 }
 
 ShapePtr make_half_space(const Vec3& normal, double offset) {
-  TW_REQUIRE(is_finite(normal) && normal.norm() > 0 && std::isfinite(normal.norm()),
+  TW_REQUIRE(is_finite(normal) && scaled_norm(normal) > 0 && std::isfinite(scaled_norm(normal)),
              "the normal of a half-space is " + show(normal) +
                  "; expected a finite vector that isn't zero");
   TW_REQUIRE(std::isfinite(offset),
              "the offset of a half-space is " + tw::show(offset) + "; expected a finite number");
+  TW_REQUIRE(std::abs(offset) <= farthest, "the offset of a half-space is " + tw::show(offset) +
+                                               " m; expected at most " + tw::show(farthest) + " m");
   ConvexPart part;
   part.kind = PartKind::half_space;
   part.normal = normal / scaled_norm(normal);
@@ -198,6 +219,9 @@ ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {
   TW_REQUIRE(shape != nullptr, "what is to be placed is not a shape");
   TW_REQUIRE(is_finite(pose.p),
              "a shape is placed at " + show(pose.p) + "; expected finite numbers");
+  TW_REQUIRE(pose.p.cwiseAbs().maxCoeff() <= greatest_length,
+             "a shape is placed at " + show(pose.p) + "; expected coordinates of at most " +
+                 tw::show(greatest_length) + " m");
   TW_REQUIRE(is_finite(pose.q) && pose.q.norm() > 0,
              "a shape is placed with a quaternion that is zero or not finite");
   const Frame move(Pose{pose.p, pose.q.normalized()});

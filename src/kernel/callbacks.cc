@@ -99,11 +99,15 @@ void Kernel::process_callback(std::uint32_t number) {
   ++counters.callbacks_run;
   try {
     const auto answer = callback.def.callback->run(key.time, pointers);
-    if (!callback.def.period && answer) next = *answer;
-    if (!callback.def.period && answer && !(next > key.time))
-      throw UserError("callback " + callback.def.name + " at " + show(key.time) +
-                          " s returned the next time " + show(next) + "; expected a later time or #f",
-                      callback.def.place);
+    if (!callback.def.period && answer) {
+      if (!(*answer > key.time))
+        throw UserError("callback " + callback.def.name + " at " + show(key.time) +
+                            " s returned the next time " + show(*answer) +
+                            "; expected a later time or #f",
+                        callback.def.place);
+      // only now: a queue holds no time that is past or not a number
+      next = *answer;
+    }
   } catch (const Interrupted&) {
     throw;
   } catch (...) {

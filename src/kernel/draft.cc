@@ -5,9 +5,17 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/draft.h"
 
+#include "base/limits.h"
 #include "base/random.h"
 
 namespace tw {
+
+void require_near(const Vec3& position, const std::string& name) {
+  TW_REQUIRE(position.cwiseAbs().maxCoeff() <= farthest,
+             "position of " + name + " has a coordinate of " +
+                 show(position.cwiseAbs().maxCoeff()) + " m; expected at most " + show(farthest) +
+                 " m");
+}
 
 void start_new_arc(Draft& draft, const Key& key) {
   StateData& d = draft.data;
@@ -39,6 +47,9 @@ void DraftView::start_arc() {
 void DraftView::set_velocity(const Vec3& v) {
   require_dynamic("velocity");
   TW_REQUIRE(is_finite(v), "velocity of " + draft_.body->info.name + " is not finite");
+  TW_REQUIRE(v.norm() <= speed_limit, "the speed of " + draft_.body->info.name + " is " +
+                                          show(v.norm()) + " m/s; expected at most " +
+                                          show(speed_limit));
   start_arc();
   draft_.data.v = draft_.point.v = state_.velocity = v;
 }
@@ -46,6 +57,9 @@ void DraftView::set_velocity(const Vec3& v) {
 void DraftView::set_angular_velocity(const Vec3& w) {
   require_dynamic("angular-velocity");
   TW_REQUIRE(is_finite(w), "angular-velocity of " + draft_.body->info.name + " is not finite");
+  TW_REQUIRE(w.norm() <= greatest_angular_speed,
+             "the angular velocity of " + draft_.body->info.name + " is " + show(w.norm()) +
+                 " rad/s; expected at most " + show(greatest_angular_speed));
   start_arc();
   draft_.point.w = state_.angular_velocity = w;
   draft_.data.L = angular_momentum(*draft_.body, draft_.data.q, w);
@@ -54,6 +68,10 @@ void DraftView::set_angular_velocity(const Vec3& w) {
 void DraftView::set_applied_force(const Vec3& force) {
   require_dynamic("applied-force");
   TW_REQUIRE(is_finite(force), "applied-force of " + draft_.body->info.name + " is not finite");
+  TW_REQUIRE(force.norm() / draft_.body->mass <= greatest_acceleration,
+             "applied-force of " + draft_.body->info.name + " is " + show(force.norm()) +
+                 " N on " + show(draft_.body->mass) + " kg; expected an acceleration of at most " +
+                 show(greatest_acceleration) + " m/s^2");
   if (force == draft_.data.force) return;
   start_arc();
   draft_.data.force = force;
@@ -66,6 +84,7 @@ void DraftView::set_pose(const Vec3& position, const Quat& orientation) {
   TW_ASSERT(may_place_, "set_pose is for edits");
   require_dynamic("position");
   TW_REQUIRE(is_finite(position), "position of " + draft_.body->info.name + " is not finite");
+  require_near(position, draft_.body->info.name);
   TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,
              "orientation of " + draft_.body->info.name + " is zero or not finite");
   start_arc();

@@ -3,6 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "kernel/arc.h"
 #include "kernel/body.h"
 #include "kernel/state.h"
@@ -20,6 +22,9 @@ struct Draft {
 
 // Starts a new arc at `key` from the draft's point; the group, if there is one, is still the old one.
 void start_new_arc(Draft& draft, const Key& key);
+
+// UserError if a body called `name` were placed too far away (base/limits.h).
+void require_near(const Vec3& position, const std::string& name);
 
 // What a callback or edit sees: reads the draft's point, writes the draft.
 class DraftView : public StateView {

@@ -24,6 +24,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/limits.h"
 #include "base/random.h"
 #include "collision/broad-phase.h"
 #include "collision/manifold.h"
@@ -50,9 +51,6 @@ inline constexpr double check_grid = 0x1p-20;
 // Boxes of members of moving groups reach this share of their size farther: a group check finds in them
 // whom a member may touch before the next check.
 inline constexpr double link_margin = 0.1;
-
-// A body faster than this has run away, m/s: its windows would shrink to the spacing of doubles.
-inline constexpr double speed_limit = 1e12;
 
 inline constexpr std::uint32_t no_pair = 0xffffffffu;
 

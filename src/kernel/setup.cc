@@ -49,6 +49,10 @@ void Kernel::validate_body_def(const BodyDef& def, const std::string& name) cons
   TW_REQUIRE(def.velocity.norm() <= speed_limit, "the speed of " + name + " is " +
                                                      show(def.velocity.norm()) +
                                                      " m/s; expected at most " + show(speed_limit));
+  require_near(def.position, name);
+  TW_REQUIRE(def.angular_velocity.norm() <= greatest_angular_speed,
+             "the angular velocity of " + name + " is " + show(def.angular_velocity.norm()) +
+                 " rad/s; expected at most " + show(greatest_angular_speed));
   TW_REQUIRE(is_finite(def.orientation) && def.orientation.squaredNorm() > 0,
              "orientation of " + name + " is zero or not finite; expected a quaternion #(w x y z)");
   TW_REQUIRE(!(def.fixed && def.motion),
@@ -218,10 +222,17 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
                    " twice; expected each target once");
   TW_REQUIRE(std::isfinite(def.start), "start of callback " + def.name + " is " + show(def.start) +
                                            "; expected a finite number of seconds");
+  TW_REQUIRE(std::abs(def.start) <= greatest_time,
+             "start of callback " + def.name + " is " + show(def.start) +
+                 " s; expected at most " + show(greatest_time) + " s");
   TW_REQUIRE(!def.period || (std::isfinite(*def.period) && *def.period > 0),
              "period of callback " + def.name + " is " + show(def.period.value_or(0)) +
                  "; expected a positive number of seconds, or #f");
-  TW_REQUIRE(!begun || def.period || def.start > time,
+  TW_REQUIRE(!def.period || (*def.period >= least_period && *def.period <= greatest_time),
+             "period of callback " + def.name + " is " + show(def.period.value_or(0)) +
+                 " s; expected a time from " + show(least_period) + " to " + show(greatest_time) +
+                 " s: more ticks could not be counted");
+  TW_REQUIRE(def.period || def.start > time || (!begun && def.start == time),
              "start of callback " + def.name + " is " + show(def.start) +
                  "; expected a time after the present (" + show(time) + " s)");
   if (begun) restart_future();
@@ -232,7 +243,9 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   callback.def = def;
   callback.committed_next = def.start;
   callback.next = {def.start, 0, KeyKind::callback, number};
-  if (begun && def.period) callback.next = first_tick(callback, {time, 0, KeyKind::group_check, 0});
+  // ticks before the present are not made up for
+  const KeyKind present = begun ? KeyKind::group_check : KeyKind::birth;
+  if (def.period) callback.next = first_tick(callback, {time, 0, present, 0});
   for (const BodyId id : def.targets) bodies[id]->callbacks.push_back(number);
   schedule_callback(number);
   return number;
@@ -259,6 +272,8 @@ void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
   require_between_runs("a frame sink was added");
   TW_REQUIRE(std::isfinite(fps) && fps > 0,
              "frames per second are " + show(fps) + "; expected a positive number");
+  TW_REQUIRE(fps <= greatest_rate, "frames per second are " + show(fps) + "; expected at most " +
+                                       show(greatest_rate));
   SinkRecord record{std::move(sink), fps, static_cast<long>(std::floor(time * fps))};
   while (record.next_time() < time) ++record.next_frame;
   sinks.push_back(std::move(record));

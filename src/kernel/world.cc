@@ -13,7 +13,12 @@ World::~World() = default;
 
 const WorldOptions& World::options() const { return kernel_->options; }
 
-void World::set_gravity(const Vec3& gravity) { kernel_->set_gravity(gravity); }
+void World::set_gravity(const Vec3& gravity) {
+  TW_REQUIRE(gravity.norm() <= greatest_acceleration,
+             "gravity is " + show(gravity.norm()) + " m/s^2; expected at most " +
+                 show(greatest_acceleration));
+  kernel_->set_gravity(gravity);
+}
 
 void World::set_accuracy(double accuracy) {
   kernel_->require_before_first_run("accuracy was set");
@@ -47,6 +52,9 @@ void World::set_window_cells(double cells) {
 void World::set_group_check_rate(double rate) {
   TW_REQUIRE(rate > 0 && std::isfinite(rate),
              "group-check-rate is " + show(rate) + " Hz; expected a positive number");
+  TW_REQUIRE(rate >= 1 && rate <= greatest_rate, "group-check-rate is " + show(rate) +
+                                                     " Hz; expected a rate from 1 to " +
+                                                     show(greatest_rate) + " Hz");
   kernel_->require_before_first_run("group-check-rate was set");
   kernel_->options.group_check_rate = rate;
 }
@@ -101,7 +109,13 @@ void World::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
 void World::remove_frame_sink(const FrameSink* sink) { kernel_->remove_frame_sink(sink); }
 
 double World::time() const { return kernel_->time; }
-RunStatus World::advance(double until, double slice) { return kernel_->advance(until, slice); }
+
+RunStatus World::advance(double until, double slice) {
+  TW_REQUIRE(until <= greatest_time,
+             "until is " + show(until) + " s; expected at most " + show(greatest_time) + " s");
+  return kernel_->advance(until, slice);
+}
+
 bool World::step(double until) { return kernel_->step(until); }
 bool World::running() const { return kernel_->running; }
 

@@ -50,7 +50,7 @@ void read_property(BodyDef& def, SCM name, SCM value) {
 const BodyInfo& info_of(SCM object) {
   if (is_view(object)) return to_world(view_world(object)).body(to_view(object).body());
   if (!is_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
-  return to_world(body_world(object)).body(body_id(object));
+  return to_world(body_world(object)).body(to_own_body(object));
 }
 
 const char* kind_text(BodyKind kind) {
@@ -108,6 +108,12 @@ TW_PRIMITIVE(view_body, "%view-body", (SCM view), "Return the handle of a view's
   if (is_body(view)) return view;
   if (!is_view(view)) throw BadValue{"the view", view, "a view, as a callback is handed"};
   return from_body(view_world(view), to_view(view).body());
+}
+
+TW_PRIMITIVE(check_followed, "%check-followed", (SCM world, SCM body),
+             "Raise an error unless the body is one of the world.") {
+  to_body(world, body, "follow");
+  return SCM_UNSPECIFIED;
 }
 
 // ---- motion ----

@@ -86,7 +86,8 @@ SCM on_throw(void* data, SCM key, SCM arguments) {
   return scm_c_catch(SCM_BOOL_T, describe_body, data, ignore_handler, nullptr, nullptr, nullptr);
 }
 
-SCM on_caught(void*, SCM, SCM) {
+SCM on_caught(void* data, SCM key, SCM) {
+  static_cast<CallState*>(data)->key = key;
   return SCM_UNSPECIFIED;
 }
 
@@ -100,6 +101,11 @@ Place place_of(SCM place) {
 }
 
 [[noreturn]] void throw_described(const CallState& state) {
+  // where the stack of C is full Guile unwinds first: nothing could be described
+  static const SCM key_overflow = scm_gc_protect_object(scm_from_utf8_symbol("stack-overflow"));
+  if (scm_is_eq(state.key, key_overflow))
+    throw SchemeError(
+        "a procedure calls itself without end, or too often; expected a recursion that ends", {}, "");
   const SCM d = state.description;
   if (!scm_is_vector(d) || SCM_SIMPLE_VECTOR_LENGTH(d) != 3)
     throw SchemeError("a Scheme procedure failed, and so did describing its error", {}, "");
@@ -196,6 +202,12 @@ TW_PRIMITIVE(take_interrupt, "%take-interrupt!", (),
 
 TW_PRIMITIVE(is_inside_call, "%inside-callback?", (), "Is a callback or observer running?") {
   return scm_from_bool(inside_call());
+}
+
+TW_PRIMITIVE(check_outside, "%require-outside-callbacks", (SCM what),
+             "Raise an error if a callback or observer is running; WHAT was asked for.") {
+  require_outside_callbacks(text_of(what).c_str());
+  return SCM_UNSPECIFIED;
 }
 
 TW_PRIMITIVE(live_objects, "%live-objects", (),

@@ -40,7 +40,7 @@ class SchemeError : public UserError, Live<LiveKind::error> {
 
 // A Scheme value of the wrong type or range: "NAME is VALUE; expected EXPECTED".
 struct BadValue {
-  const char* name;
+  std::string name;
   SCM value;
   const char* expected;
 };

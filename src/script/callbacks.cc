@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "script/callbacks.h"
 
+#include <array>
 #include <cmath>
 
 #include "base/cpu-clock.h"
@@ -44,7 +45,7 @@ class ViewKiller {
   std::span<SCM> views_;
 };
 
-std::string body_names(const World& world, std::initializer_list<BodyId> ids) {
+std::string body_names(const World& world, std::span<const BodyId> ids) {
   std::string text;
   for (const BodyId id : ids) text += (text.empty() ? "" : ", ") + world.body(id).name;
   return text;
@@ -95,8 +96,9 @@ SCM call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names nam
   }
 }
 
-Hook make_hook(SCM world, SCM procedure, const char* what, SCM place) {
-  require_outside_callbacks(what);
+// `what` names the procedure in messages; `registrar` is what was called to register it.
+Hook make_hook(SCM world, SCM procedure, const char* what, const char* registrar, SCM place) {
+  require_outside_callbacks(registrar);
   if (scm_is_false(scm_procedure_p(procedure))) throw BadValue{what, procedure, "a procedure"};
   keep_with_world(world, procedure);
   Hook hook;
@@ -107,12 +109,10 @@ Hook make_hook(SCM world, SCM procedure, const char* what, SCM place) {
   return hook;
 }
 
-std::vector<BodyId> to_targets(SCM value) {
+std::vector<BodyId> to_targets(SCM world, SCM value) {
   std::vector<BodyId> ids;
-  for (; scm_is_pair(value); value = SCM_CDR(value)) {
-    if (!is_body(SCM_CAR(value))) throw BadValue{"a target", SCM_CAR(value), "a body"};
-    ids.push_back(body_id(SCM_CAR(value)));
-  }
+  for (const SCM target : to_elements(value, "the targets", "a body or a list of bodies"))
+    ids.push_back(to_body(world, target, "a target"));
   TW_REQUIRE(!ids.empty(), "a callback has no targets; expected a body or a list of bodies");
   return ids;
 }
@@ -154,7 +154,7 @@ void ScmCollisionCallback::run(const Collision& collision, bool reversed, StateV
   arguments[2] = make_view(b, world);
   const ViewKiller killer(arguments.all().subspan(1));
   call_hook(hook_, arguments.all(), collision.time, [&] {
-    return body_names(hook_.box->world, {a.body(), b.body()});
+    return body_names(hook_.box->world, std::array{a.body(), b.body()});
   });
 }
 
@@ -180,13 +180,13 @@ TW_PRIMITIVE(add_callback, "%add-callback!",
              (SCM world, SCM targets, SCM procedure, SCM start, SCM period, SCM place),
              "Register a callback on a list of bodies.") {
   CallbackDef def;
-  Hook hook = make_hook(world, procedure, "callback", place);
+  Hook hook = make_hook(world, procedure, "callback", "add-callback!", place);
   hook.timed = true;
-  def.targets = to_targets(targets);
+  def.targets = to_targets(world, targets);
   def.start = scm_is_true(start) ? to_finite(start, "start") : default_start(to_world(world));
   def.period = to_optional_real(period, "period");
   def.callback = std::make_shared<ScmCallback>(hook, def.period.has_value());
-  def.name = "callback";
+  def.name = "of " + body_names(to_world(world), def.targets);
   def.place = hook.place;
   return scm_from_uint64(to_world(world).add_callback(def));
 }
@@ -195,10 +195,10 @@ TW_PRIMITIVE(add_collision_callback, "%on-collision!",
              (SCM world, SCM a, SCM b, SCM procedure, SCM place),
              "Register a callback on collisions.") {
   CollisionCallbackDef def;
-  Hook hook = make_hook(world, procedure, "collision callback", place);
+  Hook hook = make_hook(world, procedure, "collision callback", "on-collision!", place);
   hook.timed = true;
-  def.a = to_side(a, "the first side");
-  def.b = to_side(b, "the second side");
+  def.a = to_side(world, a, "the first side");
+  def.b = to_side(world, b, "the second side");
   def.callback = std::make_shared<ScmCollisionCallback>(hook);
   def.name = "collision callback";
   def.place = hook.place;
@@ -213,11 +213,12 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
   const CollisionKind wanted = name == "fusion"    ? CollisionKind::fusion
                                : name == "fission" ? CollisionKind::fission
                                                    : CollisionKind::collision;
-  const auto hook = std::make_shared<Hook>(make_hook(world, procedure, "observer", place));
+  const auto hook =
+      std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
   to_world(world).add_collision_observer([hook](const Collision& collision) {
     SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
     call_hook(*hook, arguments, collision.time, [&] {
-      return body_names(hook->box->world, {collision.body1, collision.body2});
+      return body_names(hook->box->world, std::array{collision.body1, collision.body2});
     });
   }, wanted);
   return SCM_UNSPECIFIED;
@@ -225,7 +226,7 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
 
 TW_PRIMITIVE(observe_frames, "%observe-frames!", (SCM world, SCM procedure, SCM fps, SCM place),
              "Call a procedure with every committed frame.") {
-  const Hook hook = make_hook(world, procedure, "observer", place);
+  const Hook hook = make_hook(world, procedure, "observer", "observe!", place);
   to_world(world).add_frame_sink(std::make_shared<ScmFrameObserver>(hook), to_real(fps, "fps"));
   return SCM_UNSPECIFIED;
 }

@@ -9,11 +9,11 @@ namespace tw {
 
 TW_PRIMITIVES(define_contact)
 
-ContactSide to_side(SCM value, const char* name) {
+ContactSide to_side(SCM world, SCM value, const char* name) {
   ContactSide side;
   if (is_body(value)) {
     side.kind = ContactSide::Kind::body;
-    side.body = body_id(value);
+    side.body = to_body(world, value, name);
   } else if (scm_is_symbol(value)) {
     side.kind = ContactSide::Kind::material;
     side.material = to_symbol_name(value, name);
@@ -54,12 +54,6 @@ constexpr Setting settings_table[] = {
        s.friction_law = to_law<FrictionLaw>(
            v, n, {{"anchored", FrictionLaw::anchored}, {"smooth", FrictionLaw::smooth}});
      }},
-    {"impact-law",
-     [](ContactSettings& s, SCM v, const char* n) {
-       s.impact_law = to_law<ImpactLaw>(
-           v, n,
-           {{"chatterjee-ruina", ImpactLaw::chatterjee_ruina}, {"stronge", ImpactLaw::stronge}});
-     }},
     {"collide?", [](ContactSettings& s, SCM v, const char*) { s.collide = to_bool(v); }},
 };
 
@@ -78,16 +72,15 @@ TW_PRIMITIVE(set_contact, "%set-contact!", (SCM world, SCM a, SCM b, SCM alist),
   ContactSettings settings;
   for (; scm_is_pair(alist); alist = SCM_CDR(alist))
     read_setting(settings, SCM_CAAR(alist), SCM_CDAR(alist));
-  to_world(world).set_contact(to_side(a, "the first side"), to_side(b, "the second side"),
-                              settings);
+  to_world(world).set_contact(to_side(world, a, "the first side"),
+                              to_side(world, b, "the second side"), settings);
   return SCM_UNSPECIFIED;
 }
 
 TW_PRIMITIVE(contact_parameters, "%contact-parameters", (SCM world, SCM a, SCM b),
              "Return (restitution friction collide?) that hold for two bodies.") {
-  if (!is_body(a)) throw BadValue{"the first body", a, "a body"};
-  if (!is_body(b)) throw BadValue{"the second body", b, "a body"};
-  const ContactParameters p = to_world(world).contact_parameters(body_id(a), body_id(b));
+  const ContactParameters p = to_world(world).contact_parameters(
+      to_body(world, a, "the first body"), to_body(world, b, "the second body"));
   return scm_list_3(scm_from_double(p.restitution), scm_from_double(p.friction),
                     scm_from_bool(p.collide));
 }

@@ -66,13 +66,14 @@ void set_vec3(Target& target, SCM alist, const char* name) {
   if (scm_is_true(value)) target = to_vec3(value, name);
 }
 
-Camera to_camera(SCM alist) {
+Camera to_camera(SCM world, SCM alist) {
   Camera camera;
   set_vec3(camera.eye, alist, "eye");
   set_vec3(camera.target, alist, "target");
   set_vec3(camera.up, alist, "up");
   if (scm_is_true(entry(alist, "fov"))) camera.fov = to_real(entry(alist, "fov"), "fov");
-  if (is_body(entry(alist, "follow"))) camera.follow = body_id(entry(alist, "follow"));
+  if (scm_is_true(entry(alist, "follow")))
+    camera.follow = to_body(world, entry(alist, "follow"), "follow");
   return camera;
 }
 
@@ -116,9 +117,9 @@ RenderSettings to_render_settings(SCM width, SCM height, SCM quality) {
 }
 
 // `looks` is (camera light sky), each an alist.
-DrawScene scene_of(const World& world, SCM looks) {
-  DrawScene scene = draw_scene(world);
-  scene.camera = to_camera(SCM_CAR(looks));
+DrawScene scene_of(SCM world, SCM looks) {
+  DrawScene scene = draw_scene(to_world(world));
+  scene.camera = to_camera(world, SCM_CAR(looks));
   scene.light = to_light(SCM_CADR(looks));
   scene.sky = to_sky(SCM_CADDR(looks));
   return scene;
@@ -155,8 +156,8 @@ TW_PRIMITIVE(attach_frames, "%attach-frames!",
   DrawerBox& box = to_drawer(object);
   const double rate = to_real(fps, "fps");
   box.settings.first_frame = first_frame(w, rate);
-  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(w, looks), hud_lines(title),
-                                             to_bool(contacts));
+  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(world, looks),
+                                             hud_lines(title), to_bool(contacts));
   w.add_frame_sink(box.drawer, rate);
   return SCM_UNSPECIFIED;
 }
@@ -198,7 +199,7 @@ TW_PRIMITIVE(render, "%render!",
              "Draw the world as it is now.") {
   require_outside_callbacks("render!");
   const World& w = to_world(world);
-  const DrawScene scene = scene_of(w, looks);
+  const DrawScene scene = scene_of(world, looks);
   DrawFrame frame;
   frame.time = w.time();
   for (const DrawBody& body : scene.bodies) frame.poses.push_back(body.pose);

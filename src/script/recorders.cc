@@ -21,6 +21,7 @@ namespace {
 struct Recorder : Live<LiveKind::recorder> {
   std::shared_ptr<PosesWriter> poses;
   std::shared_ptr<EventsWriter> events;
+  // of one that is open
   CsvFile& file() { return poses ? poses->file() : events->file(); }
 };
 
@@ -69,6 +70,7 @@ TW_PRIMITIVE(attach_recorder, "%attach-recorder!", (SCM world, SCM object, SCM f
              "Let a world feed the recorder.") {
   World& w = to_world(world);
   Recorder& recorder = to_recorder(object);
+  TW_REQUIRE(recorder.poses || recorder.events, "the recorder is closed; expected an open one");
   if (recorder.poses) {
     recorder.poses->set_names(names_of(w));
     w.add_frame_sink(recorder.poses, to_real(fps, "fps"));

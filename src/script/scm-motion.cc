@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/limits.h"
 #include "geometry/polyhedron.h"
 #include "script/border.h"
 #include "script/primitive.h"
@@ -57,6 +58,8 @@ ScmMotion::ScmMotion(SCM procedure, double max_speed, ShapePtr shape)
     : procedure_(procedure), max_speed_(max_speed), shape_(std::move(shape)) {
   TW_REQUIRE(std::isfinite(max_speed) && max_speed >= 0,
              "max-speed is " + show(max_speed) + "; expected a finite speed in m/s, not negative");
+  TW_REQUIRE(max_speed <= speed_limit,
+             "max-speed is " + show(max_speed) + " m/s; expected at most " + show(speed_limit));
   TW_REQUIRE(!shape_ || shape_->bounded(),
              "a " + shape_->kind_name() + " moves by a procedure; expected a bounded shape");
   // two surface points a width apart differ in velocity by at most twice the bound
@@ -74,8 +77,12 @@ Pose ScmMotion::call(double time) const {
   TW_REQUIRE(scm_c_nvalues(result) == 2,
              std::string("a motion's procedure returned one value; ") + expected);
   try {
-    return {to_vec3(scm_c_value_ref(result, 0), "position"),
-            to_quat(scm_c_value_ref(result, 1), "orientation")};
+    const Vec3 position = to_vec3(scm_c_value_ref(result, 0), "position");
+    TW_REQUIRE(position.cwiseAbs().maxCoeff() <= farthest,
+               "a motion's procedure returned a position with a coordinate of " +
+                   show(position.cwiseAbs().maxCoeff()) + " m at " + show(time) +
+                   " s; expected at most " + show(farthest) + " m");
+    return {position, to_quat(scm_c_value_ref(result, 1), "orientation")};
   } catch (const BadValue& bad) {
     throw UserError(std::string("a motion's procedure returned a wrong ") + bad.name + " at " +
                     show(time) + " s; " + expected);

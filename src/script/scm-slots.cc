@@ -9,6 +9,7 @@
 #include <new>
 
 #include "script/border.h"
+#include "script/types.h"
 #include "script/values.h"
 
 namespace tw {
@@ -39,31 +40,82 @@ std::uint64_t hash_value(std::uint64_t hash, SCM value) {
   return hash_value(hash, value);
 }
 
-}  // namespace
+// Copies a value so that nothing reaches the copy but through the slot.  Vectors and strings of the
+// copy are read-only, as constants in a program are; pairs have no such mark.
+class Freezer {
+ public:
+  explicit Freezer(SCM slot) : slot_(slot) {}
 
-SCM frozen_copy(SCM value) {
-  if (scm_is_pair(value)) {
-    // along the spine by a loop, so that long lists don't need a deep stack
-    const SCM head = scm_cons(frozen_copy(SCM_CAR(value)), SCM_EOL);
+  SCM copy(SCM value, int depth = 0) {
+    // what nobody can change stands for itself
+    if (SCM_IMP(value) || scm_is_number(value) || scm_is_symbol(value) || scm_is_keyword(value) ||
+        is_body(value))
+      return value;
+    if (depth == most_depth) refuse(value, shallow);
+    if (scm_is_pair(value)) return copy_list(value, depth);
+    if (scm_is_vector(value)) return copy_vector(value, depth);
+    if (scm_is_string(value))
+      return scm_substring_read_only(value, scm_from_int(0), scm_string_length(value));
+    refuse(value, depth == 0 ? frozen : frozen_parts);
+  }
+
+ private:
+  // A slot is copied whenever it is set, and hashed with the history: far beyond what anyone keeps
+  // there.
+  static constexpr long most_parts = 1000000;
+  static constexpr int most_depth = 1000;
+
+  static constexpr const char* frozen =
+      "what no callback can change behind a rollback: a number, boolean, symbol, keyword, "
+      "character, string or body, or a list or vector of such";
+  static constexpr const char* frozen_parts =
+      "only parts that no callback can change behind a rollback: numbers, booleans, symbols, "
+      "keywords, characters, strings, bodies, lists and vectors";
+  static constexpr const char* shallow =
+      "a value nested at most 1000 deep (a circular one never ends)";
+  static constexpr const char* small =
+      "a value of at most 1000000 parts (a circular one never ends)";
+
+  // along the spine by a loop, so that long lists don't need a deep stack
+  SCM copy_list(SCM value, int depth) {
+    const SCM whole = value;
+    const SCM head = scm_cons(copy(SCM_CAR(value), depth + 1), SCM_EOL);
     SCM tail = head;
     for (value = SCM_CDR(value); scm_is_pair(value); value = SCM_CDR(value)) {
-      const SCM next = scm_cons(frozen_copy(SCM_CAR(value)), SCM_EOL);
+      count(whole, 1);
+      const SCM next = scm_cons(copy(SCM_CAR(value), depth + 1), SCM_EOL);
       SCM_SETCDR(tail, next);
       tail = next;
     }
-    SCM_SETCDR(tail, frozen_copy(value));
+    SCM_SETCDR(tail, copy(value, depth + 1));
     return head;
   }
-  if (scm_is_vector(value)) {
+
+  SCM copy_vector(SCM value, int depth) {
     const std::size_t size = SCM_SIMPLE_VECTOR_LENGTH(value);
-    const SCM copy = scm_c_make_vector(size, SCM_BOOL_F);
+    count(value, static_cast<long>(size));
+    const SCM result = scm_c_make_vector(size, SCM_BOOL_F);
     for (std::size_t i = 0; i < size; ++i)
-      SCM_SIMPLE_VECTOR_SET(copy, i, frozen_copy(SCM_SIMPLE_VECTOR_REF(value, i)));
-    return copy;
+      SCM_SIMPLE_VECTOR_SET(result, i, copy(SCM_SIMPLE_VECTOR_REF(value, i), depth + 1));
+    // the empty vector is one for all, and has nothing to set
+    if (size > 0) SCM_SET_CELL_TYPE(result, SCM_CELL_TYPE(result) | SCM_F_VECTOR_IMMUTABLE);
+    return result;
   }
-  if (scm_is_string(value)) return scm_string_copy(value);
-  return value;
-}
+
+  void count(SCM value, long parts) {
+    parts_ += parts;
+    if (parts_ > most_parts) refuse(value, small);
+  }
+
+  [[noreturn]] void refuse(SCM value, const char* expected) const {
+    throw BadValue{"the value for slot " + text_of(scm_symbol_to_string(slot_)), value, expected};
+  }
+
+  SCM slot_;
+  long parts_ = 0;
+};
+
+}  // namespace
 
 ScmSlots::ScmSlots(std::shared_ptr<const Names> names) : names_(std::move(names)) {
   values_ = static_cast<SCM*>(GC_MALLOC_UNCOLLECTABLE(names_->size() * sizeof(SCM) + 1));
@@ -87,7 +139,7 @@ SlotsPtr ScmSlots::from_alist(SCM alist) {
   const std::shared_ptr<ScmSlots> slots(new ScmSlots(names));
   int index = 0;
   for (SCM rest = alist; !scm_is_null(rest); rest = SCM_CDR(rest))
-    slots->values_[index++] = frozen_copy(SCM_CDAR(rest));
+    slots->values_[index++] = Freezer(SCM_CAAR(rest)).copy(SCM_CDAR(rest));
   return slots;
 }
 
@@ -100,7 +152,7 @@ int ScmSlots::find(SCM name) const {
 SlotsPtr ScmSlots::with(int index, SCM value) const {
   const std::shared_ptr<ScmSlots> copy(new ScmSlots(names_));
   std::memcpy(copy->values_, values_, names_->size() * sizeof(SCM));
-  copy->values_[index] = frozen_copy(value);
+  copy->values_[index] = Freezer((*names_)[static_cast<std::size_t>(index)]).copy(value);
   return copy;
 }
 

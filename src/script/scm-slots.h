@@ -1,9 +1,12 @@
 // User slots that hold Scheme values.
 //
 // Invariants: names and their order are fixed when the body is added; values are never changed in
-// place, setting one makes a new ScmSlots.  Values stand in memory that the garbage collector
-// scans as a root and never frees by itself; the destructor frees it.
-// Cost: a copy with one value set 0.1-0.2 us.
+// place, setting one makes a new ScmSlots.  A value is a copy of what was given: of numbers,
+// booleans, symbols, keywords, characters, strings, bodies, and pairs and vectors of such; nothing
+// else can be frozen, and is refused.  Its strings and vectors are read-only.  Pairs cannot be made
+// so: who changes a pair of a slot changes it in all states that hold it, which --check finds. 
+// Values stand in memory that the garbage collector scans as a root and never frees by itself; the
+// destructor frees it. Cost: a copy with one value set 0.1-0.2 us.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -21,7 +24,8 @@ namespace tw {
 
 class ScmSlots : public Slots, Live<LiveKind::slots> {
  public:
-  // From an association list of symbols and values.  Errors: BadValue.
+  // From an association list of symbols and values.  Errors: BadValue, also for what cannot be
+  // frozen.
   static SlotsPtr from_alist(SCM alist);
   ~ScmSlots() override;
   ScmSlots(const ScmSlots&) = delete;
@@ -43,8 +47,5 @@ class ScmSlots : public Slots, Live<LiveKind::slots> {
   std::shared_ptr<const Names> names_;
   SCM* values_;
 };
-
-// A copy that shares nothing that could be changed: pairs, vectors and strings are copied.
-SCM frozen_copy(SCM value);
 
 }  // namespace tw

@@ -33,8 +33,8 @@ TW_PRIMITIVE(half_space, "%half-space", (SCM normal, SCM offset),
 
 TW_PRIMITIVE(shape_union, "%union", (SCM list), "Return the union of a list of shapes.") {
   std::vector<ShapePtr> shapes;
-  for (; scm_is_pair(list); list = SCM_CDR(list))
-    shapes.push_back(to_shape(SCM_CAR(list), "a part of the union"));
+  for (const SCM part : to_elements(list, "the parts of the union", "a list of shapes"))
+    shapes.push_back(to_shape(part, "a part of the union"));
   TW_REQUIRE(!shapes.empty(), "the union has no parts; expected at least one shape");
   return from_shape(make_union(shapes));
 }

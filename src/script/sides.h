@@ -8,7 +8,7 @@
 
 namespace tw {
 
-// A body, a material (symbol), or #t for all.
-ContactSide to_side(SCM value, const char* name);
+// A body of the world, a material (symbol), or #t for all.
+ContactSide to_side(SCM world, SCM value, const char* name);
 
 }  // namespace tw

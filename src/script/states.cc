@@ -25,14 +25,14 @@ World& readable_world(SCM body, const char* what) {
 
 // For messages about `object`: "body ball".
 std::string label(SCM object) {
-  const BodyId id = is_view(object) ? to_view(object).body() : body_id(object);
+  const BodyId id = is_view(object) ? to_view(object).body() : to_own_body(object);
   return "body " +
          to_world(is_view(object) ? view_world(object) : body_world(object)).body(id).name;
 }
 
 BodyState read_state(SCM object, const char* what) {
   if (is_view(object)) return to_view(object).state();
-  return readable_world(object, what).state(body_id(object));
+  return readable_world(object, what).state(to_own_body(object));
 }
 
 // Applies `change` to the state behind a view, or edits the body.
@@ -41,13 +41,13 @@ SCM change_state(SCM object, const char* what, Change change) {
   if (is_view(object))
     change(to_view(object));
   else
-    readable_world(object, what).edit(body_id(object), change);
+    readable_world(object, what).edit(to_own_body(object), change);
   return SCM_UNSPECIFIED;
 }
 
 SlotsPtr read_slots(SCM object, const char* what) {
   if (is_view(object)) return to_view(object).slots();
-  return readable_world(object, what).slots(body_id(object));
+  return readable_world(object, what).slots(to_own_body(object));
 }
 
 const ScmSlots* as_scm_slots(const SlotsPtr& slots) {
@@ -85,12 +85,13 @@ TW_PRIMITIVE(angular_velocity, "%angular-velocity", (SCM object), "Angular veloc
 
 TW_PRIMITIVE(kinetic_energy, "%kinetic-energy", (SCM object), "Kinetic energy, J.") {
   if (is_view(object)) return scm_from_double(to_view(object).kinetic_energy());
-  return scm_from_double(readable_world(object, "kinetic-energy").kinetic_energy(body_id(object)));
+  return scm_from_double(
+      readable_world(object, "kinetic-energy").kinetic_energy(to_own_body(object)));
 }
 
 TW_PRIMITIVE(applied_force, "%applied-force", (SCM object), "Applied force, N, world frame.") {
   if (is_view(object)) return from_vec3(to_view(object).applied_force());
-  return from_vec3(readable_world(object, "applied-force").applied_force(body_id(object)));
+  return from_vec3(readable_world(object, "applied-force").applied_force(to_own_body(object)));
 }
 
 TW_PRIMITIVE(set_position, "%set-position!", (SCM object, SCM value), "Move a body.") {
@@ -141,6 +142,14 @@ TW_PRIMITIVE(slot_ref, "%slot", (SCM object, SCM name), "Return the value of a s
 TW_PRIMITIVE(has_slot, "%slot?", (SCM object, SCM name), "Has the body such a slot?") {
   const SlotsPtr slots = read_slots(object, "slot?");
   return scm_from_bool(slots && as_scm_slots(slots)->find(name) >= 0);
+}
+
+TW_PRIMITIVE(slot_values, "%slot-values", (SCM view), "Return the values of all slots of a view.") {
+  const SlotsPtr slots = read_slots(view, "slot");
+  SCM list = SCM_EOL;
+  for (std::size_t i = slots ? as_scm_slots(slots)->size() : 0; i-- > 0;)
+    list = scm_cons(as_scm_slots(slots)->value(static_cast<int>(i)), list);
+  return list;
 }
 
 TW_PRIMITIVE(set_slot, "%set-slot!", (SCM object, SCM name, SCM value), "Set a slot.") {

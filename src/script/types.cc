@@ -89,12 +89,15 @@ bool is_body(SCM object) {
   return has_type(object, body_type);
 }
 
-BodyId body_id(SCM body) {
-  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(body, 0)));
-}
-
 SCM body_world(SCM body) {
   return scm_field(body, 1);
+}
+
+BodyId to_body(SCM world, SCM object, const char* name) {
+  if (!is_body(object)) throw BadValue{name, object, "a body"};
+  if (!scm_is_eq(body_world(object), world))
+    throw BadValue{name, object, "a body of the current world (this one belongs to another)"};
+  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(object, 0)));
 }
 
 SCM from_body(SCM world, BodyId id) {

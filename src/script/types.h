@@ -47,8 +47,12 @@ void keep_with_world(SCM world, SCM object);
 
 // ---- bodies ----
 bool is_body(SCM object);
-BodyId body_id(SCM body);
+// The world that a body belongs to.
 SCM body_world(SCM body);
+// The number of a body of `world`.  BadValue for what is no body, and for a body of another world.
+BodyId to_body(SCM world, SCM object, const char* name);
+// The number of a body in the world it belongs to.
+inline BodyId to_own_body(SCM body) { return to_body(body_world(body), body, "the body"); }
 // The handle of a body, always the same object.
 SCM from_body(SCM world, BodyId id);
 

@@ -37,18 +37,19 @@ bool read_reals(SCM value, double* out, std::size_t count) {
   return scm_is_null(value);
 }
 
-// Elements of a vector or proper list; false if it is neither.
-bool read_elements(SCM value, std::vector<SCM>& out) {
+}  // namespace
+
+std::vector<SCM> to_elements(SCM value, const char* name, const char* expected) {
+  std::vector<SCM> elements;
   if (scm_is_vector(value)) {
     for (std::size_t i = 0; i < SCM_SIMPLE_VECTOR_LENGTH(value); ++i)
-      out.push_back(SCM_SIMPLE_VECTOR_REF(value, i));
-    return true;
+      elements.push_back(SCM_SIMPLE_VECTOR_REF(value, i));
+    return elements;
   }
-  for (; scm_is_pair(value); value = SCM_CDR(value)) out.push_back(SCM_CAR(value));
-  return scm_is_null(value);
+  if (scm_ilength(value) < 0) throw BadValue{name, value, expected};
+  for (; scm_is_pair(value); value = SCM_CDR(value)) elements.push_back(SCM_CAR(value));
+  return elements;
 }
-
-}  // namespace
 
 double to_real(SCM value, const char* name) {
   if (!scm_is_real(value)) throw BadValue{name, value, "a real number"};
@@ -107,6 +108,9 @@ Quat to_quat(SCM value, const char* name) {
   if (!read_reals(value, x, 4) || !std::isfinite(x[0] + x[1] + x[2] + x[3]))
     throw BadValue{name, value, "a quaternion #(w x y z) of finite numbers"};
   Quat q(x[0], x[1], x[2], x[3]);
+  // squares that would overflow or vanish: scaled first
+  const double largest = q.coeffs().cwiseAbs().maxCoeff();
+  if (largest > 0 && (largest < 1e-100 || largest > 1e100)) q.coeffs() /= largest;
   const double norm = q.norm();
   if (!(norm > 0) || !std::isfinite(norm))
     throw BadValue{name, value, "a quaternion #(w x y z) that is not zero"};
@@ -118,17 +122,17 @@ Quat to_quat(SCM value, const char* name) {
 Mat3 to_inertia(SCM value, const char* name) {
   double x[3];
   if (read_reals(value, x, 3)) return Vec3(x[0], x[1], x[2]).asDiagonal();
+  constexpr const char* expected =
+      "three principal moments #(Ixx Iyy Izz), or three rows of three";
   Mat3 m;
-  std::vector<SCM> rows;
-  if (!read_elements(value, rows) || rows.size() != 3)
-    throw BadValue{name, value, "three principal moments #(Ixx Iyy Izz), or three rows of three"};
+  const std::vector<SCM> rows = to_elements(value, name, expected);
+  if (rows.size() != 3) throw BadValue{name, value, expected};
   for (int i = 0; i < 3; ++i) m.row(i) = to_vec3(rows[static_cast<std::size_t>(i)], name);
   return m;
 }
 
 std::vector<Vec3> to_points(SCM value, const char* name) {
-  std::vector<SCM> elements;
-  if (!read_elements(value, elements)) throw BadValue{name, value, "a list of points #(x y z)"};
+  const std::vector<SCM> elements = to_elements(value, name, "a list of points #(x y z)");
   std::vector<Vec3> points;
   points.reserve(elements.size());
   for (const SCM element : elements) points.push_back(to_vec3(element, name));

@@ -36,6 +36,9 @@ Quat to_quat(SCM value, const char* name);
 // Three principal values or three rows.
 Mat3 to_inertia(SCM value, const char* name);
 std::vector<Vec3> to_points(SCM value, const char* name);
+// The elements of a vector or of a proper list; a circular list is BadValue, too.  The value keeps
+// them alive.
+std::vector<SCM> to_elements(SCM value, const char* name, const char* expected);
 // #f is absent.
 std::optional<double> to_optional_real(SCM value, const char* name);
 

@@ -167,18 +167,21 @@ TW_PRIMITIVE(checkpoint, "%checkpoint", (SCM world), "Return the committed prese
   return from_checkpoint(box.world.checkpoint(), world);
 }
 
-TW_PRIMITIVE(restore, "%restore!", (SCM checkpoint), "Bring a world back to a checkpoint.") {
+TW_PRIMITIVE(restore, "%restore!", (SCM world, SCM checkpoint),
+             "Bring a world back to a checkpoint.") {
   const Checkpoint& kept = to_checkpoint(checkpoint);
-  quiet_world(checkpoint_world(checkpoint), "restore!").restore(kept);
+  if (!scm_is_eq(checkpoint_world(checkpoint), world))
+    throw BadValue{"the checkpoint", checkpoint,
+                   "one of the current world (this one belongs to another)"};
+  quiet_world(world, "restore!").restore(kept);
   return SCM_UNSPECIFIED;
 }
 
-TW_PRIMITIVE(state_queue, "%state-queue", (SCM body),
+TW_PRIMITIVE(state_queue, "%state-queue", (SCM world, SCM body),
              "Return ((time kind microstep committed? position velocity) ...).") {
-  if (!is_body(body)) throw BadValue{"the body", body, "a body"};
   SCM list = SCM_EOL;
   for (const QueuedState& s :
-       quiet_world(body_world(body), "state-queue").state_queue(body_id(body)))
+       quiet_world(world, "state-queue").state_queue(to_body(world, body, "the body")))
     list = scm_cons(
         scm_list_n(scm_from_double(s.key.time), scm_from_utf8_symbol(kind_name(s.key.kind)),
                    scm_from_uint32(s.key.microstep), scm_from_bool(s.committed),

@@ -81,6 +81,15 @@
   (times-of #:start 0.1 #:period 0.3))
 (test-equal "without a period it returns its next time, or #f" '(0.0 0.25 0.5) (times-of))
 
+(test-equal "ticks before the first run are not made up for" '(0.0 0.25 0.5 0.75 1.0)
+  (times-of #:start -0.5 #:period 0.25))
+(in-world ()
+  (let ((ball (add-body! #:name "ball" #:shape (sphere 1))))
+    (test-message "a start before the first run"
+      "start of callback of ball is -1; expected a time after"
+      (begin (add-callback! ball list #:start -1)
+             (run! #:until 1)))))
+
 (in-world ()
   (let* ((ball (add-body! #:shape (sphere 1)))
          (calls '()))
@@ -131,7 +140,7 @@
 (callback-error "statistics was used inside" (view other) (statistics))
 (callback-error "add-body! was used inside" (view other) (add-body! #:shape (sphere 1)))
 (callback-error "run! was used inside" (view other) (run! #:until 2))
-(callback-error "callback was used inside" (view other) (add-callback! (find-body "ball") list))
+(callback-error "add-callback! was used inside" (view other) (add-callback! (find-body "ball") list))
 (callback-error "set-contact-parameters! was used inside" (view other) (set-contact-parameters! #t #t #:friction 1))
 (callback-error "position of body ball was set through a view" (view other) (set! (position view) #(0 0 0)))
 (callback-error "body ball has no slot n" (view other) (slot view 'n))

@@ -27,6 +27,12 @@
     (test-message "negative friction" "friction is -1" (set-contact-parameters! a b #:friction -1))
     (test-message "an unknown law" "expected anchored or smooth"
       (set-contact-parameters! a b #:friction-law 'sticky))
+    (test-message "Stronge's impact law" "stronge is not there yet.*expected 'chatterjee-ruina"
+      (set-contact-parameters! a b #:impact-law 'stronge))
+    (test-message "an unknown impact law" "impact-law is 5; expected 'chatterjee-ruina"
+      (set-contact-parameters! a b #:impact-law 5))
+    (test-equal "the impact law there is" #f
+      (error-of (set-contact-parameters! a b #:impact-law 'chatterjee-ruina)))
     (test-message "unknown keyword" "unknown keyword #:bounce; expected one of #:restitution"
       (set-contact-parameters! a b #:bounce 1))))
 

@@ -1,0 +1,296 @@
+;; Random calls of everything that (timewarp) and (timewarp vectors) export, as expressions.
+;;
+;; What is drawn never depends on what earlier calls did, so that an episode without some of its
+;; calls has the others unchanged: bodies and the like are named by number, which counts modulo
+;; those there are.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(use-modules (timewarp)
+             (timewarp vectors)
+             (timewarp primitives)
+             (srfi srfi-1)
+             (srfi srfi-4)
+             (srfi srfi-9)
+             (ice-9 match)
+             (system vm program))
+
+;; ---- values that expressions name ----
+
+(define-record-type <thing> (make-thing part) thing? (part thing-part))
+
+(define (circular . elements)
+  (set-cdr! (last-pair elements) elements)
+  elements)
+
+;; 2^COUNT parts, if it is walked as a tree
+(define (shared count)
+  (let loop ((value '(1)) (n count)) (if (zero? n) value (loop (cons value value) (1- n)))))
+
+;; What calls returned, and what callbacks were handed, by kind, latest first.
+(define kept (make-hash-table))
+(define (keep! value)
+  (let ((kind (cond ((shape? value) 'shape)
+                    ((view? value) 'view)
+                    ((collision? value) 'collision)
+                    ((contact? value) 'contact)
+                    ((struct? value) 'struct)
+                    (else #f))))
+    (when kind
+      (hashq-set! kept kind
+                  (let ((others (hashq-ref kept kind '())))
+                    (cons value (if (< (length others) 20) others (list-head others 19)))))))
+  value)
+(define (pick list number)
+  (if (null? list) 'none (list-ref list (modulo number (length list)))))
+(define (a-kept kind number) (pick (hashq-ref kept kind '()) number))
+(define (a-body number) (pick (world-bodies) number))
+
+(define other-world (make-world))
+(define other-body
+  (parameterize ((current-world other-world))
+    (add-body! #:name "ball" #:shape (sphere 0.1))
+    (add-body! #:name "alien" #:shape (sphere 0.1) #:position #(3 0 0))))
+
+;; A procedure that does CALLS when it is called, keeps what it is handed, and returns RESULT.
+(define-syntax-rule (doing (call ...) result)
+  (let ((bodies (list (lambda () call) ...)))
+    (lambda arguments
+      (for-each keep! arguments)
+      (for-each (lambda (body) (keep! (body))) bodies)
+      result)))
+
+;; Errors of EXPRESSION are as good as values; Ctrl-C is not.
+(define-syntax-rule (attempt expression)
+  (catch #t
+    (lambda () expression)
+    (lambda (key . args)
+      (when (eq? key 'timewarp-interrupted) (apply throw key args))
+      key)))
+
+;; ---- drawing ----
+
+(define state (seed->random-state 0))
+(define (draw n) (random n state))
+(define (chance share) (< (random 1.0 state) share))
+(define (one-of list) (list-ref list (draw (length list))))
+(define-syntax-rule (one-of-these expression ...)
+  ((one-of (list (lambda () expression) ...))))
+(define (uniform from to) (+ from (* (- to from) (random 1.0 state))))
+(define (short x) (/ (round (* 100 x)) 100))
+
+(define numbers
+  '(0 1 -1 2 0.5 -0.5 1e-3 10 0.0 -0.0 1/3 1e10 1e-10 1e300 -1e300 1e-300 5e-324 1e30
+    1e-30 1e15 1e18
+    +nan.0 +inf.0 -inf.0 +i 4294967296 9223372036854775808 -5 (expt 10 400) (/ (expt 10 400) 3)))
+(define times
+  '(0 0.01 0.05 0.1 0.1 0.2 0.3 0.5 0.7 -1 +nan.0 +inf.0 -inf.0 1e300 -1e300 "0" #t (expt 10 400)))
+(define names '("ball" "body-0" "x" "" "alien" "a b" "ä"))
+(define files
+  '("a.png" "b.png" "a.csv" "b.csv" "scene.scm" "none/a.png" "" "." "frames" "f/%03d.png" "%d%d"
+                "a.jpg"))
+(define symbols
+  '('rubber 'steel 'collision 'frame 'fusion 'fission 'timewarp 'best 'draft 'normal 'anchored
+                  'smooth 'n 'list 'chatterjee-ruina 'stronge 'conservative))
+
+(define (a-vector)
+  (if (chance 0.85)
+      (vector (short (uniform -2 2)) (short (uniform -2 2)) (short (uniform -1 3)))
+      (one-of '(#(0 0 0) #(1e300 0 0) #(1e-300 0 0) #(0 0 1e30) #(5e-324 0 0) #(1e12 1 1) #(0 0 1e15)
+                '(1 0 1) (f64vector 0 1 1) #(0 0 +nan.0) #(+inf.0 0 0) #(1 2) #(1 2 x) '(1 2 . 3)
+                (circular 1 2 3) #(1/3 1/7 1/9) #(1e150 1e150 1e150)))))
+
+(define (a-quaternion)
+  (one-of '(#(1 0 0 0) #(0 1 0 0) #(1 1 0 0) #(0.5 0.5 0.5 0.5) #(0 0 0 0) #(1e-300 0 0 0)
+            #(1e300 1e300 0 0) #(1 0 0) (rotation #(0 0 1) 0.3) (rotation #(1 2 3) 2))))
+
+(define (a-length) (if (chance 0.8) (short (uniform 0.05 1)) (one-of numbers)))
+
+(define (a-shape)
+  (one-of-these `(sphere ,(a-length))
+                `(box ,(a-length) ,(a-length) ,(a-length))
+                `(cylinder ,(a-length) ,(a-length))
+                `(half-space #(0 0 1) ,(short (uniform -1 0)))
+                `(union (sphere ,(a-length)) (placed (box 0.2 0.2 0.2) #:position ,(a-vector)))
+                `(convex (list ,@(map (lambda _ (a-vector)) (iota (+ 4 (draw 6))))))
+                `(rock #:size ,(a-length))
+                `(a-kept 'shape ,(draw 20))))
+
+(define (some-keyframes)
+  (one-of-these `(keyframes '((0 #(0 0 0)) (0.02 ,(a-plain-vector))) #:smooth? ,(chance 0.5))
+                `(keyframes '((0 #(1 0 0)) (0.01 #(1 0 1) #(0 1 0 0))))
+                `(keyframes '((0 #(0 0 0)) (1e-300 #(1 0 0))))
+                `(lambda (time) (values (vector (* 0.5 time) 0 2) #(1 0 0 0)))
+                `(lambda (time) ,(a-wild-value))))
+
+(define (a-plain-vector)
+  (vector (short (uniform -2 2)) (short (uniform -2 2)) (short (uniform -1 3))))
+
+(define (a-procedure depth)
+  (if (zero? depth)
+      (one-of '(list car (lambda arguments #f) (lambda (time) 1) (lambda () 1)))
+      `(doing ,(map (lambda _ (let ((call (a-call (1- depth))))
+                                (if (chance 0.8) `(attempt ,call) call)))
+                    (iota (draw 4)))
+              ,(one-of '(#f #f #f 1 +nan.0 'x 0.02)))))
+
+(define (a-wild-value)
+  (one-of-these (one-of numbers) (one-of numbers) (one-of names) (one-of files) (one-of symbols)
+                #t #f ''() '*unspecified* #\a #:shape (a-vector) (a-quaternion) (a-shape)
+                `(a-body ,(draw 10)) 'other-body 'other-world '(current-world)
+                `(a-kept 'view ,(draw 20)) `(a-kept 'collision ,(draw 20)) `(a-kept 'contact ,(draw 20))
+                `(a-kept 'struct ,(draw 20)) '(circular 1 2) '(list (circular 1 2)) '(shared 50)
+                ''(1 . 2) ''(a b) ''((a . 1)) '(make-hash-table) '(make-thing 1) '(u8vector 1 2 3)
+                '(make-array 0 2 2) '(make-array 0) '(current-output-port) '(make-string 300 #\x)
+                #() '(delay 1)
+                `(list ,@(map (lambda _ (one-of numbers)) (iota (draw 4))))
+                '(make-vector 1000 0) 'car '(random-state-from-platform)))
+
+;; What a parameter of that name is usually given.
+(define (plausible name depth)
+  (case name
+    ((shape s) (a-shape))
+    ((radius length x y z size) (a-length))
+    ((points) `(list ,@(map (lambda _ (a-vector)) (iota (+ 4 (draw 8))))))
+    ((position velocity angular-velocity eye target normal axis center-of-mass up direction v
+               gravity)
+     (a-vector))
+    ((color zenith horizon ground) (one-of '(#(1 0 0) #(0.2 0.5 1) #(0 0 0))))
+    ((orientation q) (a-quaternion))
+    ((body view contact-body) (if (chance 0.7) `(a-body ,(draw 10)) `(a-kept 'view ,(draw 20))))
+    ((follow) `(a-body ,(draw 10)))
+    ((targets) (if (chance 0.5) 
+                   `(a-body ,(draw 10))
+                   `(list (a-body ,(draw 10)) (a-body ,(draw 10)))))
+    ((a b) (one-of-these `(a-body ,(draw 10)) `(a-body ,(draw 10)) #t ''rubber))
+    ((collision) `(a-kept 'collision ,(draw 20)))
+    ((contact) `(a-kept 'contact ,(draw 20)))
+    ((checkpoint) `(a-kept 'struct ,(draw 20)))
+    ((procedure) (a-procedure depth))
+    ((kind) (one-of '('collision 'fusion 'fission 'frame)))
+    ((density mass) (if (chance 0.7) (short (uniform 1 2000)) (one-of numbers)))
+    ((inertia) (one-of '(#(1 1 1) #(1 2 3) #(1 1 3) #(1e-300 1e-300 1e-300) #(1e300 1e300 1e300))))
+    ((fixed? smooth? visible? contacts?) (one-of '(#t #f)))
+    ((motion) (some-keyframes))
+    ((list) (one-of '('((0 #(0 0 0)) (1 #(0 0 1))) '((0 #(0 0 0) #(0 1 0 0))) '()
+                      '((0 #(1e300 0 0)) (1 #(0 0 0))))))
+    ((max-speed) (one-of '(1 0.5 10 1e-3 #f)))
+    ((material) (one-of '('rubber 'steel)))
+    ((name) (if (chance 0.5) ''n (one-of names)))
+    ((slots) ''((n . 0) (list 1 2)))
+    ((value) (one-of-these (a-vector) (one-of numbers) ''(1 2)))
+    ((restitution friction) (if (chance 0.8) (short (uniform 0 1)) (one-of numbers)))
+    ((stiffness) (one-of '(1e5 1e3 1e300 1e-300 1e8)))
+    ((damping) (one-of '(0 1 1e300 1e-300 100)))
+    ((fusion-speed) (one-of '(0 0.1 1 1e300)))
+    ((friction-law) (one-of '('anchored 'smooth)))
+    ((until seconds duration start) (one-of times))
+    ((period) (one-of '(0.01 0.003 1 1e-300 5e-324 #f 1e300)))
+    ((fps) (one-of '(30 100 1e-300 1e300 1/3 240)))
+    ((group-check-rate) (one-of '(480 100 1e300 1e-300)))
+    ((accuracy) (one-of '(1e-6 1e-4 1e-12 0.1)))
+    ((seed) (one-of '(0 1 7 18446744073709551615)))
+    ((fov) (one-of '(0.5 1 3 1e-300)))
+    ((fog) (one-of '(0 0.1 0.9)))
+    ((file frames) (one-of files))
+    ((poses events) (one-of files))
+    ((quality) ''draft)
+    ((vertices) (one-of '(8 16 4 200)))
+    (else (a-wild-value))))
+
+;; What could take minutes though nothing is wrong has only a few values.
+(define (argument name depth wildness)
+  (cond ((memq name '(until seconds duration)) (one-of times))
+        ((memq name '(period fps group-check-rate quality)) (plausible name depth))
+        ((chance wildness) (a-wild-value))
+        (else (plausible name depth))))
+
+;; ---- procedures ----
+
+(define (arguments-of procedure)
+  (let* ((getter (if (procedure-with-setter? procedure) (procedure* procedure) procedure))
+         (arguments (match (and (program? getter) (program-arguments-alists getter))
+                      ((first . _) first)
+                      (_ '()))))
+    (list (or (assq-ref arguments 'required) '())
+          (or (assq-ref arguments 'optional) '())
+          (assq-ref arguments 'rest)
+          (map car (or (assq-ref arguments 'keyword) '())))))
+
+(define (procedure* accessor) (procedure accessor))
+
+;; (NAME required optional rest? keywords) of every procedure that is exported.
+(define procedures
+  (let ((found '()))
+    (for-each
+     (lambda (module)
+       (module-for-each
+        (lambda (name variable)
+          (let ((value (variable-ref variable)))
+            (when (procedure? value)
+              (set! found (cons (list name (arguments-of value)) found))
+              (when (procedure-with-setter? value)
+                (set! found (cons (list `(setter ,name)
+                                        (if (eq? name 'slot)
+                                            '((body name value) () #f ())
+                                            '((body value) () #f ())))
+                                  found))))))
+        (resolve-interface module)))
+     '((timewarp) (timewarp vectors)))
+    (sort found (lambda (a b) (string<? (object->string (car a)) (object->string (car b)))))))
+
+(define (some-keywords keywords depth wildness)
+  (append-map (lambda (keyword)
+                (if (chance (if (memq keyword '(#:shape #:size #:quality)) 0.85 0.25))
+                    (list keyword (argument (keyword->symbol keyword) depth wildness))
+                    '()))
+              keywords))
+
+;; Runs are short: without `until' they would take the scene's duration, which may be long.
+(define (keywords-for name keywords depth wildness)
+  (case name
+    ((run! simulate!)
+     (append (list #:until (one-of times))
+             (some-keywords (delq #:until keywords) depth wildness)))
+    ((render!)
+     (append '(#:size '(16 16) #:quality 'draft)
+             (some-keywords (delq #:quality (delq #:size keywords)) depth wildness)))
+    (else (some-keywords keywords depth wildness))))
+
+(define (call-of entry depth)
+  (match entry
+    ((name (required optional rest? keywords))
+     (let* ((wildness (one-of '(0 0 0 0.1 0.5)))
+            (arguments (append (map (lambda (name) (argument name depth wildness)) required)
+                               (if (and rest? (null? keywords))
+                                   (map (lambda _ (a-wild-value)) (iota (draw 4)))
+                                   '())
+                               (if (null? keywords)
+                                   '()
+                                   (keywords-for name keywords depth wildness)))))
+       (cons name
+             (cond ((chance 0.97) arguments)
+                   ((and (pair? arguments) (chance 0.5)) (cdr arguments))
+                   (else (append arguments (list (a-wild-value))))))))))
+
+;; What makes scenes interesting comes more often.
+(define favourites '(add-body! add-callback! on-collision! observe! run-for! run! step!))
+
+;; The bodies that an episode begins with: well apart over a ground, so that runs happen.
+(define (a-body-to-add number)
+  (if (zero? number)
+      `(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t #:material 'steel)
+      (match (call-of (assq 'add-body! procedures) 2)
+        ((name . arguments)
+         (cons name (with-position (vector (* 2.2 (modulo number 3)) (* 2.2 (quotient number 3)) 0)
+                      arguments))))))
+
+(define (with-position position arguments)
+  (match arguments
+    (() (list #:position position))
+    ((#:position _ . rest) (cons* #:position position rest))
+    ((argument . rest) (cons argument (with-position position rest)))))
+
+(define (a-call depth)
+  (call-of (if (chance 0.4)
+               (assq (one-of favourites) procedures)
+               (one-of procedures))
+           depth))

@@ -1,0 +1,70 @@
+;; Several worlds: what belongs to one is refused by another, by name.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+
+(test-begin "worlds")
+
+(define-syntax-rule (refuses name expression)
+  (test-message name "is #<body ball>; expected a body of the current world" expression))
+
+;; The other world has a body of the same number: taken by number alone it would be the wrong one.
+(let ((ball #f) (kept #f))
+  (in-world ()
+    (set! ball (add-body! #:name "ball" #:shape (sphere 0.1)))
+    (set! kept (checkpoint)))
+  (in-world ()
+    (let ((crate (add-body! #:name "crate" #:shape (box 1 1 1))))
+      (refuses "a callback on it" (add-callback! ball list))
+      (refuses "a callback on several" (add-callback! (list crate ball) list))
+      (refuses "a collision callback, first side" (on-collision! ball #t list))
+      (refuses "a collision callback, second side" (on-collision! #t ball list))
+      (refuses "contact parameters set" (set-contact-parameters! crate ball #:friction 0))
+      (refuses "contact parameters asked for" (contact-parameters ball crate))
+      (refuses "collisions disabled" (disable-collisions! #t ball))
+      (refuses "collisions enabled" (enable-collisions! ball #t))
+      (refuses "its queue" (state-queue ball))
+      (refuses "a camera that follows it" (camera #:follow ball))
+      (test-message "a checkpoint" "expected one of the current world" (restore! kept))
+      (run! #:until 0.1)))
+  ;; an empty world has no body of that number
+  (in-world ()
+    (refuses "a callback in an empty world" (add-callback! ball list))
+    (refuses "contact parameters in an empty world" (contact-parameters ball ball))
+    (test-equal "what acts on its own world goes on" "ball" (body-name ball))))
+
+(test-message "a world must be one" "current-world is 5; expected a world" (current-world 5))
+
+;; ---- a callback does not leave its world ----
+
+(define-syntax-rule (refused-inside pattern expression)
+  (in-world ()
+    (let ((ball (add-body! #:name "ball" #:shape (sphere 1)))
+          (kept (checkpoint))
+          (other (make-world)))
+      (define (check register)
+        (register (lambda arguments expression #f))
+        (test-message (format #f "~s inside" 'expression)
+          (string-append pattern " was used inside a callback or observer")
+          (run! #:until 1)))
+      (check (lambda (procedure) (add-callback! ball procedure)))
+      (check (lambda (procedure) (observe! 'frame procedure))))))
+
+(refused-inside "setting current-world" (parameterize ((current-world (current-world))) #f))
+(refused-inside "setting current-world" (current-world (current-world)))
+(refused-inside "scene" (scene #:title "x"))
+(refused-inside "camera" (camera #:eye #(1 1 1)))
+(refused-inside "light" (light #:color #(1 1 1)))
+(refused-inside "sky" (sky #:fog 0.1))
+(refused-inside "observe!" (observe! 'collision list))
+(refused-inside "observe!" (observe! 'frame list))
+(refused-inside "on-collision!" (on-collision! #t #t list))
+(refused-inside "add-callback!" (add-callback! '() list))
+(refused-inside "set-contact-parameters!" (set-contact-parameters! #t #t #:friction 1))
+(refused-inside "checkpoint" (checkpoint))
+(refused-inside "step!" (step!))
+(refused-inside "run!" (run! #:until 2))
+(refused-inside "run-for!" (run-for! 1))
+(refused-inside "simulate!" (simulate! #:until 1 #:events "/proc/none"))
+(refused-inside "make-world" (make-world))
+
+(test-end "worlds")
