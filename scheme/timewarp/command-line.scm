@@ -219,8 +219,6 @@
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."
-  (setlocale LC_ALL "")
-  (setlocale LC_NUMERIC "C")
   ;; -L before any module is looked for
   (let* ((options #f)
          (status

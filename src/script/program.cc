@@ -6,7 +6,9 @@
 
 #include <cstdlib>
 
+#include "script/file-names.h"
 #include "script/init.h"
+#include "script/locale.h"
 
 namespace tw {
 
@@ -19,7 +21,16 @@ namespace {
   scm_variable_set_x(variable, scm_append(scm_list_2(scm_variable_ref(variable), entry)));
 }
 
+// Ports speak UTF-8 and never fail over a character, also where no UTF-8 locale is installed.
+void set_up_ports() {
+  for (const SCM port : {scm_current_input_port(), scm_current_output_port(), scm_current_error_port()})
+    scm_set_port_encoding_x(port, scm_from_utf8_string("UTF-8"));
+  scm_fluid_set_x(scm_variable_ref(scm_c_lookup("%default-port-encoding")),
+                  scm_from_utf8_string("UTF-8"));
+}
+
 void inner_main(void*, int argc, char** argv) {
+  set_up_ports();
 #ifdef TW_GUILE_SITE_DIR
   append_to_path("%load-path", TW_GUILE_SITE_DIR);
 #endif
@@ -31,13 +42,14 @@ void inner_main(void*, int argc, char** argv) {
       "libguile-timewarp", "tw_init_guile", [](void*) { tw_init_guile(); }, nullptr);
   SCM arguments = SCM_EOL;
   for (int i = argc - 1; i > 0; --i)
-    arguments = scm_cons(scm_from_locale_string(argv[i]), arguments);
+    arguments = scm_cons(from_argument(argv[i]), arguments);
   scm_call_1(scm_c_public_ref("timewarp command-line", "main"), arguments);
 }
 
 }  // namespace
 
 void run_program(int argc, char** argv) {
+  install_locale();
   scm_boot_guile(argc, argv, inner_main, nullptr);
   std::abort();  // scm_boot_guile exits
 }
