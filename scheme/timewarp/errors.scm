@@ -36,7 +36,7 @@
           (map (lambda (name) (string-append folder "/" name ".scm"))
                '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
-                 "progress" "repl" "command-line")))))
+                 "progress" "interrupts" "repl" "command-line")))))
 
 (define system-folders
   '("ice-9/" "srfi/" "system/" "language/" "oop/" "rnrs/" "sxml/" "texinfo/"))

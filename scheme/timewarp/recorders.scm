@@ -4,6 +4,7 @@
 (define-module (timewarp recorders)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp interrupts)
   #:use-module (timewarp worlds)
   #:use-module (timewarp running)
   #:use-module (timewarp drawing)
@@ -44,7 +45,13 @@
                (lambda args (or failure args))))))))
 
 (define* (call-with-recorders world thunk #:key frames size quality contacts? poses events)
-  "Call THUNK while WORLD is recorded: frames to pictures, poses and events to CSV files."
+  "Call THUNK while WORLD is recorded: frames to pictures, poses and events to CSV files.  Every
+file is closed however THUNK is left, by SIGTERM and SIGHUP too."
+  (call-with-ending-signals
+   (lambda ()
+     (record world thunk frames size quality contacts? poses events))))
+
+(define (record world thunk frames size quality contacts? poses events)
   (let ((recorders
          (append (if poses (list (start-csv! world %open-poses poses)) '())
                  (if events (list (start-csv! world %open-events events)) '())

@@ -2,6 +2,7 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp repl)
   #:use-module (timewarp primitives)
+  #:use-module (timewarp interrupts)
   #:use-module (system repl repl)
   #:use-module (system repl common)
   #:export (start-timewarp-repl))
@@ -24,19 +25,17 @@
   (format #f "timewarp ~a on Guile ~a.  ,help for help, ,describe NAME for a procedure's, (exit) to leave."
           (%version) (version)))
 
+;; The REPL takes the `quit' of a signal that comes while it compiles for an error of the expression,
+;; and asks for the next.
+(define (leave-if-ending)
+  (when (ending?) (throw 'quit)))
+
 (define* (start-timewarp-repl #:key (init? #t))
   "Run a REPL in (guile-user) until the user leaves it."
   (when init? (load-user-init))
   (activate-readline-if-there)
   (set-current-module (resolve-module '(guile-user)))
   (module-set! (resolve-module '(system repl common)) '*version* (banner))
-  (call-with-sigint start-repl))
-
-;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt.
-(define (call-with-sigint thunk)
-  (let ((outer #f))
-    (dynamic-wind
-      (lambda ()
-        (set! outer (sigaction SIGINT (lambda (signal) (%interrupt!)))))
-      thunk
-      (lambda () (sigaction SIGINT (car outer) (cdr outer))))))
+  (add-hook! before-read-hook leave-if-ending)
+  ;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt
+  (call-with-interrupts start-repl))

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "script/program.h"
 
+#include <fcntl.h>
 #include <libguile.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -48,7 +50,15 @@ void inner_main(void*, int argc, char** argv) {
 
 }  // namespace
 
+// A closed standard stream would give its number to the next file that is opened, and that file what
+// is printed.
+static void open_standard_streams() {
+  for (int file = STDIN_FILENO; file <= STDERR_FILENO; ++file)
+    if (fcntl(file, F_GETFD) < 0 && open("/dev/null", O_RDWR) != file) std::abort();
+}
+
 void run_program(int argc, char** argv) {
+  open_standard_streams();
   install_locale();
   scm_boot_guile(argc, argv, inner_main, nullptr);
   std::abort();  // scm_boot_guile exits
