@@ -1,8 +1,8 @@
 #!/bin/sh
-# What `make install' puts on a machine works there, for the program and for plain guile, also after the
-# whole tree has been moved; and what it needs it says.
+# What `make install' puts on a machine works there, for the program and for plain guile, also after
+# the whole tree has been moved; and what it needs it says.
 #
-# Installed with DESTDIR below the build folder: the installed tree is one that was moved from its prefix.
+# Installed with DESTDIR below the build folder: such a tree is one that was moved from its prefix.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 if nm -D "$TIMEWARP" | grep -q __asan_init; then
   echo "built with sanitizers, without compiled modules"
@@ -87,7 +87,8 @@ moved="$stage/second place"
 
 # a program without its modules
 cp "$moved/bin/timewarp" "$stage/alone"
-if [ ! -e "$(sed -n 's/^prefix = //p' "$TW_BUILDDIR/Makefile")/share/guile/site/3.0/timewarp.scm" ]; then
+configured=$(sed -n 's/^prefix = //p' "$TW_BUILDDIR/Makefile")
+if [ ! -e "$configured/share/guile/site/3.0/timewarp.scm" ]; then
   bare "$stage/alone" --version >"$stage/out" 2>"$stage/err"
   claim "a program alone: status 1" [ $? = 1 ]
   claim "it says where it looked, and what to set" \
@@ -97,5 +98,41 @@ fi
 claim "and does with GUILE_LOAD_PATH" \
   bare GUILE_LOAD_PATH="$(dirname "$(find "$moved" -name timewarp.scm)")" "$stage/alone" --version \
   >"$stage/out"
+
+# ---- beside the program ----
+
+pc=$(find "$moved" -name timewarp.pc)
+claim "pkg-config knows the folders" \
+  [ -n "$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --variable=guilesitedir timewarp)" ]
+claim "its file is valid" env PKG_CONFIG_PATH="$(dirname "$pc")" pkg-config --validate timewarp
+
+page=$moved/share/man/man1/timewarp.1
+options=$("$TIMEWARP" --help | sed -n 's/^  \(-.*\)/\1/p' | cut -c 1-26 | grep -o -- '--[a-z][a-z-]*')
+for option in $options; do
+  claim "the manual page has $option" grep -qF "$(printf '%s' "$option" | sed 's/-/\\-/g')" "$page"
+done
+if command -v groff >/dev/null; then
+  claim "groff finds nothing wrong with it" \
+    [ -z "$(groff -man -ww -Tutf8 "$page" 2>&1 >/dev/null)" ]
+fi
+
+# ---- what plain guile must be told ----
+
+hint() { bare "$@" "$TW_SRCDIR/build-aux/plain-guile-hint" "$GUILE_PROGRAM" "/a b/site" /c/ccache; }
+hint | grep export >"$stage/lines"
+echo 'echo "$GUILE_LOAD_PATH:$GUILE_LOAD_COMPILED_PATH"' >>"$stage/lines"
+claim "the lines set both paths" \
+  [ "$(bare GUILE_LOAD_PATH=/old sh "$stage/lines")" = "/a b/site:/old:/c/ccache" ]
+claim "and nothing is said where they are set" \
+  [ -z "$(hint GUILE_LOAD_PATH="/a b/site" GUILE_LOAD_COMPILED_PATH=/c/ccache)" ]
+
+# ---- uninstalled again ----
+
+MAKEFLAGS= make -s -C "$TW_BUILDDIR" install DESTDIR="$stage/third" >"$stage/log" 2>&1 &&
+  MAKEFLAGS= make -s -C "$TW_BUILDDIR" uninstall DESTDIR="$stage/third" >>"$stage/log" 2>&1
+claim "make uninstall leaves no file" [ -z "$(find "$stage/third" ! -type d)" ]
+claim "and no folder of ours" [ -z "$(find "$stage/third/$prefix" -name '*timewarp*')" ]
+claim "a staged installation says nothing of paths" \
+  [ "$(grep -c GUILE_LOAD "$stage/log")" = 0 ]
 
 exit $((failures > 0))
