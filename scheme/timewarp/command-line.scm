@@ -1,12 +1,14 @@
 ;; The command line: what the program `timewarp' does with its arguments.
 ;;
 ;; Exit status: 0; 1 for an error in the scene or the run; 2 for wrong usage; 130 after Ctrl-C.
+;; SIGTERM and SIGHUP close what Ctrl-C closes, then end the program by the signal.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp command-line)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp parameters)
+  #:use-module (timewarp interrupts)
   #:use-module (timewarp running)
   #:use-module (timewarp recorders)
   #:use-module (timewarp drawing)
@@ -110,8 +112,7 @@
     (#t (show-statistics))
     (file (%write-statistics world file)))
   (when (option-ref options 'hash)
-    (format #t "~a\n" (%history-hash world)))
-  (force-output (current-output-port)))
+    (format #t "~a\n" (%history-hash world))))
 
 (define (run-scene scene options)
   (call-with-values (if (option-ref options 'quiet)
@@ -128,7 +129,7 @@
 ;; With -i an error of the scene, or Ctrl-C, leads to the prompt, too.
 (define (run-scene-then-repl scene options)
   (exit-status (lambda () (run-scene scene options)))
-  (start-repl* options))
+  (unless (ending?) (start-repl* options)))
 
 ;; ---- REPL and -c ----
 
@@ -187,6 +188,14 @@
               ((or (option-ref options 'interactive) (not (option-ref options 'command)))
                (start-repl* options))))))))
 
+;; A disk may be full.
+(define (flush-output)
+  (catch 'system-error
+    (lambda () (force-output (current-output-port)))
+    (lambda args
+      (raise-error (format #f "cannot write standard output: ~a"
+                           (strerror (system-error-errno args)))))))
+
 (define (complain format-string . args)
   ;; standard output may be what failed
   (false-if-exception (force-output (current-output-port)))
@@ -214,15 +223,16 @@
           (('timewarp-interrupted) (complain "interrupted") 130)
           (('quit . status)
            (match status ((or () (#t)) 0) ((#f) 1) (((? integer? n) . _) n) (_ 1)))
-          (_ (complain-about key args description) 1)))
+          (_ (unless (reader-gone? key args) (complain-about key args description)) 1)))
       (lambda (key . args)
         (unless (memq key '(quit timewarp-usage timewarp-interrupted timewarp-error))
           (set! description (describe-error key args)))))))
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."
-  (setlocale LC_ALL "")
-  (setlocale LC_NUMERIC "C")
+  (call-with-broken-pipes (lambda () (run-command-line args))))
+
+(define (run-command-line args)
   ;; -L before any module is looked for
   (let* ((options #f)
          (status
@@ -233,5 +243,5 @@
                        (reverse (option-values options 'load-path)))
              (call-with-interrupts
               (lambda () (call-with-bounded-stack (lambda () (work options)))))
-             (force-output (current-output-port))))))
-    (primitive-exit status)))
+             (flush-output)))))
+    (exit-program status)))

@@ -42,7 +42,7 @@
           (map (lambda (name) (string-append folder "/" name ".scm"))
                '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
-                 "time-left" "progress" "help" "repl" "command-line")))))
+                 "time-left" "progress" "interrupts" "help" "repl" "command-line")))))
 
 ;; a frame in this file stands for a form of a scene
 (define forms-file (string-append (own-directory) "/forms.scm"))

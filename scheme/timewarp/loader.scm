@@ -2,6 +2,7 @@
 ;; error that knows no better one.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp loader)
+  #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp files)
   #:use-module (timewarp forms)
@@ -35,17 +36,15 @@
                          (list (port-filename port) (1+ (port-line port)) (port-column port))))))))
 
 (define (call-with-scene-port file proc)
-  (let ((port (catch 'system-error
-                (lambda () (open-input-file file #:guess-encoding #t #:encoding "UTF-8"))
-                (lambda args
-                  (raise-error (format #f "cannot read the scene ~a: ~a; expected a Scheme file"
-                                       file (strerror (system-error-errno args))))))))
+  (let ((port (fdopen (%open-scene file) "r")))
     (set-port-filename! port file)
     (dynamic-wind
       (const #t)
       (lambda ()
         (catch 'system-error
-          (lambda () (peek-char port))
+          (lambda ()
+            (set-port-encoding! port (or (file-encoding port) "UTF-8"))
+            (peek-char port))
           (lambda args
             (raise-error (format #f "cannot read the scene ~a: ~a; expected a Scheme file" file
                                  (strerror (system-error-errno args))))))

@@ -6,7 +6,7 @@
   #:use-module (srfi srfi-1)
   #:use-module (srfi srfi-37)
   #:use-module (ice-9 match)
-  #:export (parse-command-line option-help usage-error))
+  #:export (parse-command-line option-help documented-options usage-error))
 
 (define (usage-error message . args)
   "Say that the command line is wrong."
@@ -180,14 +180,20 @@
      ((word) (string-append "[=" word "]"))
      (word (string-append (if (any string? names) "=" " ") word)))))
 
+(define (documented-options)
+  "Return (NAMES ARGUMENT HELP) of each option but the test modes; ARGUMENT is a word, (WORD) or
+#f."
+  (filter-map (match-lambda
+                ((_ names argument _ help) (and help (list names argument help))))
+              table))
+
 (define (option-help)
   "Return the text of --help that lists the options."
   (string-concatenate
    (map (match-lambda
-          ((_ names argument _ (? string? help))
+          ((names argument help)
            (let ((left (names-text names argument)))
              (if (< (string-length left) 26)
                  (format #f "  ~a  ~a\n" (string-pad-right left 26) help)
-                 (format #f "  ~a\n~a~a\n" left (make-string 30 #\space) help))))
-          (_ ""))
-        table)))
+                 (format #f "  ~a\n~a~a\n" left (make-string 30 #\space) help)))))
+        (documented-options))))

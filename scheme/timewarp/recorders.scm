@@ -4,6 +4,7 @@
 (define-module (timewarp recorders)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp interrupts)
   #:use-module (timewarp worlds)
   #:use-module (timewarp running)
   #:use-module (timewarp drawing)
@@ -72,6 +73,9 @@
         (set! last (current-time))
         (for-each (lambda (recorder) ((recorder-flush recorder))) recorders)))))
 
+(define (stops-at-once? key)
+  (or (eq? key 'timewarp-interrupted) (ending?)))
+
 ;; Every recorder is closed, also where closing another fails; the first failure is raised.
 (define (close-all recorders interrupted?)
   (let loop ((recorders recorders) (interrupted? interrupted?) (failure #f))
@@ -83,7 +87,7 @@
                 list)
          (#f (loop rest interrupted? failure))
          (raised (loop rest
-                       (or interrupted? (eq? (car raised) 'timewarp-interrupted))
+                       (or interrupted? (stops-at-once? (car raised)))
                        (or failure raised))))))))
 
 ;; Two recorders would write over one another, and so would pictures over tables.
@@ -109,8 +113,12 @@
 
 (define* (call-with-recorders thunk #:key frames size quality contacts? poses events)
   "Call THUNK while the current world, or one that takes its place before anything has run, is
-recorded: frames to pictures, poses and events to CSV files."
+recorded: frames to pictures, poses and events to CSV files.  Every file is closed however THUNK is
+left, by SIGTERM and SIGHUP too."
   (check-files poses events)
+  (call-with-ending-signals (lambda () (record thunk frames size quality contacts? poses events))))
+
+(define (record thunk frames size quality contacts? poses events)
   (let* ((recorders
           (append (if poses (list (csv-recorder "poses" %open-poses poses)) '())
                   (if events (list (csv-recorder "events" %open-events events)) '())
@@ -129,7 +137,7 @@ recorded: frames to pictures, poses and events to CSV files."
             (lambda (key . args)
               ;; what made the run stop is what is told, not what came of it
               (catch #t
-                (lambda () (close-all recorders (eq? key 'timewarp-interrupted)))
+                (lambda () (close-all recorders (stops-at-once? key)))
                 (const #f))
               (apply throw key args))))
       (lambda results

@@ -8,7 +8,7 @@
 (define-module (timewarp repl)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
-  #:use-module (timewarp running)
+  #:use-module (timewarp interrupts)
   #:use-module (timewarp forms)
   #:use-module (timewarp help)
   #:use-module (system repl repl)
@@ -43,6 +43,11 @@
       (when (zero? (remainder expressions 256))
         (hold-all-units!)))))
 
+;; The REPL takes the `quit' of a signal that comes while it compiles for an error of the expression,
+;; and asks for the next.
+(define (leave-if-ending)
+  (when (ending?) (throw 'quit)))
+
 (define* (start-timewarp-repl #:key (init? #t))
   "Run a REPL in (guile-user) until the user leaves it; (exit STATUS) throws quit as everywhere."
   (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
@@ -51,6 +56,7 @@
   (set-current-module (resolve-module '(guile-user)))
   (module-set! (resolve-module '(system repl common)) '*version* (banner))
   (repl-default-option-set! 'on-error 'report)
+  (add-hook! before-read-hook leave-if-ending)
   (add-hook! before-eval-hook hold-now-and-then)
   (add-hook! after-error-hook (lambda () (print-user-frames (current-error-port))))
   ;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt

@@ -3,13 +3,13 @@
 (define-module (timewarp running)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp interrupts)
   #:use-module (timewarp worlds)
   #:use-module (ice-9 match)
   #:use-module (ice-9 format)
   #:export (run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
   ;; for the other modules
   #:export (run-world!
-            call-with-interrupts
             current-slice-hooks))
 
 ;; s of wall time: between slices no C++ frame is on the stack
@@ -17,19 +17,6 @@
 
 ;; Procedures that are called between slices with the world and the time to run to.
 (define current-slice-hooks (make-parameter '()))
-
-(define (check-interrupt)
-  (when (%take-interrupt!) (throw 'timewarp-interrupted)))
-
-(define (call-with-interrupts thunk)
-  "Call THUNK; Ctrl-C throws timewarp-interrupted where that is safe."
-  (let ((outer #f))
-    (dynamic-wind
-      (lambda ()
-        (set! outer (sigaction SIGINT (lambda (signal) (%interrupt!)))))
-      thunk
-      (lambda ()
-        (sigaction SIGINT (car outer) (cdr outer))))))
 
 (define (run-world! world until)
   "Run WORLD until everything up to and including UNTIL is committed and observed."
@@ -39,10 +26,10 @@
   (start-first-run! world)
   (call-with-interrupts
    (lambda ()
-     (%take-interrupt!)
+     (%forget-interrupt!)
      (let loop ()
        (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
-         (check-interrupt)
+         (%check-interrupt!)
          (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
          (unless finished? (loop))))))
   (if #f #f))

@@ -6,6 +6,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "script/border.h"
 
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+
 #include "kernel/callback.h"
 #include "script/primitive.h"
 #include "script/values.h"
@@ -22,6 +27,8 @@ int call_depth = 0;
 // set only while our catch is in place: then an interrupt may throw
 bool interruptible = false;
 bool interrupt_requested = false;
+// the signal that is to end the program, 0: none but Ctrl-C
+int ending_signal = 0;
 
 SCM key_interrupted() {
   static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-interrupted"));
@@ -31,6 +38,17 @@ SCM key_interrupted() {
 SCM key_escape() {
   static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-escape"));
   return key;
+}
+
+// Ctrl-C leads to the prompt, a signal that ends the program past it, with the status that a shell
+// gives to a program that ends so.  Inside a call there is no prompt: our catch there knows one
+// key.
+[[noreturn]] void throw_interrupted() {
+  static const SCM key_quit = scm_gc_protect_object(scm_from_utf8_symbol("quit"));
+  if (ending_signal != 0 && call_depth == 0)
+    scm_throw(key_quit, scm_list_1(scm_from_int(128 + ending_signal)));
+  scm_throw(key_interrupted(), SCM_EOL);
+  std::abort();  // scm_throw does not return
 }
 
 struct CallState : Live<LiveKind::border_call> {
@@ -171,7 +189,7 @@ PendingError run_catching(SCM (*body)(void*), void* data, SCM* result) noexcept 
 }
 
 void raise_pending(const PendingError& error) {
-  if (scm_is_eq(error.message, key_interrupted())) scm_throw(key_interrupted(), SCM_EOL);
+  if (scm_is_eq(error.message, key_interrupted())) throw_interrupted();
   scm_call_5(raise_hook, error.message, error.name, error.value, error.place, error.backtrace);
   std::abort();  // the hook does not return
 }
@@ -185,19 +203,33 @@ TW_PRIMITIVE(set_error_hooks, "%set-error-hooks!", (SCM raise, SCM describe),
   return SCM_UNSPECIFIED;
 }
 
-// Called by the handler of SIGINT.  Throws where nothing of C++ is on the stack between here and a
-// catch of ours; elsewhere it leaves a note for the next slice.
-static SCM interrupt() {
-  if (call_depth == 0 || interruptible) scm_throw(key_interrupted(), SCM_EOL);
+// Called by the handlers of signals.  Throws where nothing of C++ is on the stack between here and
+// a catch of ours; elsewhere it leaves a note for the next slice.
+static SCM interrupt(SCM signal) {
+  const int number = scm_to_int(signal);
+  if (number != SIGINT) ending_signal = number;
+  if (call_depth == 0 || interruptible) throw_interrupted();
   interrupt_requested = true;
   return SCM_UNSPECIFIED;
 }
 
-TW_PRIMITIVE(take_interrupt, "%take-interrupt!", (),
-             "Tell whether an interrupt is waiting, and forget it.") {
-  const bool requested = interrupt_requested;
+TW_PRIMITIVE(forget_interrupt, "%forget-interrupt!", (),
+             "Forget an interrupt that is waiting, unless it ends the program.") {
   interrupt_requested = false;
-  return scm_from_bool(requested);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(check_interrupt, "%check-interrupt!", (), "Raise an interrupt that is waiting.") {
+  if (!interrupt_requested && ending_signal == 0) return SCM_UNSPECIFIED;
+  interrupt_requested = false;
+  throw Interrupted();
+}
+
+TW_PRIMITIVE(is_reader_gone, "%reader-gone?", (),
+             "Is standard output or standard error a pipe that nobody reads any more?") {
+  pollfd files[] = {{STDOUT_FILENO, 0, 0}, {STDERR_FILENO, 0, 0}};
+  poll(files, 2, 0);
+  return scm_from_bool(((files[0].revents | files[1].revents) & POLLERR) != 0);
 }
 
 TW_PRIMITIVE(is_inside_call, "%inside-callback?", (), "Is a callback or observer running?") {
@@ -226,7 +258,7 @@ TW_PRIMITIVE(count_guile_calls, "%guile-calls", (),
 }
 
 void define_interrupt() {
-  scm_c_define_gsubr("%interrupt!", 0, 0, 0, reinterpret_cast<scm_t_subr>(interrupt));
+  scm_c_define_gsubr("%interrupt!", 1, 0, 0, reinterpret_cast<scm_t_subr>(interrupt));
 }
 
 }  // namespace tw

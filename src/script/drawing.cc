@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "script/file-names.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -143,7 +144,7 @@ std::vector<HudLine> hud_lines(SCM title) {
 TW_PRIMITIVE(open_frames, "%open-frames", (SCM frames, SCM width, SCM height, SCM quality),
              "Prepare drawing frames into a folder.") {
   auto box = std::make_unique<DrawerBox>();
-  box->settings.frames = to_string(frames, "the folder for frames");
+  box->settings.frames = to_file_name(frames, "the folder for frames");
   box->settings.render = to_render_settings(width, height, quality);
   make_writable_folder(FrameName(box->settings.frames).folder());
   return scm_make_foreign_object_1(drawer_type, box.release());
@@ -205,7 +206,7 @@ TW_PRIMITIVE(render, "%render!",
   for (const DrawBody& body : scene.bodies) frame.poses.push_back(body.pose);
   frame.hud = hud_lines(title);
   if (to_bool(contacts)) add_contacts(frame, w);
-  render_image(to_string(file, "the picture's file"), to_render_settings(width, height, quality),
+  render_image(to_file_name(file, "the picture's file"), to_render_settings(width, height, quality),
                scene, frame);
   return SCM_UNSPECIFIED;
 }

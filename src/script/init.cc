@@ -25,6 +25,7 @@ void define_recorder_type();
 void define_recorders();
 void define_versions();
 void define_drawing();
+void define_file_names();
 
 }  // namespace tw
 
@@ -46,4 +47,5 @@ extern "C" void tw_init_guile() {
   tw::define_recorders();
   tw::define_versions();
   tw::define_drawing();
+  tw::define_file_names();
 }

@@ -8,6 +8,7 @@
 
 #include "record/events-writer.h"
 #include "record/poses-writer.h"
+#include "script/file-names.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -56,13 +57,13 @@ void define_recorder_type() {
 
 TW_PRIMITIVE(open_poses, "%open-poses", (SCM path), "Open a file for poses.") {
   auto recorder = std::make_unique<Recorder>();
-  recorder->poses = std::make_shared<PosesWriter>(to_string(path, "the poses file"));
+  recorder->poses = std::make_shared<PosesWriter>(to_file_name(path, "the poses file"));
   return from_recorder(recorder.release());
 }
 
 TW_PRIMITIVE(open_events, "%open-events", (SCM path), "Open a file for events.") {
   auto recorder = std::make_unique<Recorder>();
-  recorder->events = std::make_shared<EventsWriter>(to_string(path, "the events file"));
+  recorder->events = std::make_shared<EventsWriter>(to_file_name(path, "the events file"));
   return from_recorder(recorder.release());
 }
 

@@ -1,6 +1,7 @@
 // Scheme primitives: worlds, their settings, and running them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "record/statistics-json.h"
+#include "script/file-names.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -156,7 +157,7 @@ TW_PRIMITIVE(statistics, "%statistics", (SCM world), "Return an alist of statist
 
 TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
              "Write the statistics as JSON.") {
-  write_statistics_json(to_string(path, "the file"),
+  write_statistics_json(to_file_name(path, "the file"),
                         all_statistics(quiet_box(world, "statistics")));
   return SCM_UNSPECIFIED;
 }
