@@ -1,6 +1,6 @@
 // Checkpoints: the committed present of a world, to come back to.
 //
-// What is committed is a state per body and the next tick per callback; everything else (claims, pairs,
+// What is committed is a state per body, with what edits have added to it, and the next tick per callback; everything else (claims, pairs,
 // events) is found anew, as after any change.  So a run that goes on from a restored checkpoint
 // commits the same history, bit for bit, as one that was never interrupted.
 //
@@ -29,15 +29,21 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   result->edits = edits_;
   result->gravity = options.gravity;
   for (const auto& body : bodies) {
-    const State* state = state_at(body->id(), time);
-    result->states.push_back({state->key, *state});
+    const Key present = present_key();
+    const State* state = graph.last_before(body->id(), present);
+    while (state->prev && !state->committed) state = state->prev;
+    auto& kept = result->states.emplace_back();
+    for (; state && state->key < present; state = state->next) 
+      kept.push_back({state->key, state->committed, *state});
   }
   for (const CallbackRecord& callback : callbacks) {
     // the first call that is not committed
     Key next{callback.committed_next, 0, KeyKind::callback,
              static_cast<std::uint64_t>(&callback - callbacks.data())};
     if (callback.def.period)
-      next = first_tick(callback, begun ? Key{time, 0, KeyKind::group_check, 0} : Key{});
+      next = first_tick(callback, !begun          ? Key{}
+                                  : due_.inclusive ? Key{time, 0, KeyKind::group_check, 0}
+                                                   : present_key());
     result->callbacks.push_back({next, callback.committed_next});
   }
   return result;
@@ -75,11 +81,13 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   const Key present = present_key();
   newborn_.clear();
   for (const auto& body : bodies) {
-    const auto& [key, data] = checkpoint.states[body->id()];
-    State* state = graph.append(body->id(), key);
-    static_cast<StateData&>(*state) = data;
-    state->committed = begun;
-    body->claim = body->fixed() && begun ? last_key : begun ? present : key;
+    for (const Checkpoint::Kept& kept : checkpoint.states[body->id()]) {
+      State* state = graph.append(body->id(), kept.key);
+      static_cast<StateData&>(*state) = kept.data;
+      state->committed = kept.committed;
+    }
+    const Key first = graph.head(body->id())->key;
+    body->claim = body->fixed() && begun ? last_key : begun ? present : first;
     body->lonely_claims = 0;
     // boxes are those of another time until the first claim
     if (!body->fixed()) body->placed = false;

@@ -25,7 +25,13 @@ struct Checkpoint {
   Counters counters;
   std::uint64_t hash_sum = 0, hash_count = 0, edits = 0;
   Vec3 gravity = Vec3::Zero();
-  std::vector<std::pair<Key, StateData>> states;       // by body: the last committed one
+  // by body: the last committed one, and what edits have added to it
+  struct Kept {
+    Key key;
+    bool committed = false;
+    StateData data;
+  };
+  std::vector<std::vector<Kept>> states;
   std::vector<std::pair<Key, double>> callbacks;       // next tick; next time without a period
 };
 

@@ -21,7 +21,7 @@ std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point
   h.add(std::uint64_t{body.id()});
   h.add(key.time);
   h.add(std::uint64_t{key.microstep});
-  h.add(static_cast<std::uint64_t>(key.kind));
+  h.add(kind_code(key.kind));
   h.add(key.id);
   for (int i = 0; i < 3; ++i) h.add(s.position[i]);
   for (int i = 0; i < 4; ++i) h.add(s.orientation.coeffs()[i]);

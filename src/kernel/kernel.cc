@@ -122,8 +122,9 @@ bool Kernel::step(double until) {
 }
 
 const State* Kernel::state_at(BodyId id, double when) const {
-  const State* state = graph.last_at_or_before_time(id, when);
-  // between runs nothing but committed states count
+  // between runs nothing but the past counts
+  const State* state = when == time && !running ? graph.last_before(id, present_key())
+                                                : graph.last_at_or_before_time(id, when);
   while (state && state->error && state->prev) state = state->prev;
   return state ? state : graph.head(id);
 }

@@ -10,14 +10,26 @@ const char* kind_name(KeyKind kind) {
   switch (kind) {
     case KeyKind::birth: return "birth";
     case KeyKind::step: return "step";
+    case KeyKind::early_edit: return "edit";
     case KeyKind::callback: return "callback";
     case KeyKind::group_check: return "group check";
-    case KeyKind::fission: return "fission";
-    case KeyKind::witness: return "witness";
     case KeyKind::impact: return "impact";
     case KeyKind::edit: return "edit";
   }
   return "unknown kind";
+}
+
+std::uint64_t kind_code(KeyKind kind) {
+  switch (kind) {
+    case KeyKind::birth: return 0;
+    case KeyKind::step: return 1;
+    case KeyKind::callback: return 2;
+    case KeyKind::group_check: return 3;
+    case KeyKind::impact: return 6;
+    case KeyKind::edit: return 7;
+    case KeyKind::early_edit: return 8;
+  }
+  return 9;
 }
 
 std::string show(const Key& key) {

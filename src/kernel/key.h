@@ -21,19 +21,20 @@ namespace tw {
 enum class KeyKind : std::uint8_t {
   birth,
   step,
+  early_edit,   // between runs, where what happens at that instant is still to come
   callback,
   group_check,
-  fission,
-  witness,
   impact,
-  edit
+  edit          // between runs, after what has happened at that instant
 };
 
 const char* kind_name(KeyKind kind);
+// Enters the history's hash: the same for ever, whatever kinds there are.
+std::uint64_t kind_code(KeyKind kind);
 
 struct Key {
   double time = 0;
-  // 0 for birth, step and callback; else 1 + the larger of those of the arcs that start exactly
+  // 0 for birth, step, early_edit and callback; else 1 + the larger of those of the arcs that start exactly
   // at `time`, else 1.
   std::uint32_t microstep = 0;
   KeyKind kind = KeyKind::birth;
@@ -50,6 +51,10 @@ struct Key {
   friend bool operator<=(const Key& a, const Key& b) { return !(b < a); }
   friend bool operator>=(const Key& a, const Key& b) { return !(a < b); }
 };
+
+inline bool is_edit(const Key& key) {
+  return key.kind == KeyKind::edit || key.kind == KeyKind::early_edit;
+}
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 // After every key.

@@ -361,7 +361,7 @@ bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion&
   std::vector<BodyId> hit;
   for (const Draft& draft : drafts)
     if (draft.body->dynamic() && draft.data.arc_key == key) insert(hit, draft.body->id());
-  const bool between_runs = key.kind == KeyKind::edit;
+  const bool between_runs = is_edit(key);
 
   Region region = region_of(key, hit, occasion.whole);
   for (;;) {

@@ -115,7 +115,7 @@ void Kernel::carry(Regroup& work, const OldLink& old) const {
   const Draft* b = work.draft_of(second_of(link.pair));
   if ((a && a->placed) || (b && b->placed)) return;
   // between runs somebody may have set them anew
-  const bool renew = work.key.kind == KeyKind::edit;
+  const bool renew = is_edit(work.key);
   if (renew && !may_collide(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)])) return;
   work.links.push_back({link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count,
                         link.touched});

@@ -285,8 +285,11 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 
 // ---- changes between runs ----
 
-// Of an edit that concerns these: after whatever they have done at this instant.
+// Of an edit that concerns these.  After whatever they have done at this instant, where that is final; else before
+// everything there: a callback that stopped the run, or an impact that an interrupt left, sees what was changed, and
+// doesn't take it back by coming earlier.
 Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
+  if (!due_.inclusive) return {time, 0, KeyKind::early_edit, edits_++};
   std::uint32_t microstep = 1;
   for (const BodyId member : concerned)
     for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
@@ -297,7 +300,7 @@ Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   require_between_runs("a body was changed");
   Body& body = *bodies[id];
-  const Region region = region_of(last_key, {id}, true);
+  const Region region = region_of(present_key(), {id}, true);
   std::vector<BodyId> concerned = region.inside;
   concerned.insert(concerned.end(), region.border.begin(), region.border.end());
   const Key key = edit_key(concerned);
@@ -350,8 +353,12 @@ void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
   }
 }
 
-// After everything that has happened at the present time.
-Key Kernel::present_key() const { return {time, 0xffffffffu, KeyKind::edit, ~0ull}; }
+// What is below it is past: all that has happened at the present time where that is final, else nothing but what
+// was changed between runs.
+Key Kernel::present_key() const {
+  if (due_.inclusive) return {time, 0xffffffffu, KeyKind::edit, ~0ull};
+  return {time, 0, KeyKind::early_edit, ~0ull};
+}
 
 // Everything after the present time is forgotten and will be found again.
 void Kernel::restart_future() {
