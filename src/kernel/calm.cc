@@ -30,10 +30,6 @@ constexpr double watch = 0.5, growth = 1.1, drift = 0.1;
 constexpr std::size_t least_sleepers = 8;
 constexpr double least_share = 0.25;
 
-double fastest_point(const Side& side) {
-  return side.surface_speed() + side.point.w.norm() * side.body->radius;
-}
-
 bool stays(const Calm& calm, const Side& side, double now) {
   const double way = std::max(calm.early_peak, calm.peak) * (now - calm.since);
   const double turned = side.point.q.angularDistance(calm.q) * side.body->radius;
@@ -46,7 +42,7 @@ bool stays(const Calm& calm, const Side& side, double now) {
 // The books of one body at a discontinuity.
 Calm Kernel::calm_of(const Draft& draft, const Key& key) const {
   const Side side = side_of(draft);
-  const double speed = fastest_point(side);
+  const double speed = side.fastest_point();
   if (speed >= calm_share * std::sqrt(gravity_magnitude() * side.body->least_width)) return {};
   const Group* group = draft.data.group.get();
   const Calm known = group && !group->at_rest ? group->calm[draft.data.member] : Calm();

@@ -95,7 +95,7 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
   for (const BodyId id : after.members) {
     const Side side = side_of(*work.draft_of(id));
     const double unit = std::sqrt(gravity_magnitude() * side.body->least_width);
-    speed = std::max(speed, side.surface_speed() + side.point.w.norm() * side.body->radius);
+    speed = std::max(speed, side.fastest_point());
     scale = std::min(scale, unit);
   }
   const double now = work.key.time;
