@@ -18,9 +18,8 @@
 namespace tw {
 namespace {
 
-// Depth that may stay unrepresented: half of a contact's depth under the body's own weight, which is this
-// share of its size.
-constexpr double unseen_depth = 0.5, default_depth = 2.5e-4;
+// Depth that may stay unrepresented: half of the contact's own depth under the body's weight.
+constexpr double unseen_depth = 0.5;
 
 // A pair whose contacts do not tell the truth beyond this time, s.
 struct EarlyEnd {
@@ -150,7 +149,7 @@ double Kernel::early_end(Group& group, const GroupLink& link) {
   const Body& a = *bodies[first_of(link.pair)];
   const Body& b = *bodies[second_of(link.pair)];
   Pairing pair{group, link, a, b, {}, {}, manifold_points_};
-  const double allowed = unseen_depth * default_depth * std::min(a.least_width, b.least_width);
+  const double allowed = unseen_depth * contact_law(a, b, group.lightest, group.heaviest).depth;
   if (pair.travel() <= allowed) return end;
   double known = never;
   for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {

@@ -190,8 +190,10 @@ bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
 bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
   const double gravity = gravity_magnitude();
   const double slow = fusion_speed(*a.body, *b.body);
-  const double size = std::min(a.body->least_width, b.body->least_width);
-  const double d0 = 2.5e-4 * size;
+  const double mass_a = a.body->dynamic() ? a.body->mass : b.body->mass;
+  const double mass_b = b.body->dynamic() ? b.body->mass : a.body->mass;
+  const double d0 =
+      contact_law(*a.body, *b.body, std::min(mass_a, mass_b), std::max(mass_a, mass_b)).depth;
   if (key.microstep > 1 && fastest <= grazing * slow) return true;
   if (key.microstep > most_repeated) return true;
 

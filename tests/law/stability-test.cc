@@ -75,6 +75,22 @@ TEST(Stability, stiffness_over_six_decades) {
   }
 }
 
+// What is deep is measured by the contact's own law: in a soft heap no ripple of less than half of its depth is a feature
+// that nobody has seen, as it would be beside the depth of the default stiffness, a quarter of a thousandth of the size.
+TEST(Stability, ripples_of_a_soft_heap_are_no_unseen_features) {
+  World world;
+  ContactSettings settings;
+  settings.restitution = 0;
+  settings.friction = 0.5;
+  settings.stiffness = 1e3;
+  heap_scene(12, 3, false, 0, 0).fill(world);
+  world.set_contact({}, {}, settings);
+  world.advance(1);
+  const auto table = world.statistics();
+  EXPECT_GT(count_of(table, "group_checks"), 200);
+  EXPECT_LT(count_of(table, "early_ends"), count_of(table, "group_checks") / 100);
+}
+
 // mu m g on a ring: a flat box and a disc lose their spin at a constant rate, and a ball on its pole
 // keeps it.
 TEST(Stability, thousand_radians_a_second_in_contact) {
