@@ -5,7 +5,7 @@
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (ice-9 match)
-  #:export (add-body! keyframes
+  #:export (add-body! remove-body! keyframes
             body? view? body-name body-mass body-kind view-body
             position orientation velocity angular-velocity kinetic-energy
             slot slot? applied-force applied-torque random-real!))
@@ -52,6 +52,12 @@ come from the shape and the density.
     (%add-body! (current-world)
                 (body-properties given (body-motion motion max-speed shape))
                 (caller-place))))
+
+(define (remove-body! body)
+  "Take BODY out of the current world, between runs: it touches nothing from now on, what lay on it
+falls, and callbacks that have it among their targets end.  Its name may be given again; using BODY
+after this is an error."
+  (%remove-body! (current-world) body))
 
 ;; The motion of the body as the C++ side wants it, or #f.
 (define (body-motion motion max-speed shape)

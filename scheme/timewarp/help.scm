@@ -17,7 +17,7 @@
      sphere box cylinder convex half-space union placed rock rotation shape-volume shape-inertia
      shape-centroid shape-radius shape?)
     ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
-     add-body! keyframes position orientation velocity angular-velocity applied-force
+     add-body! remove-body! keyframes position orientation velocity angular-velocity applied-force
      applied-torque kinetic-energy slot slot? random-real! body-name body-mass body-kind view-body
      body? view?)
     ("Contact" "restitution and friction, who collides, the contacts at present"

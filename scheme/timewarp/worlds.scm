@@ -190,7 +190,7 @@ called waits for the next run."
   (format port "#<world ~a bodies>" (length (%world-bodies world))))
 
 (define-method (write (body <body>) port)
-  (format port "#<body ~a>" (%body-name body)))
+  (format port "#<body ~a~a>" (%body-name body) (if (%removed? body) " (removed)" "")))
 
 (define-method (write (view <view>) port)
   (display "#<view>" port))

@@ -19,6 +19,12 @@ void BroadPhase::place(std::uint32_t id, const Aabb& box, bool stands) {
   ++version_;
 }
 
+void BroadPhase::remove(std::uint32_t id) {
+  if (moving_.contains(id)) return moving_.remove(id);
+  standing_.remove(id);
+  ++version_;
+}
+
 const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
   if (id >= zones_.size()) zones_.resize(id + 1);
   Zone& zone = zones_[id];

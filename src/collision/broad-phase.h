@@ -19,6 +19,8 @@ class BroadPhase {
  public:
   // Inserts or moves a box (dense numbers from 0).  `stands`: it will hardly ever move.
   void place(std::uint32_t id, const Aabb& box, bool stands);
+  // Takes the box out; it must be there.
+  void remove(std::uint32_t id);
   bool contains(std::uint32_t id) const { return moving_.contains(id) || standing_.contains(id); }
   const Aabb& box(std::uint32_t id) const {
     return moving_.contains(id) ? moving_.box(id) : standing_.box(id);

@@ -26,7 +26,7 @@ Key Kernel::first_tick(const CallbackRecord& callback, const Key& key) const {
 
 void Kernel::schedule_callback(std::uint32_t number) {
   CallbackRecord& callback = callbacks[number];
-  if (callback.next.time == never || callback.parked) {
+  if (callback.next.time == never || callback.parked || callback.ended) {
     queue.withdraw(callback.event);
     return;
   }

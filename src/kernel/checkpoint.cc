@@ -27,6 +27,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   result->hash_sum = hash_sum_;
   result->hash_count = hash_count_;
   result->edits = edits_;
+  result->removals = removals_;
   result->gravity = options.gravity;
   for (const auto& body : bodies) {
     const Key present = present_key();
@@ -53,8 +54,9 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   require_between_runs("a checkpoint was restored");
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
   TW_REQUIRE(checkpoint.states.size() == bodies.size() &&
-                 checkpoint.callbacks.size() == callbacks.size(),
-             "bodies or callbacks were added since the checkpoint; expected the same ones");
+                 checkpoint.callbacks.size() == callbacks.size() &&
+                 checkpoint.removals == removals_,
+             "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
 
   // empty the graph and the event queue
   for (std::uint32_t i = 0; i < pairs.size(); ++i)

@@ -23,7 +23,7 @@ struct Checkpoint {
   Due due;
   bool begun = false;
   Counters counters;
-  std::uint64_t hash_sum = 0, hash_count = 0, edits = 0;
+  std::uint64_t hash_sum = 0, hash_count = 0, edits = 0, removals = 0;
   Vec3 gravity = Vec3::Zero();
   // by body: the last committed one, and what edits have added to it
   struct Kept {

@@ -138,7 +138,7 @@ bool Kernel::boxes_overlap(const Body& a, const Body& b) const {
 }
 
 bool Kernel::may_collide(const Body& a, const Body& b) const {
-  return contact_parameters(a.id(), b.id()).collide;
+  return !a.info.removed && !b.info.removed && contact_parameters(a.id(), b.id()).collide;
 }
 
 // Both boxes now reach from GVT to the lesser claim; disjoint boxes mean: free until then.

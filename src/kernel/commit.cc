@@ -201,6 +201,7 @@ void Kernel::free_states(double limit) {
 std::string Kernel::history_hash() const {
   std::uint64_t sum = hash_sum_;
   for (const auto& body : bodies) {
+    if (body->info.removed) continue;
     const State* state = state_at(body->id(), time);
     const Key end{time, 0, KeyKind::step, body->id()};
     sum += state_hash(*body, end, evaluate(*body, *state, time), *state);

@@ -61,6 +61,7 @@ struct CallbackRecord {
   EventQueue::Handle event = EventQueue::none;
   double head_start = 0;
   bool parked = false;              // a target has stopped
+  bool ended = false;               // a target was removed
 };
 
 struct SinkRecord {
@@ -82,6 +83,7 @@ class Kernel {
 
   // ---- setup.cc ----
   BodyId add_body(const BodyDef& def);
+  void remove_body(BodyId id);       // remove.cc
   void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
@@ -102,6 +104,7 @@ class Kernel {
   void process(Event event);         // for policies
 
   // ---- reading ----
+  std::uint64_t removals() const { return removals_; }
   ArcPoint point_at(BodyId id, double when) const;
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
@@ -362,7 +365,7 @@ class Kernel {
   std::size_t next_observer_ = 0;    // who hears next of the first of them
   Due due_;                          // frames that may be delivered
   std::uint64_t hash_sum_ = 0, hash_count_ = 0;
-  std::uint64_t edits_ = 0;
+  std::uint64_t edits_ = 0, removals_ = 0;
   unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
   Random adversary_{0};
   mutable std::unordered_map<std::uint64_t, ContactParameters> contact_cache_;  // by contact classes

@@ -66,7 +66,7 @@ StatisticsTable Kernel::statistics() const {
       {"duration", time},
       {"frames", sinks.empty() ? std::int64_t{0} : std::int64_t{sinks.front().next_frame}},
       {"bodies_moving", moving},
-      {"bodies_total", whole(bodies.size())},
+      {"bodies_total", whole(bodies.size() - removals_)},
       {"discontinuities", whole(discontinuities)},
       {"collisions", whole(counters.collisions)},
       {"fusions", whole(counters.fusions)},

@@ -92,6 +92,9 @@ ContactParameters World::contact_parameters(BodyId a, BodyId b) const {
   return kernel_->contact_parameters(a, b);
 }
 
+std::uint64_t World::removals() const { return kernel_->removals(); }
+void World::remove_body(BodyId id) { kernel_->remove_body(id); }
+
 std::uint64_t World::add_callback(const CallbackDef& def) { return kernel_->add_callback(def); }
 
 void World::add_collision_callback(const CollisionCallbackDef& def) {

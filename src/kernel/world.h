@@ -57,6 +57,7 @@ struct BodyInfo {
   std::optional<Vec3> color;
   bool visible = true;
   Place place;
+  bool removed = false;                // World::remove_body; its number stays taken
 };
 
 // Test modes of the scheduler (kernel.md): the committed history must not depend on them.
@@ -150,7 +151,11 @@ class World {
 
   // ---- bodies ----
   BodyId add_body(const BodyDef& def);      // born at time()
-  std::size_t body_count() const;
+  // Between runs: it touches nothing from now on, what lay on it falls, callbacks that have it among their targets end.
+  // Its number is not given again, its name may be.  Errors: it was removed before.
+  void remove_body(BodyId id);
+  std::size_t body_count() const;           // removed ones, too
+  std::uint64_t removals() const;           // how many were removed
   const BodyInfo& body(BodyId id) const;
   std::optional<BodyId> find_body(const std::string& name) const;
 

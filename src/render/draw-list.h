@@ -68,6 +68,7 @@ struct DrawFrame {
   double time = 0;
   std::vector<Pose> poses;             // by body; bodies past its end keep the pose they had
   std::vector<DrawBody> added;         // registered before this frame is drawn
+  std::vector<std::size_t> removed;    // bodies that are not seen any more
   std::optional<Camera> camera;        // from this frame on
   std::vector<HudLine> hud;            // lines below the time, UTF-8 (Latin-1 is drawn)
   std::vector<DrawContact> contacts;   // drawn over the picture

@@ -169,9 +169,14 @@ void Renderer::set_poses(const DrawFrame& frame) {
   for (const DrawBody& body : frame.added) register_body(body);
   TW_ASSERT(frame.poses.size() <= scene_.bodies.size(), "more poses than bodies");
   std::copy(frame.poses.begin(), frame.poses.end(), poses_.begin());
-  for (Pose& pose : poses_) {
-    if (drawable(pose)) continue;
-    ++skipped_poses_;
+  removed_.resize(poses_.size(), false);
+  for (const std::size_t body : frame.removed) removed_[body] = true;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    Pose& pose = poses_[i];
+    if (!removed_[i]) {
+      if (drawable(pose)) continue;
+      ++skipped_poses_;
+    }
     pose.p.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
 }

@@ -81,6 +81,7 @@ class Renderer {
   BodyDrawer bodies_;
   ShadowMap sun_map_, overhead_map_;
   std::vector<Pose> poses_;
+  std::vector<bool> removed_;  // bodies that are not seen any more
   View view_;
   Matrix4f projection_ = Matrix4f::Identity();
   Aabb first_bounds_;           // of the scene as registered: what cameras are fitted to

@@ -50,7 +50,7 @@ void read_property(BodyDef& def, SCM name, SCM value) {
 const BodyInfo& info_of(SCM object) {
   if (is_view(object)) return to_world(view_world(object)).body(to_view(object).body());
   if (!is_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
-  return to_world(body_world(object)).body(to_own_body(object));
+  return to_world(body_world(object)).body(body_number(object));
 }
 
 const char* kind_text(BodyKind kind) {
@@ -79,10 +79,22 @@ TW_PRIMITIVE(add_body, "%add-body!", (SCM world, SCM alist, SCM place),
   return from_body(world, id);
 }
 
+TW_PRIMITIVE(remove_body, "%remove-body!", (SCM world, SCM body), "Take a body out of its world.") {
+  require_outside_callbacks("remove-body!");
+  to_world(world).remove_body(to_body(world, body, "the body"));
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(is_removed, "%removed?", (SCM body), "Was the body removed?") {
+  return scm_from_bool(info_of(body).removed);
+}
+
 TW_PRIMITIVE(world_bodies, "%world-bodies", (SCM world), "Return all bodies in order.") {
   SCM list = SCM_EOL;
-  for (std::size_t i = to_world(world).body_count(); i-- > 0;)
-    list = scm_cons(from_body(world, static_cast<BodyId>(i)), list);
+  const World& w = to_world(world);
+  for (std::size_t i = w.body_count(); i-- > 0;)
+    if (const auto id = static_cast<BodyId>(i); !w.body(id).removed)
+      list = scm_cons(from_body(world, id), list);
   return list;
 }
 

@@ -46,6 +46,11 @@ void FrameDrawer::frame(long, double frame_time, std::span<const BodyPose> poses
     frame.added.push_back(draw_body(world_, id));
     poses_.push_back(frame.added.back().pose);
   }
+  // and those that went
+  if (world_.removals() > removals_)
+    for (BodyId id = 0; id < poses_.size(); ++id)
+      if (world_.body(id).removed) frame.removed.push_back(id);
+  removals_ = world_.removals();
   for (const BodyPose& pose : poses)
     poses_[pose.body] = {pose.state.position, pose.state.orientation};
   frame.time = frame_time;

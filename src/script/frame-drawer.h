@@ -27,6 +27,7 @@ class FrameDrawer : public FrameSink {
   std::vector<HudLine> hud_;
   bool contacts_;
   long frames_ = 0;
+  std::uint64_t removals_ = 0;  // that it has seen
   FramePipeline pipeline_;
 };
 

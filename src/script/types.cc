@@ -97,7 +97,13 @@ BodyId to_body(SCM world, SCM object, const char* name) {
   if (!is_body(object)) throw BadValue{name, object, "a body"};
   if (!scm_is_eq(body_world(object), world))
     throw BadValue{name, object, "a body of the current world (this one belongs to another)"};
-  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(object, 0)));
+  const BodyId id = body_number(object);
+  if (to_world(world).body(id).removed) throw BadValue{name, object, "a body that was not removed"};
+  return id;
+}
+
+BodyId body_number(SCM body) {
+  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(body, 0)));
 }
 
 SCM from_body(SCM world, BodyId id) {

@@ -52,6 +52,8 @@ SCM body_world(SCM body);
 // The number of a body of `world`.  BadValue for what is no body, and for a body of another world.
 BodyId to_body(SCM world, SCM object, const char* name);
 // The number of a body in the world it belongs to.
+// Of one that may have been removed, for what its handle alone can tell.
+BodyId body_number(SCM body);
 inline BodyId to_own_body(SCM body) { return to_body(body_world(body), body, "the body"); }
 // The handle of a body, always the same object.
 SCM from_body(SCM world, BodyId id);

@@ -146,4 +146,30 @@
       (add-body! #:shape (sphere 1) #:motion (lambda (time) #(0 0 0)) #:max-speed 1)
       (run! #:until 1))))
 
+;; ---- removing ----
+
+(in-world ()
+  (ground)
+  (let ((low (add-body! #:name "low" #:shape (box 1 1 1) #:position #(0 0 0.5)))
+        (high (add-body! #:name "high" #:shape (box 1 1 1) #:position #(0 0 1.5))))
+    (run! #:until 0.5)
+    (remove-body! low)
+    (test-equal "a removed body is listed no more" '("ground" "high") (map body-name (world-bodies)))
+    (test-equal "and says so" "#<body low (removed)>" (format #f "~s" low))
+    (for-each (lambda (use)
+                (test-message "what uses it is refused" "low \\(removed\\)>; expected a body that was not removed"
+                  (use low)))
+              (list position velocity state-queue remove-body! kinetic-energy
+                    (lambda (b) (set! (velocity b) #(1 0 0)))
+                    (lambda (b) (add-callback! b (const #f)))
+                    (lambda (b) (set-contact-parameters! b #t #:friction 0))
+                    (lambda (b) (contact-parameters high b))
+                    (lambda (b) (camera #:follow b))))
+    (test-assert "its name may be given again"
+      (body? (add-body! #:name "low" #:shape (sphere 0.1) #:position #(5 0 1))))
+    (run! #:until 3)
+    (test-assert "what lay on it falls" (close? (vector-ref (position high) 2) 0.5 1e-3))
+    (add-callback! high (lambda (time view) (remove-body! high) #f) #:start 3.5)
+    (test-message "not in callbacks" "remove-body! was used inside a callback" (run! #:until 4))))
+
 (test-end "bodies")
