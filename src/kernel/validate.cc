@@ -118,9 +118,9 @@ std::string Kernel::validate_claims() const {
       if (!std::isfinite(t) || t < gvt) continue;
       const State* s = graph.last_at_or_before_time(body->id(), t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
-      // the middle of the shape: the centre of mass may lie outside
-      const Vec3 middle = body->shape_P->bounds(frame_at(*body, *s, t)).center();
-      if (!grid.box(body->id()).contains(middle))
+      const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
+      const Aabb& box = grid.box(body->id());
+      if (!box.contains(there.lo) || !box.contains(there.hi))
         return "box does not hold " + body->info.name + " at " + show(t) + " s";
     }
   }
@@ -134,7 +134,43 @@ void Kernel::validate_all() const {
     TW_ASSERT(broken.empty(), broken + " (GVT " + show(gvt) + " s)");
 }
 
-// Every bit of a state that later motion depends on.
+namespace {
+
+void add(Hasher& h, const Vec3& v) {
+  for (int i = 0; i < 3; ++i) h.add(v[i]);
+}
+
+void add_group(Hasher& h, const Group& group) {
+  for (const double time : {group.birth, group.next_check, group.quiet_since, group.quiet_speed,
+                            group.first_step, group.lightest, group.heaviest})
+    h.add(time);
+  h.add(std::uint64_t{group.at_rest} << 2 | std::uint64_t{group.provisional} << 1 |
+        std::uint64_t{group.has_border});
+  for (const auto& ids : {group.members, group.outside})
+    for (const BodyId id : ids) h.add(std::uint64_t{id});
+  for (const GroupLink& link : group.links) {
+    h.add(link.pair);
+    h.add(std::uint64_t{link.first} << 33 | std::uint64_t{link.count} << 1 |
+          std::uint64_t{link.touched});
+  }
+  for (const ContactTag& tag : group.tags) {
+    h.add(pair_id(tag.reference, tag.other));
+    h.add(static_cast<std::uint64_t>(tag.parts));
+    h.add(tag.feature);
+  }
+  for (const double gap : group.gaps) h.add(gap);
+  for (const double end : group.ends) h.add(end);
+  for (const Calm& calm : group.calm) {
+    for (const double number : {calm.since, calm.early_peak, calm.peak}) h.add(number);
+    add(h, calm.x);
+    for (int i = 0; i < 4; ++i) h.add(calm.q.coeffs()[i]);
+  }
+  for (const GroupContact& c : group.arc->start().contacts) add(h, c.stretch);
+}
+
+}  // namespace
+
+// Every bit of a state that later motion depends on, and of its group, with its first member.
 std::uint64_t Kernel::state_checksum(const State& s) const {
   Hasher h;
   h.add(state_hash(*bodies[s.process], s.key, {s.x, s.q, s.v, s.L}, s));
@@ -144,11 +180,7 @@ std::uint64_t Kernel::state_checksum(const State& s) const {
   h.add(s.impacts.last_time);
   for (int i = 0; i < 3; ++i) h.add(s.force[i]);
   if (s.group && s.member == 0) {
-    h.add(s.group->next_check);
-    h.add(s.group->quiet_since);
-    for (const Calm& calm : s.group->calm) h.add(calm.since), h.add(calm.peak);
-    for (const GroupContact& c : s.group->arc->start().contacts)
-      for (int i = 0; i < 3; ++i) h.add(c.stretch[i]);
+    add_group(h, *s.group);
   }
   return h.value();
 }
