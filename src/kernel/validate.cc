@@ -86,7 +86,8 @@ std::string Kernel::validate_residences() const {
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
       if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
-      if (s->starts_arc())
+      // once a group: this runs after every event
+      if (s->starts_arc() && s->member == 0)
         for (const GroupLink& link : group.links)
           for (const BodyId id : {first_of(link.pair), second_of(link.pair)})
             if (!group.contains(id) &&
