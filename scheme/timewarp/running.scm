@@ -89,7 +89,8 @@ bit, as if the world had never run further."
   (%restore! (current-world) checkpoint))
 
 (define (total-energy)
-  "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity, J."
+  "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity and in
+the springs of their contacts, J."
   (%total-energy (current-world)))
 
 (define (total-momentum)

@@ -1,8 +1,9 @@
 // Contact groups: a set of bodies in persistent contact, from one discontinuity to the next.
 //
 // A Group is made by the discontinuity that gives its members new arcs (fusion, group check, impact on a
-// member, a callback that changed one) and never changes; its members' states share it.  Its arc is
-// integrated when it is first looked at, which is a function of the group alone.
+// member, a callback that changed one); its members' states share it.  Its arc is integrated when it is first
+// looked at, which is a function of the group alone; then the end test says where its members' arcs really end
+// (next_check, ends), once.  Nothing else of it changes.
 //
 // Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs are
 // constant until something touches one of them.

@@ -2,7 +2,7 @@
 //
 // Single points by the impact law; face-on: at the manifold's centroid first, then at the deepest
 // approaching point until none approaches; simultaneous contacts: the worst approacher first, at most
-// 200 impulses.  A soft impact needs contact groups and stops the run with a clear message.
+// 200 impulses.  A soft impact leaves the motion as it is: the two fuse (regroup.cc).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
