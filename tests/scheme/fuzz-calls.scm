@@ -8,7 +8,7 @@
 ;; its number.  They are made in a child process, which says what it does before it does it.  Where
 ;; the child dies, or says nothing for long, the parent repeats the episode without one call after
 ;; the other and prints those that are needed.  A call may return or raise an error that has a
-;; message.
+;; message.  Files that calls write go with a folder of their own.
 ;; Settings: plain, check (validators after every event), adversary (events out of order),
 ;; undo (every discontinuity taken back and done again).
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
@@ -127,7 +127,9 @@
 
 ;; ---- the parent ----
 
-(define program (car (command-line)))
+(define program (canonicalize-path (car (command-line))))
+;; where the child works
+(define folder (delay (mkdtemp (string-append (or (getenv "TMPDIR") "/tmp") "/timewarp-fuzz-XXXXXX"))))
 
 ;; Reads a line, or #f if nothing comes in time.
 (define (read-line-in-time port)
@@ -138,12 +140,14 @@
 
 ;; Runs a child; returns how it ended - #f for well -, the episode and its calls, latest first.
 (define (run-child . arguments)
+  (force folder)
   (match (pipe)
     ((in . out)
      (let ((pid (primitive-fork)))
        (when (zero? pid)
          (close-port in)
          (dup2 (fileno out) 1)
+         (chdir (force folder))
          (apply execlp "guile" "guile" "--no-auto-compile" program "--child"
                 (format #f "--seed=~a" seed) (format #f "--setting=~a" setting) arguments))
        (close-port out)
@@ -210,4 +214,6 @@
 
 (if (options 'child #f)
     (child)
-    (exit (parent)))
+    (let ((status (parent)))
+      (system* "rm" "-rf" (force folder))
+      (exit status)))
