@@ -1,7 +1,7 @@
 // Checkpoints: the committed present of a world, to come back to.
 //
-// What is committed is a state per body, with what edits have added to it, and the next tick per callback; everything else (claims, pairs,
-// events) is found anew, as after any change.  So a run that goes on from a restored checkpoint
+// What is committed is a state per body, with what edits have added to it, and the next tick per callback;
+// everything else (claims, pairs, events) is found anew, as after any change.  So a run that goes on from a restored checkpoint
 // commits the same history, bit for bit, as one that was never interrupted.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -34,7 +34,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
     const State* state = graph.last_before(body->id(), present);
     while (state->prev && !state->committed) state = state->prev;
     auto& kept = result->states.emplace_back();
-    for (; state && state->key < present; state = state->next) 
+    for (; state && state->key < present; state = state->next)
       kept.push_back({state->key, state->committed, *state});
   }
   for (const CallbackRecord& callback : callbacks) {

@@ -184,7 +184,8 @@ StateGraph::Farewell Kernel::release() {
     if (next) counters.kinematic_work += contact_work(state, next->key.time);
     if (stepped(state))
       counters.integration_length += count_steps(counters, state);
-    else if (next) counters.integration_length += next->key.time - state.key.time;
+    else if (next)
+      counters.integration_length += next->key.time - state.key.time;
   };
 }
 
