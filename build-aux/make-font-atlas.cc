@@ -55,10 +55,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: make-font-atlas FONT.ttf\n");
     return 1;
   }
-  std::printf("// Letters of %s, drawn by build-aux/make-font-atlas.cc: don't edit.\n"
-              "// The DejaVu fonts are (c) Bitstream, Inc. and Tavmjong Bah, free under the\n"
-              "// Bitstream Vera licence; DejaVu's own changes are in the public domain.\n",
-              face->family_name);
+  std::printf(
+      "// Letters of %s, drawn by build-aux/make-font-atlas.cc: don't edit.\n"
+      "// The DejaVu fonts are (c) Bitstream, Inc. and Tavmjong Bah, free under the\n"
+      "// Bitstream Vera licence; DejaVu's own changes are in the public domain.\n",
+      face->family_name);
   for (const int size : sizes) {
     FT_Set_Pixel_Sizes(face, 0, static_cast<unsigned>(size));
     std::printf("TW_FONT_BEGIN(%d)\n", size);

@@ -2,6 +2,4 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "script/program.h"
 
-int main(int argc, char** argv) {
-  tw::run_program(argc, argv);
-}
+int main(int argc, char** argv) { tw::run_program(argc, argv); }

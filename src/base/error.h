@@ -49,14 +49,15 @@ std::string show(double value);
 }  // namespace tw
 
 // Always on, also in release builds: keep the condition cheap.
-#define TW_ASSERT(condition, details)                                       \
-  do {                                                                      \
-    if (!(condition)) [[unlikely]]                                          \
-      ::tw::assertion_failed(#condition, __FILE__, __LINE__, (details));    \
+#define TW_ASSERT(condition, details)                                    \
+  do {                                                                   \
+    if (!(condition)) [[unlikely]]                                       \
+      ::tw::assertion_failed(#condition, __FILE__, __LINE__, (details)); \
   } while (false)
 
 // The user's error; `message` is evaluated only on failure.
-#define TW_REQUIRE(condition, message)                      \
-  do {                                                      \
-    if (!(condition)) [[unlikely]] throw ::tw::UserError(message); \
+#define TW_REQUIRE(condition, message) \
+  do {                                 \
+    if (!(condition)) [[unlikely]]     \
+      throw ::tw::UserError(message);  \
   } while (false)

@@ -24,7 +24,8 @@ constexpr double level = 1e-13;
 struct Place {
   LeastAxis axis;
   double room = 0;  // m, from the foot to the nearest side; negative: how far it is beyond
-  int side = 0;     // the nearest side: of a face by its number; of edges 0, 1: tail, head of A's; 2, 3
+  int side =
+      0;  // the nearest side: of a face by its number; of edges 0, 1: tail, head of A's; 2, 3
 };
 
 struct Climber {
@@ -77,8 +78,8 @@ Place Climber::face_of_b(int vertex_a, int face) const {
   Place place;
   const Vec3 point = a_in_b * a.vertex(vertex_a);
   const Vec3& normal = b.face(face).normal;
-  place.axis = {AxisKind::face_b, normal.dot(point) - b.face(face).offset,
-                -(b_in_a.R * normal), vertex_a, face};
+  place.axis = {AxisKind::face_b, normal.dot(point) - b.face(face).offset, -(b_in_a.R * normal),
+                vertex_a, face};
   nearest_side(b, face, point, place);
   return place;
 }
@@ -116,8 +117,8 @@ bool Climber::edges(int edge_a, int edge_b, Place& place) const {
   return true;
 }
 
-// While the axis turns from n to m, which neighbour of the vertex becomes as deep as the vertex first.
-// `sign` +1: deep is low along the axis; -1: high.
+// While the axis turns from n to m, which neighbour of the vertex becomes as deep as the vertex
+// first. `sign` +1: deep is low along the axis; -1: high.
 const Polyhedron::Link* first_to_take_over(const Polyhedron& p, int vertex, const Vec3& n,
                                            const Vec3& m, double sign) {
   const Polyhedron::Link* first = nullptr;
@@ -144,8 +145,8 @@ const Polyhedron::Link* first_to_take_over(const Polyhedron& p, int vertex, cons
 
 bool Climber::turn_about_a(int edge_a, int next_face, int vertex_b, const Vec3& n,
                            Place& place) const {
-  const Polyhedron::Link* link = first_to_take_over(
-      b, vertex_b, a_in_b.R * n, a_in_b.R * a.face(next_face).normal, 1);
+  const Polyhedron::Link* link =
+      first_to_take_over(b, vertex_b, a_in_b.R * n, a_in_b.R * a.face(next_face).normal, 1);
   if (link != nullptr) return edges(edge_a, link->edge, place);
   place = face_of_a(next_face, vertex_b);
   return true;
@@ -209,8 +210,9 @@ Place Climber::start() const {
 // Whether the hull of the disc and the ball holds the ball of radius `depth` about the origin.
 //
 // With nu the axis and a direction cos(phi) nu + sin(phi) u, the disc reaches depth cos(phi) +
-// room sin(phi), which is enough up to tan(phi/2) = room/depth.  For the rest, at most psi from -nu with
-// tan(psi/2) = depth/room, the ball about c must do: c.(-nu) cos(psi) - |c'| sin(psi) + R >= depth.
+// room sin(phi), which is enough up to tan(phi/2) = room/depth.  For the rest, at most psi from -nu
+// with tan(psi/2) = depth/room, the ball about c must do: c.(-nu) cos(psi) - |c'| sin(psi) + R >=
+// depth.
 bool Climber::proven(const Place& place) const {
   const double depth = -place.axis.distance;
   const double room = place.room;
@@ -221,7 +223,8 @@ bool Climber::proven(const Place& place) const {
   const double square = room * room + depth * depth;
   const double cos_psi = (room * room - depth * depth) / square;
   const double sin_psi = 2 * room * depth / square;
-  return below > 0 && below * cos_psi - aside * sin_psi + a.inner_radius() + b.inner_radius() > depth;
+  return below > 0 &&
+         below * cos_psi - aside * sin_psi + a.inner_radius() + b.inner_radius() > depth;
 }
 
 }  // namespace

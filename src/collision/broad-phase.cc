@@ -29,7 +29,8 @@ const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
   if (id >= zones_.size()) zones_.resize(id + 1);
   Zone& zone = zones_[id];
   const Aabb& box = moving_.box(id);
-  if (zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi)) return zone;
+  if (zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi))
+    return zone;
   zone.version = version_;
   zone.box = box;
   zone.box.grow(zone_margin * box.size().maxCoeff());

@@ -1,7 +1,7 @@
 // Ghost contacts at the seams of fixed bodies and of unions.
 //
-// For convex Q and a point p of Q, n is a normal of Q at p exactly where p is the nearest point of Q to
-// p + epsilon n.
+// For convex Q and a point p of Q, n is a normal of Q at p exactly where p is the nearest point of
+// Q to p + epsilon n.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>

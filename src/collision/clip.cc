@@ -76,13 +76,13 @@ void thin_points(std::vector<ClippedPoint>& points, std::size_t most) {
   std::vector<bool> chosen(points.size(), false);
   // squared distance to the nearest chosen point
   std::vector<double> away(points.size(), 1e300);
-  auto pick = static_cast<std::size_t>(
-      std::min_element(points.begin(), points.end(), deeper) - points.begin());
+  auto pick = static_cast<std::size_t>(std::min_element(points.begin(), points.end(), deeper) -
+                                       points.begin());
   for (std::size_t n = 0; n < most; ++n) {
     chosen[pick] = true;
     for (std::size_t i = 0; i < points.size(); ++i)
-      away[i] = chosen[i] ? -1
-                          : std::min(away[i], (points[i].point - points[pick].point).squaredNorm());
+      away[i] =
+          chosen[i] ? -1 : std::min(away[i], (points[i].point - points[pick].point).squaredNorm());
     pick = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
   }
   std::size_t kept = 0;

@@ -1,7 +1,7 @@
 // Contact manifolds of cylinders.
 //
-// Which features meet is read off the axis of least distance: along a cap's normal the cap does, square to
-// the axis the side does, else the rim.
+// Which features meet is read off the axis of least distance: along a cap's normal the cap does,
+// square to the axis the side does, else the rim.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -19,7 +19,8 @@ namespace {
 // degree would make a depth wrong by r/6600.)
 constexpr double aligned = 0.99999390765779;
 
-// sin 0.2 degrees: directions this near to each other count as parallel, this near to square as square
+// sin 0.2 degrees: directions this near to each other count as parallel, this near to square as
+// square
 constexpr double level = 0.0034906514152237;
 
 // a disc as an outline
@@ -27,7 +28,8 @@ constexpr int disc_sides = 16;
 
 // What the points of a plane may miss of the distance before the witness is added: relative to the
 // distance, and to the radius.  Eight fixed points of a rim that stands flat (tilt < 3e-4) miss
-// r tilt (1 - cos(pi/8)) < 2.3e-5 r; a witness in the place of one of them would make it rock for ever.
+// r tilt (1 - cos(pi/8)) < 2.3e-5 r; a witness in the place of one of them would make it rock for
+// ever.
 constexpr double missed_ratio = 2e-3;
 constexpr double missed_floor = 2.5e-5;
 
@@ -205,8 +207,8 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   if (out.size() == from) add(v.on_other + radius * v.normal, 0);
 }
 
-// The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the axis
-// and square to the normal; zero where there is none within 0.2 degrees.
+// The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the
+// axis and square to the normal; zero where there is none within 0.2 degrees.
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
@@ -310,10 +312,12 @@ void half_space_and_cylinder(const ConvexPart& half_space, const Frame& frame_h,
 void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                     const Frame& frame_b, const RoundDistance& near, double reach, int pair,
                     std::vector<ManifoldPoint>& out) {
-  const View of_a{a,    frame_a,     b,           frame_b,      true,
-                  near.normal, near.point_a, near.point_b, near.distance, reach, pair};
-  const View of_b{b,    frame_b,     a,           frame_a,      false,
-                  -near.normal, near.point_b, near.point_a, near.distance, reach, pair};
+  const View of_a{
+      a,     frame_a, b, frame_b, true, near.normal, near.point_a, near.point_b, near.distance,
+      reach, pair};
+  const View of_b{
+      b,     frame_b, a, frame_a, false, -near.normal, near.point_b, near.point_a, near.distance,
+      reach, pair};
   if (a.kind == PartKind::polyhedron) return polyhedron_and_cylinder(of_a, of_b, out);
   if (b.kind == PartKind::polyhedron) return polyhedron_and_cylinder(of_b, of_a, out);
   two_cylinders(of_a, of_b, out);

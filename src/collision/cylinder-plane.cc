@@ -13,8 +13,8 @@ namespace {
 // sine of the angle between axis and normal below which a cylinder stands: 20 degrees
 constexpr double standing = 0.342;
 
-// the same below which it stands flat, on points fixed in it: nearer to upright the lowest point of the
-// rim is noise
+// the same below which it stands flat, on points fixed in it: nearer to upright the lowest point of
+// the rim is noise
 constexpr double flat = 3e-4;
 
 // a rim's points
@@ -36,7 +36,8 @@ void emit(const Found& found, const Ground& ground, FeatureMode mode, ManifoldPo
   p.radius = found.radius;
   p.core_point = found.place.point + found.radius * ground.normal;
   p.reference_point = found.place.point - found.place.gap * ground.normal;
-  p.feature = feature_name(p.pair, mode, {ground.name, found.place.key, p.reference_is_a ? 1u : 0u});
+  p.feature =
+      feature_name(p.pair, mode, {ground.name, found.place.key, p.reference_is_a ? 1u : 0u});
   out.push_back(p);
 }
 
@@ -107,8 +108,8 @@ void stand(const PlacedCylinder& c, const Ground& ground, double rolling, const 
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the cylinder
     const bool lowest = rolling > 0 && point.key == 0;
-    emit({point, lowest ? rolling : 0},
-         ground, rolling > 0 ? FeatureMode::rim : FeatureMode::standing, p, out);
+    emit({point, lowest ? rolling : 0}, ground,
+         rolling > 0 ? FeatureMode::rim : FeatureMode::standing, p, out);
   }
 }
 

@@ -1,9 +1,10 @@
 // A cylinder on a plane: the points that carry it, lying, standing or on its rim.
 //
-// With m the plane's normal, a the axis and m' the part of m square to a, the lowest point of a rim about
-// e is x = e - r m'/|m'|.  The ray from x along m meets the axis at a distance of rho = r/|m'|: a ball of
-// that radius about that point of the axis touches the plane where the rim does, and goes on doing so
-// while the cylinder spins about its axis: the core point of a rolling cylinder.
+// With m the plane's normal, a the axis and m' the part of m square to a, the lowest point of a rim
+// about e is x = e - r m'/|m'|.  The ray from x along m meets the axis at a distance of rho =
+// r/|m'|: a ball of that radius about that point of the axis touches the plane where the rim does,
+// and goes on doing so while the cylinder spins about its axis: the core point of a rolling
+// cylinder.
 //
 // Frames: world.
 //

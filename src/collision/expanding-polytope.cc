@@ -35,9 +35,8 @@ class Polytope {
       for (Facet& f : facets_) f = facet_of({f.corner[0], f.corner[2], f.corner[1]});
   }
   const Facet& nearest() const {
-    return *std::min_element(facets_.begin(), facets_.end(), [](const auto& f, const auto& g) {
-      return f.distance < g.distance;
-    });
+    return *std::min_element(facets_.begin(), facets_.end(),
+                             [](const auto& f, const auto& g) { return f.distance < g.distance; });
   }
   // Replaces the facets that see the point.  False where rounding leaves no clean outline of them.
   bool add(const DifferencePoint& point) {

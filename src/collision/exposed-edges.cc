@@ -62,8 +62,8 @@ void subtract(std::vector<Stretch>& from, const Stretch& held) {
   }
 }
 
-// Where the greatest of the heights is least on the stretch, and the one or two heights there: `falling`
-// is the one that governs on the side of the tail.
+// Where the greatest of the heights is least on the stretch, and the one or two heights there:
+// `falling` is the one that governs on the side of the tail.
 struct Lowest {
   double s = 0;
   const Height* falling = nullptr;
@@ -71,9 +71,8 @@ struct Lowest {
 };
 
 const Height& greatest_at(const std::vector<Height>& heights, double s) {
-  return *std::max_element(heights.begin(), heights.end(), [s](const Height& a, const Height& b) {
-    return a.at(s) < b.at(s);
-  });
+  return *std::max_element(heights.begin(), heights.end(),
+                           [s](const Height& a, const Height& b) { return a.at(s) < b.at(s); });
 }
 
 Lowest lowest(const std::vector<Height>& heights, const Stretch& stretch) {
@@ -85,7 +84,8 @@ Lowest lowest(const std::vector<Height>& heights, const Stretch& stretch) {
   for (std::size_t i = 0;; ++i) {
     const double s = (falling->at_tail - rising->at_tail) / (rising->rise() - falling->rise());
     const Height& there = greatest_at(heights, s);
-    if (i >= heights.size() || !(there.at(s) > falling->at(s)) || &there == falling || &there == rising)
+    if (i >= heights.size() || !(there.at(s) > falling->at(s)) || &there == falling ||
+        &there == rising)
       return {s, falling, rising};
     (there.rise() < 0 ? falling : rising) = &there;
   }
@@ -115,10 +115,11 @@ struct EdgeThrough {
   Vec3 at(double s) const { return tail + s * along; }
   double outward(const Vec3& normal) const { return normal.dot(left + right); }
 
-  // Whether the normal, but for its part along the edge, is one of the edge's.  Where it is not, a point
-  // beside the edge lies deeper.
+  // Whether the normal, but for its part along the edge, is one of the edge's.  Where it is not, a
+  // point beside the edge lies deeper.
   bool is_normal(const Vec3& normal) const {
-    return outward(normal) > 0 && normal.dot(left.cross(along)) <= 0 && normal.dot(along.cross(right)) <= 0;
+    return outward(normal) > 0 && normal.dot(left.cross(along)) <= 0 &&
+           normal.dot(along.cross(right)) <= 0;
   }
 
   // Heights over the planes of the other's faces, and what of the edge is that near.
@@ -159,7 +160,8 @@ struct EdgeThrough {
     p.other_edge = other_edge;
     const double s = (p.point - tail).dot(along) / along.squaredNorm();
     const double aside = (p.opposite - p.point - p.gap * p.normal).norm();
-    return s >= stretch.from && s <= stretch.to && aside <= touch_ratio * (part.radius() + other.radius());
+    return s >= stretch.from && s <= stretch.to &&
+           aside <= touch_ratio * (part.radius() + other.radius());
   }
 
   // Between two faces that are no neighbours: along what both push, across the edge.
@@ -211,7 +213,8 @@ void exposed_edges(const Polyhedron& part, const Frame& world, const Polyhedron&
     exposed.assign(1, inside);
     // an edge along the surface of a neighbour is no less exposed than that
     for (const SeamNeighbour& q : neighbours)
-      if (!held_by(q, tail, head, -margin).empty()) subtract(exposed, held_by(q, tail, head, margin));
+      if (!held_by(q, tail, head, -margin).empty())
+        subtract(exposed, held_by(q, tail, head, margin));
     for (const Stretch& stretch : exposed) {
       const ExposedPoint p = through.deepest(heights, stretch);
       if (p.gap <= reach && through.is_normal(p.normal)) out.push_back(p);

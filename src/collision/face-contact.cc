@@ -8,8 +8,8 @@ namespace tw {
 
 namespace {
 
-// corners this near a side, relative to the size, lie on it: faces of equal outline would otherwise be
-// cut at every corner by rounding
+// corners this near a side, relative to the size, lie on it: faces of equal outline would otherwise
+// be cut at every corner by rounding
 constexpr double on_side = 1e-12;
 
 // A vertex by its number; a crossing by the ends of the incident edge and the side; a corner of the
@@ -29,7 +29,8 @@ std::uint64_t corner_key(const Polyhedron& p, const Polyhedron::Face& incident, 
   const int head = p.corner(incident.first + (edge + 1) % incident.count);
   // two edges of the incident face meet in the tail of the second
   if (before >= 0 && after >= 0) return vertex_key(p.corner(incident.first + after));
-  return pair_key(edge_crossing, std::min(tail, head), std::max(tail, head), ~std::min(before, after));
+  return pair_key(edge_crossing, std::min(tail, head), std::max(tail, head),
+                  ~std::min(before, after));
 }
 
 // Adds a point unless it coincides with one that is there: of two vertices or two others the deeper
@@ -38,8 +39,8 @@ void add_point(std::vector<FacePoint>& points, const FacePoint& fresh, double sl
   const auto is_vertex = [](const FacePoint& p) { return p.key >> 60 == vertex_point; };
   for (FacePoint& old : points)
     if (old.key == fresh.key || (old.point - fresh.point).squaredNorm() <= slack * slack) {
-      const bool better = is_vertex(old) == is_vertex(fresh) ? fresh.gap < old.gap
-                                                             : is_vertex(fresh);
+      const bool better =
+          is_vertex(old) == is_vertex(fresh) ? fresh.gap < old.gap : is_vertex(fresh);
       if (better) old = fresh;
       return;
     }
@@ -129,8 +130,8 @@ void thin_face_points(std::vector<FacePoint>& points, std::size_t most) {
   // squared distance to the nearest chosen point; -1: chosen
   thread_local std::vector<double> away;
   away.assign(points.size(), 1e300);
-  auto pick = static_cast<std::size_t>(
-      std::min_element(points.begin(), points.end(), deeper) - points.begin());
+  auto pick = static_cast<std::size_t>(std::min_element(points.begin(), points.end(), deeper) -
+                                       points.begin());
   for (std::size_t n = 0; n < most; ++n) {
     away[pick] = -1;
     for (std::size_t i = 0; i < points.size(); ++i)

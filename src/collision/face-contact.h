@@ -2,8 +2,9 @@
 //
 // The incident face is clipped by the sides of the reference face (I. E. Sutherland, G. W. Hodgman,
 // "Reentrant polygon clipping", Comm. ACM 17 (1974)); each corner of what is left remembers the two
-// edges or sides that meet in it, which names it for as long as they do.  To these come *reach points*:
-// vertices of the incident polyhedron that may come down on the face by a motion of `reach`.
+// edges or sides that meet in it, which names it for as long as they do.  To these come *reach
+// points*: vertices of the incident polyhedron that may come down on the face by a motion of
+// `reach`.
 //
 // Frames: that of the reference polyhedron.
 //
@@ -23,12 +24,13 @@ struct FacePoint {
   std::uint64_t key = 0;      // names the point; vertices have the least keys
 };
 
-// Names of points, by key >> 60: a vertex of the incident body; where an edge of it, from vertex key >> 40
-// to key >> 20 (20 bits each), crosses a side of the reference face; a corner of that face.
+// Names of points, by key >> 60: a vertex of the incident body; where an edge of it, from vertex
+// key >> 40 to key >> 20 (20 bits each), crosses a side of the reference face; a corner of that
+// face.
 inline constexpr std::uint64_t vertex_point = 0, edge_crossing = 1, face_corner = 2;
 
-// A corner of a polygon that is being clipped.  `next` is what the polygon follows from here: its own
-// edge k as k, side number j as ~j.
+// A corner of a polygon that is being clipped.  `next` is what the polygon follows from here: its
+// own edge k as k, side number j as ~j.
 struct ClipCorner {
   Vec3 point;
   double height;
@@ -42,9 +44,9 @@ void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side
 // Points closer than this to each other, relative to the size, are one.
 inline constexpr double coincident_ratio = 1e-6;
 
-// All points with gap <= reach, at most `most`: the deepest, then always the one farthest from those
-// chosen.  A vertex beside the face counts when it stands higher over the plane than it is beside:
-// lower ones pass by.  Overwrites `out`.
+// All points with gap <= reach, at most `most`: the deepest, then always the one farthest from
+// those chosen.  A vertex beside the face counts when it stands higher over the plane than it is
+// beside: lower ones pass by.  Overwrites `out`.
 void face_contact(const Polyhedron& reference, int face, const Polyhedron& incident,
                   const Frame& incident_in_reference, int incident_face, double reach,
                   std::size_t most, std::vector<FacePoint>& out);

@@ -41,8 +41,8 @@ struct PointCore {
 };
 
 template <class CoreB>
-SimplexPoint support_point(const Polyhedron& a, const CoreB& b, const Vec3& direction,
-                           int start_a, int start_b) {
+SimplexPoint support_point(const Polyhedron& a, const CoreB& b, const Vec3& direction, int start_a,
+                           int start_b) {
   SimplexPoint p;
   p.a = a.support(direction, start_a);
   p.b = b.support(-direction, start_b);

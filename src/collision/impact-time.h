@@ -1,8 +1,9 @@
 // Exact impact times: quadratics for pairs that fall alike.
 //
-// Symbols: r relative position of b from a, u relative velocity, both at the common start; R the sum
-// of the radii.  Times are counted from the common start; `never` (infinity) if there is no impact.
-// Overlapping and approaching at the start is an impact at 0; overlapping and separating is none.
+// Symbols: r relative position of b from a, u relative velocity, both at the common start; R the
+// sum of the radii.  Times are counted from the common start; `never` (infinity) if there is no
+// impact. Overlapping and approaching at the start is an impact at 0; overlapping and separating is
+// none.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -1,6 +1,7 @@
 // Contact manifolds of one pair of parts each: what manifold.cc puts together.
 //
-// Everything appends its points with gap <= reach to `out`; `pair` is the number of the pair of parts.
+// Everything appends its points with gap <= reach to `out`; `pair` is the number of the pair of
+// parts.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -48,12 +49,12 @@ void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
                    const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
                    std::vector<ManifoldPoint>& out);
 // Whether the bounding balls prove a gap above the reach.
-bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-               const Frame& frame_b, double reach);
+bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, const Frame& frame_b,
+               double reach);
 
 void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                        const Frame& frame_b, double reach, ReferenceChoice choice,
-                        int pair, std::vector<ManifoldPoint>& out);
+                        const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
+                        std::vector<ManifoldPoint>& out);
 // The same with features that are known.
 void features_manifold(const CorePair& cores, const NearestFeatures& near, double reach,
                        ReferenceChoice choice, int pair, std::vector<ManifoldPoint>& out);

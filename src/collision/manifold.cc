@@ -92,15 +92,14 @@ void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
     return half_space_sphere_manifold(a, frame_a, b, frame_b, reach, true, pair, out);
   if (are(K::sphere, K::half_space))
     return half_space_sphere_manifold(b, frame_b, a, frame_a, reach, false, pair, out);
-  if (are(K::sphere, K::sphere))
-    return spheres_manifold(a, frame_a, b, frame_b, reach, pair, out);
+  if (are(K::sphere, K::sphere)) return spheres_manifold(a, frame_a, b, frame_b, reach, pair, out);
   if (a.kind == K::cylinder || b.kind == K::cylinder)
     return cylinder_manifold(a, frame_a, b, frame_b, reach, pair, out);
   // two half-spaces touch in a plane, which no few points describe
 }
 
-bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-               const Frame& frame_b, double reach) {
+bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, const Frame& frame_b,
+               double reach) {
   if (a.kind == PartKind::half_space || b.kind == PartKind::half_space) return false;
   const double near = (a.bound_radius + b.bound_radius) * (1 + 1e-12) + reach;
   return (frame_b * b.bound_center - frame_a * a.bound_center).squaredNorm() > near * near;

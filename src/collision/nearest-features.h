@@ -13,9 +13,9 @@ namespace tw {
 
 // What of one polyhedron is nearest to the other, or deepest in it: its vertices.
 struct CoreFeature {
-  int count = 0;                // 1: a vertex; 2: an edge or a diagonal of a face; 3: a face
+  int count = 0;  // 1: a vertex; 2: an edge or a diagonal of a face; 3: a face
   std::array<int, 3> vertex{};
-  int face = -1;                // set where the axis is the normal of this face; then count is 0
+  int face = -1;  // set where the axis is the normal of this face; then count is 0
 };
 
 struct NearestFeatures {

@@ -13,8 +13,7 @@ constexpr double touch_ratio = 1e-9;
 
 }  // namespace
 
-bool over_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point,
-               double slack) {
+bool over_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point, double slack) {
   for (int i = 0; i < face.count; ++i) {
     const Polyhedron::Side& side = p.side(face.first + i);
     if (side.inward.dot(point) < side.offset - slack) return false;

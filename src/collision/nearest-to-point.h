@@ -1,8 +1,8 @@
 // The feature of a polyhedron that is nearest to a point.
 //
 // Outside, the face with the greatest height is the answer where the foot of the point lies in it;
-// else the nearest edge or vertex is.  Inside, and where edges and vertices would lose the direction,
-// it is the face of least depth.
+// else the nearest edge or vertex is.  Inside, and where edges and vertices would lose the
+// direction, it is the face of least depth.
 //
 // Frames: the polyhedron's own.
 //

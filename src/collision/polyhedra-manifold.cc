@@ -13,12 +13,12 @@ namespace {
 // A normal this near to that of a face, cos 2 degrees, is taken for it.
 constexpr double aligned = 0.99939082701909573;
 
-// Of two faces the one with this much more area is the reference; else that of A.  Areas do not depend
-// on poses, so that bodies at rest keep their reference.
+// Of two faces the one with this much more area is the reference; else that of A.  Areas do not
+// depend on poses, so that bodies at rest keep their reference.
 constexpr double clearly_larger = 1.01;
 
-// What the points of a face may miss of the distance before the exact features are added: relative to
-// the distance (1 - cos 2 degrees, and as much again), and to the size.
+// What the points of a face may miss of the distance before the exact features are added: relative
+// to the distance (1 - cos 2 degrees, and as much again), and to the size.
 constexpr double missed_ratio = 2e-3;
 constexpr double missed_floor = 1e-6;
 
@@ -61,14 +61,14 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
   p.reference_point = p.core_point - p.gap * p.normal;
   p.pair = pair;
   const std::uint64_t face = static_cast<std::uint64_t>(std::max(near.a.face, near.b.face) + 1);
-  p.feature = feature_name(pair, FeatureMode::corners,
-                           {feature_key(near.a), feature_key(near.b), face});
+  p.feature =
+      feature_name(pair, FeatureMode::corners, {feature_key(near.a), feature_key(near.b), face});
   out.push_back(p);
 }
 
-// A face that slides along an edge of the ground takes its border along: where the edge leaves the face, the
-// point belongs to the face, and the normal stands on the edge, so that sliding does not part them.
-// Tilted faces (sine of the angle with the edge) only touch it in passing.
+// A face that slides along an edge of the ground takes its border along: where the edge leaves the
+// face, the point belongs to the face, and the normal stands on the edge, so that sliding does not
+// part them. Tilted faces (sine of the angle with the edge) only touch it in passing.
 constexpr double along_edge = 0.05;
 
 // The direction of the incident edge that the name of a crossing holds.
@@ -91,10 +91,10 @@ void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& fa
   p.reference_is_a = !p.reference_is_a;
 }
 
-// Where both bodies move, a crossing may wander along either edge: the normal stands on both, so that no
-// sliding parts the two or pushes them together.
-void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& incident, const Frame& placed,
-                    const Frame& world, std::uint64_t key, ManifoldPoint& p) {
+// Where both bodies move, a crossing may wander along either edge: the normal stands on both, so
+// that no sliding parts the two or pushes them together.
+void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& incident,
+                    const Frame& placed, const Frame& world, std::uint64_t key, ManifoldPoint& p) {
   const Vec3& face_normal = reference.face(face).normal;
   const Vec3 border = face_normal.cross(reference.side(static_cast<int>(key & 0xfffff)).inward);
   const Vec3 across = border.cross(incident_edge(incident, placed, key));
@@ -106,8 +106,8 @@ void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& inc
   p.reference_point = p.core_point - p.gap * p.normal;
 }
 
-// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is ground,
-// `both_move` that neither is.
+// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is
+// ground, `both_move` that neither is.
 void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool both_move, int face,
               int incident_face, const NearestFeatures& near, double reach, int pair,
               std::vector<ManifoldPoint>& out) {
@@ -137,11 +137,12 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
     p.core_point = world * found.point;
     p.gap = found.gap;
     p.reference_point = p.core_point - found.gap * p.normal;
-    p.feature = feature_name(pair, FeatureMode::face,
-                             {static_cast<std::uint64_t>(face),
-                              static_cast<std::uint64_t>(reference_is_a), found.key});
+    p.feature = feature_name(
+        pair, FeatureMode::face,
+        {static_cast<std::uint64_t>(face), static_cast<std::uint64_t>(reference_is_a), found.key});
     if (found.key >> 60 == edge_crossing) {
-      if (edges_stay) follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
+      if (edges_stay)
+        follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
       if (both_move) stand_on_edges(reference, face, incident, placed, world, found.key, p);
     }
     out.push_back(p);
@@ -158,12 +159,13 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
   const bool of_a = face_a.cosine >= aligned;
   const bool of_b = face_b.cosine >= aligned;
   if (!of_a && !of_b) return add_corners(cores, near, pair, out);
-  const bool reference_is_a =
-      of_a &&
-      !(of_b && prefers_b(cores.a.face(face_a.number), cores.b.face(face_b.number), choice));
-  const bool edges_stay = choice == (reference_is_a ? ReferenceChoice::of_b : ReferenceChoice::of_a);
+  const bool reference_is_a = of_a && !(of_b && prefers_b(cores.a.face(face_a.number),
+                                                          cores.b.face(face_b.number), choice));
+  const bool edges_stay =
+      choice == (reference_is_a ? ReferenceChoice::of_b : ReferenceChoice::of_a);
   const bool both_move = choice == ReferenceChoice::larger;
-  add_face(cores, reference_is_a, edges_stay, both_move, reference_is_a ? face_a.number : face_b.number,
+  add_face(cores, reference_is_a, edges_stay, both_move,
+           reference_is_a ? face_a.number : face_b.number,
            reference_is_a ? face_b.number : face_a.number, near, reach, pair, out);
 }
 

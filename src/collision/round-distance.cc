@@ -135,9 +135,8 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
   }
   RoundDistance result;
   if (!d.overlap) return result;
-  const PolytopeDepth found =
-      polytope_depth(a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)},
-                     depth_accuracy * size);
+  const PolytopeDepth found = polytope_depth(
+      a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, depth_accuracy * size);
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;

@@ -1,10 +1,10 @@
 // Signed distance of two convex cores of which at least one is a cylinder.
 //
-// Apart: GJK with support points, until the support plane proves that no more than 1e-13 of the size can
-// be gained.  Touching or overlapping: B is moved in until it overlaps surely, and the expanding polytope
-// gives the axis of least depth; the distance is then measured along that axis at the true place.  Axes
-// next to a face normal, a cap's or one square to a cylinder's axis are replaced by these exactly where
-// nothing is lost.
+// Apart: GJK with support points, until the support plane proves that no more than 1e-13 of the
+// size can be gained.  Touching or overlapping: B is moved in until it overlaps surely, and the
+// expanding polytope gives the axis of least depth; the distance is then measured along that axis
+// at the true place.  Axes next to a face normal, a cap's or one square to a cylinder's axis are
+// replaced by these exactly where nothing is lost.
 //
 // Accuracy: 1e-12 of the size; normals 1e-6 rad, and to rounding where a face, cap or side decides.
 // Cost: 0.3 to 2 us apart, 2 to 30 us in overlap.

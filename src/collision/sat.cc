@@ -39,8 +39,8 @@ struct Search {
 struct PlacedEdge {
   int number;
   Vec3 tail;
-  Vec3 along;         // head - tail
-  Vec3 left, right;   // normals of its faces
+  Vec3 along;        // head - tail
+  Vec3 left, right;  // normals of its faces
 };
 
 // Tries one face of `p` (in p's frame, which `q_in_p` maps q to).
@@ -143,8 +143,8 @@ void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, do
       const int tail_b = b.edges()[static_cast<std::size_t>(eb.number)].tail;
       const int tail_a = a.edges()[static_cast<std::size_t>(ea.number)].tail;
       const Vec3 back = -(b_in_a.R.transpose() * axis);
-      const double s = axis.dot(b_in_a * b.vertex(b.support(back, tail_b))) -
-                       a.extent(axis, tail_a);
+      const double s =
+          axis.dot(b_in_a * b.vertex(b.support(back, tail_b))) - a.extent(axis, tail_a);
       if (!search.takes(s)) continue;
       search.best = {AxisKind::edges, 0, axis, ea.number, eb.number};
     }
@@ -183,8 +183,8 @@ void nearest_on_segments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3
   const double ur = u.dot(r);
   const double vr = v.dot(r);
   const double det = uu * vv - uv * uv;
-  // minimise |r + s u - t v|^2, clamping s, then t, then s again; lines that are parallel up to rounding
-  // leave s free
+  // minimise |r + s u - t v|^2, clamping s, then t, then s again; lines that are parallel up to
+  // rounding leave s free
   constexpr double rounding = 1e-15;
   double s = det > rounding * uu * vv ? std::clamp((uv * vr - vv * ur) / det, 0.0, 1.0) : 0.0;
   double t = (uv * s + vr) / vv;

@@ -34,8 +34,8 @@ struct LeastAxis {
 };
 
 // `b_in_a` maps B's frame to A's.  `gap` is the distance where it is known to be positive: edges
-// farther apart than that cannot matter; 0 for overlap.  `known`, if any, is an axis to begin with: the
-// better it is, the less is left to search; it stays at ties.
+// farther apart than that cannot matter; 0 for overlap.  `known`, if any, is an axis to begin with:
+// the better it is, the less is left to search; it stays at ties.
 LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap,
                      const LeastAxis* known = nullptr);
 

@@ -20,11 +20,12 @@ bool buries(const SeamPair& seam, bool on_a, const RoundDistance& near) {
 }
 
 // Of points along a buried axis, leaves what is exposed elsewhere on that side.
-void keep_exposed(const SeamPair& seam, bool on_a, std::size_t from, std::vector<ManifoldPoint>& out) {
+void keep_exposed(const SeamPair& seam, bool on_a, std::size_t from,
+                  std::vector<ManifoldPoint>& out) {
   const auto first_new = out.begin() + static_cast<std::ptrdiff_t>(from);
-  out.erase(std::remove_if(first_new, out.end(),
-                           [&](const auto& p) { return p.reference_is_a != on_a; }),
-            out.end());
+  out.erase(
+      std::remove_if(first_new, out.end(), [&](const auto& p) { return p.reference_is_a != on_a; }),
+      out.end());
   seam.remove_ghosts(from, same_angle, out);
 }
 
@@ -38,8 +39,8 @@ bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
          std::any_of(others.begin(), others.end(), held_by);
 }
 
-// What is nearest with a cylinder scaled down, where the neighbours of a (or of b) bury the axis of least
-// depth.
+// What is nearest with a cylinder scaled down, where the neighbours of a (or of b) bury the axis of
+// least depth.
 void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out) {
   const ConvexPart& first = seam.first();
   const ConvexPart& second = seam.second();

@@ -28,10 +28,10 @@ double add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
 }  // namespace
 
 double manifold_at_seams(const Shape& a, const Frame& frame_a,
-                       const std::vector<SeamNeighbour>& around_a, const Shape& b,
-                       const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,
-                       double reach, double size, std::vector<ManifoldPoint>& out,
-                       ReferenceChoice choice) {
+                         const std::vector<SeamNeighbour>& around_a, const Shape& b,
+                         const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,
+                         double reach, double size, std::vector<ManifoldPoint>& out,
+                         ReferenceChoice choice) {
   const SeamSide side_a(a, frame_a, around_a);
   const SeamSide side_b(b, frame_b, around_b);
   thread_local std::vector<SeamNeighbour> near_a, near_b;

@@ -42,7 +42,8 @@ bool SeamPair::is_ghost(const ManifoldPoint& p, double angle) const {
          buries(!p.reference_is_a, on_other, normal, angle);
 }
 
-void SeamPair::remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const {
+void SeamPair::remove_ghosts(std::size_t from, double angle,
+                             std::vector<ManifoldPoint>& out) const {
   const auto ghosts = std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(from), out.end(),
                                      [&](const ManifoldPoint& p) { return is_ghost(p, angle); });
   out.erase(ghosts, out.end());

@@ -1,4 +1,5 @@
-// A pair of convex parts in contact at a seam of one of them, and which of their contacts are ghosts.
+// A pair of convex parts in contact at a seam of one of them, and which of their contacts are
+// ghosts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,14 +9,15 @@
 
 namespace tw {
 
-// Bodies nearer than this, relative to the size, may overlap the neighbours of what they are near to.
+// Bodies nearer than this, relative to the size, may overlap the neighbours of what they are near
+// to.
 inline constexpr double sunk_ratio = 0.01;
 
 // Normals that agree so far are the same, rad.
 inline constexpr double same_angle = 1e-4;
 
-// Points on a face of the other body have its normal, up to 2 degrees from that of the nearest features
-// and a little more: rad.
+// Points on a face of the other body have its normal, up to 2 degrees from that of the nearest
+// features and a little more: rad.
 inline constexpr double face_angle = 0.04;
 
 // One body with what surrounds its parts.
@@ -26,7 +28,9 @@ struct SeamSide {
   bool has_seams;
 
   SeamSide(const Shape& s, const Frame& f, const std::vector<SeamNeighbour>& neighbours)
-      : shape(s), frame(f), around(neighbours),
+      : shape(s),
+        frame(f),
+        around(neighbours),
         has_seams(!neighbours.empty() || s.parts().size() > 1) {}
 
   // The neighbours of one part whose balls come near its own.  Overwrites `out`.
@@ -55,8 +59,8 @@ struct SeamPair {
   void remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const;
 };
 
-// Two polyhedra; a polyhedron and a cylinder or two cylinders.  They return the distance, with all ghosts, or
-// beyond the reach a lower bound of it.
+// Two polyhedra; a polyhedron and a cylinder or two cylinders.  They return the distance, with all
+// ghosts, or beyond the reach a lower bound of it.
 double polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 double cylinders_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 

@@ -55,10 +55,11 @@ struct Exposure {
   void add_edges() const {
     thread_local std::vector<ExposedPoint> exposed;
     exposed.clear();
-    exposed_edges(part, world, other, other_in_part, seam.neighbours(of_a), margin_ratio * seam.size,
-                  seam.reach, exposed);
+    exposed_edges(part, world, other, other_in_part, seam.neighbours(of_a),
+                  margin_ratio * seam.size, seam.reach, exposed);
     for (const ExposedPoint& p : exposed) {
-      const auto edge = static_cast<std::uint64_t>(p.edge), face = static_cast<std::uint64_t>(p.face + 1);
+      const auto edge = static_cast<std::uint64_t>(p.edge),
+                 face = static_cast<std::uint64_t>(p.face + 1);
       const auto other_edge = static_cast<std::uint64_t>(p.other_edge + 1);
       if (p.face >= 0)
         add({!of_a, -p.normal, p.point, p.gap, edge, face, other_edge});
@@ -67,8 +68,8 @@ struct Exposure {
     }
   }
 
-  // Whether the point, `depth` under a face of the part, is nearer to an exposed face of a neighbour: as
-  // behind the edge of a steep ridge.
+  // Whether the point, `depth` under a face of the part, is nearer to an exposed face of a
+  // neighbour: as behind the edge of a steep ridge.
   bool leaves_by_neighbour(const Vec3& point, double depth) const {
     const Vec3 here = world * point;
     for (const SeamNeighbour& q : seam.neighbours(of_a)) {
@@ -91,7 +92,9 @@ struct Exposure {
   // Whether a place (world) is inside the part or one of the neighbours.
   bool covered(const Vec3& place) const {
     const std::vector<SeamNeighbour>& around = seam.neighbours(of_a);
-    const auto holds = [&](const SeamNeighbour& q) { return height_over(q, place) < -same_place(); };
+    const auto holds = [&](const SeamNeighbour& q) {
+      return height_over(q, place) < -same_place();
+    };
     int face = 0;
     return part.face_separation(world.to_local(place), face) < -same_place() ||
            std::any_of(around.begin(), around.end(), holds);
@@ -103,14 +106,15 @@ struct Exposure {
     return add({of_a, part.faces()[face].normal, point, height, v, face, ~std::uint64_t{0}});
   }
 
-  // Vertices of the other, each over or under the face of the part that it is nearest to, or under the one
-  // that it leaves the ground by.
+  // Vertices of the other, each over or under the face of the part that it is nearest to, or under
+  // the one that it leaves the ground by.
   void add_vertices() const {
     for (std::uint64_t v = 0; v < other.vertices().size(); ++v) {
       const Vec3 point = other_in_part * other.vertices()[v];
       int nearest = 0;
       const double height = part.face_separation(point, nearest);
-      if (height <= seam.reach && add_vertex(v, static_cast<std::uint64_t>(nearest), point, height)) continue;
+      if (height <= seam.reach && add_vertex(v, static_cast<std::uint64_t>(nearest), point, height))
+        continue;
       if (height <= sunk_ratio * seam.size) add_under_face(v, point, height > 0);
     }
   }
@@ -143,7 +147,8 @@ void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) 
   });
   // edges that end in one vertex meet the same face there
   const auto last = std::unique(first_new, out.end(), [&](const auto& p, const auto& q) {
-    return (p.core_point - q.core_point).norm() <= same_place && p.reference_is_a == q.reference_is_a;
+    return (p.core_point - q.core_point).norm() <= same_place &&
+           p.reference_is_a == q.reference_is_a;
   });
   out.erase(last, out.end());
   out.resize(std::min(out.size(), from + most_manifold_points));

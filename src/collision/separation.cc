@@ -79,8 +79,8 @@ Separation polyhedron_sphere(const ConvexPart& a, const Frame& frame_a, const Co
   const Frame world_a = frame_a * a.placement;
   const Vec3 center = frame_b * b.placement.p;
   const Vec3 local = world_a.to_local(center);
-  const CoreDistance core = a.is_box ? box_to_point(a.half_edges, local)
-                                     : polyhedron_to_point(*a.core, local, cache);
+  const CoreDistance core =
+      a.is_box ? box_to_point(a.half_edges, local) : polyhedron_to_point(*a.core, local, cache);
   Separation result;
   result.distance = core.distance - b.radius;
   result.normal = world_a.R * core.normal;
@@ -138,8 +138,7 @@ Separation polyhedra(const ConvexPart& a, const Frame& frame_a, const ConvexPart
     core = core_distance(pair.a, pair.b, pair.b_in_a, nullptr);
     if (!core.overlap && core.distance > touch) return separate_cores(pair, core);
   }
-  const LeastAxis axis =
-      least_axis(pair.a, pair.b, pair.b_in_a, core.overlap ? 0 : core.distance);
+  const LeastAxis axis = least_axis(pair.a, pair.b, pair.b_in_a, core.overlap ? 0 : core.distance);
   Separation result;
   // just apart GJK knows the distance, but only the axis knows the normal
   result.distance = core.overlap || axis.distance <= 0 ? axis.distance : core.distance;
@@ -205,9 +204,8 @@ Separation half_spaces(const ConvexPart& a, const Frame& frame_a, const ConvexPa
   result.normal = plane_a.normal;
   result.point_a = plane_a.origin + plane_a.offset * plane_a.normal;
   result.point_b = plane_b.origin + plane_b.offset * plane_b.normal;
-  result.distance = plane_a.normal == -plane_b.normal
-                        ? plane_a.height(result.point_b)
-                        : -std::numeric_limits<double>::infinity();
+  result.distance = plane_a.normal == -plane_b.normal ? plane_a.height(result.point_b)
+                                                      : -std::numeric_limits<double>::infinity();
   return result;
 }
 
@@ -297,20 +295,17 @@ double ball_bound(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b
 Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                            const Frame& frame_b, SimplexCache* cache) {
   ++distance_queries;
-  return queries[static_cast<int>(a.kind)][static_cast<int>(b.kind)](a, frame_a, b, frame_b,
-                                                                     cache);
+  return queries[static_cast<int>(a.kind)][static_cast<int>(b.kind)](a, frame_a, b, frame_b, cache);
 }
 
-Separation separation(const Shape& a, const Frame& frame_a, const Shape& b,
-                      const Frame& frame_b) {
+Separation separation(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b) {
   const std::vector<ConvexPart>& parts_a = a.parts();
   const std::vector<ConvexPart>& parts_b = b.parts();
   Separation best = part_separation(parts_a[0], frame_a, parts_b[0], frame_b, nullptr);
   for (std::size_t i = 0; i < parts_a.size(); ++i)
     for (std::size_t j = i == 0 ? 1 : 0; j < parts_b.size(); ++j) {
       if (ball_bound(parts_a[i], frame_a, parts_b[j], frame_b) > best.distance) continue;
-      const Separation found =
-          part_separation(parts_a[i], frame_a, parts_b[j], frame_b, nullptr);
+      const Separation found = part_separation(parts_a[i], frame_a, parts_b[j], frame_b, nullptr);
       if (!(found.distance < best.distance)) continue;
       best = found;
       best.part_a = static_cast<int>(i);

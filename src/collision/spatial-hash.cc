@@ -8,7 +8,8 @@ namespace {
 // Cell edges from 2^-40 to 2^55 m; what is larger or smaller shares the end's cells.
 constexpr int least_exponent = -40, greatest_exponent = 55;
 
-// A box moves to the next finer level when its longest edge is below this share of that level's cells.
+// A box moves to the next finer level when its longest edge is below this share of that level's
+// cells.
 constexpr double stays_above = 0.75;
 
 // A table has at least this many buckets for each box.
@@ -24,8 +25,8 @@ int SpatialHash::exponent_of(const Aabb& box) {
 }
 
 void SpatialHash::set_rough(Entry& entry, const Aabb& box) {
-  // one conversion and one sum are off by at most 2^-24 of the magnitude each; what is beyond the rim
-  // counts as at the rim
+  // one conversion and one sum are off by at most 2^-24 of the magnitude each; what is beyond the
+  // rim counts as at the rim
   const auto down = [](double x) {
     const double rim = 0x1p126;
     const float f = static_cast<float>(std::min(std::max(x, -rim), rim));
@@ -62,9 +63,8 @@ void SpatialHash::link(Level& level, std::uint32_t id) {
 
 void SpatialHash::unlink(Level& level, std::uint32_t id) {
   const Entry& entry = entries_[id];
-  std::uint32_t& link_to_it =
-      entry.previous == nobody ? level.first[residences_[id].bucket]
-                                : entries_[entry.previous].next;
+  std::uint32_t& link_to_it = entry.previous == nobody ? level.first[residences_[id].bucket]
+                                                       : entries_[entry.previous].next;
   link_to_it = entry.next;
   if (entry.next != nobody) entries_[entry.next].previous = entry.previous;
 }

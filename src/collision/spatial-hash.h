@@ -2,10 +2,11 @@
 //
 // A box lives on the level whose cells (edge 2^level) just hold it, in the one cell that holds its
 // centre.  Boxes of a level with half-extents h that overlap a box B then have their centre in B
-// grown by h: a query visits those cells, on each level where somebody lives.  Each level is a table
-// of 2^k cells along each axis, wrapped around: cell (x, y, z) is bucket (x, y, z) mod 2^k.  A query
-// needs at most 2^k cells along an axis and so meets each bucket, and each box, once at most;
-// strangers from the other side of the wrap are sorted out by the box test, as neighbours are.
+// grown by h: a query visits those cells, on each level where somebody lives.  Each level is a
+// table of 2^k cells along each axis, wrapped around: cell (x, y, z) is bucket (x, y, z) mod 2^k.
+// A query needs at most 2^k cells along an axis and so meets each bucket, and each box, once at
+// most; strangers from the other side of the wrap are sorted out by the box test, as neighbours
+// are.
 //
 // Source: B. Mirtich, "Efficient algorithms for two-phase collision detection", MERL TR-97-23 (the
 // hash of the paper's appendix A; one cell a box instead of marks in all).
@@ -34,8 +35,8 @@ class SpatialHash {
   bool contains(std::uint32_t id) const { return id < boxes_.size() && residences_[id].present; }
   const Aabb& box(std::uint32_t id) const { return boxes_[id]; }
 
-  // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The visit
-  // must not place or remove boxes.
+  // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The
+  // visit must not place or remove boxes.
   template <class Visit>
   void overlapping(std::uint32_t id, Visit&& visit) const {
     for (const Level& level : levels_)
@@ -73,14 +74,14 @@ class SpatialHash {
   };
   struct Residence {
     std::uint32_t bucket = 0;
-    int level = 0;                  // exponent of the cell edge
+    int level = 0;  // exponent of the cell edge
     bool present = false;
   };
   struct Level {
     int exponent = 0;
-    double per_cell = 1;            // 1 / cell edge
-    Vec3 reach = Vec3::Zero();      // the largest half-extents that ever lived here, and a little
-    int bits = 2;                   // of a cell coordinate in the table
+    double per_cell = 1;        // 1 / cell edge
+    Vec3 reach = Vec3::Zero();  // the largest half-extents that ever lived here, and a little
+    int bits = 2;               // of a cell coordinate in the table
     std::vector<std::uint32_t> first = std::vector<std::uint32_t>(64, nobody);
     std::size_t count = 0;
 
@@ -129,7 +130,7 @@ class SpatialHash {
   std::vector<Aabb> boxes_;
   std::vector<Entry> entries_;
   std::vector<Residence> residences_;
-  std::vector<Level> levels_;       // those in use, few
+  std::vector<Level> levels_;  // those in use, few
   std::size_t count_ = 0;
 };
 

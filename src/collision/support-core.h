@@ -12,10 +12,12 @@ struct SupportCore {
   const Polyhedron* polyhedron = nullptr;  // or a cylinder:
   double radius = 0;
   double half_length = 0;
-  Frame place;                             // of the core's own frame
+  Frame place;  // of the core's own frame
 
   SupportCore(const ConvexPart& part, const Frame& core_frame)
-      : polyhedron(part.core.get()), radius(part.radius), half_length(part.half_length),
+      : polyhedron(part.core.get()),
+        radius(part.radius),
+        half_length(part.half_length),
         place(core_frame) {}
 
   // The axis of a cylinder.

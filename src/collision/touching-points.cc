@@ -34,16 +34,13 @@ void face_points(const CorePair& cores, const LeastAxis& axis, double tolerance,
   }
   clip_face(cores.b, axis.feature_b, cores.a, cores.a_in_b(), axis.feature_a, tolerance,
             most_points, points);
-  for (ClippedPoint& p : points)
-    p.point = cores.b_in_a * p.point + 0.5 * p.gap * axis.normal;
+  for (ClippedPoint& p : points) p.point = cores.b_in_a * p.point + 0.5 * p.gap * axis.normal;
 }
 
 // The one point of two corners: midway between the nearest points where the cores are apart, else
 // the corner that is deepest along the axis.
-ClippedPoint corner_point(const CorePair& cores, const LeastAxis& axis,
-                          const CoreDistance& apart) {
-  if (!apart.overlap)
-    return {apart.point_a + 0.5 * apart.distance * apart.normal, apart.distance};
+ClippedPoint corner_point(const CorePair& cores, const LeastAxis& axis, const CoreDistance& apart) {
+  if (!apart.overlap) return {apart.point_a + 0.5 * apart.distance * apart.normal, apart.distance};
   const Vec3 inward = 0.5 * axis.distance * axis.normal;
   if (axis.kind == AxisKind::face_a)
     return {cores.b_in_a * cores.b.vertex(axis.feature_b) - inward, axis.distance};
@@ -107,8 +104,7 @@ void cylinder_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart
 }
 
 void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                 const Frame& frame_b, double tolerance, int pair,
-                 std::vector<ContactPoint>& out) {
+                 const Frame& frame_b, double tolerance, int pair, std::vector<ContactPoint>& out) {
   if (a.kind == PartKind::polyhedron && b.kind == PartKind::polyhedron) {
     ++distance_queries;
     return polyhedra_points(CorePair(a, frame_a, b, frame_b), tolerance, pair, out);

@@ -7,7 +7,8 @@
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
 //
-// Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975).
+// Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley,
+// J. Appl. Mech. 42 (1975).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -23,15 +24,15 @@ struct ContactConstants {
   double hardening = 0;  // dh, m: depth at which the stiffness has doubled
   double b = 0;          // s/m
   double mu = 0;
-  double kt = 0;         // N/m, 0.8 k
-  double ct = 0;         // N s/m, sqrt(kt m)
-  double depth = 0;      // d0, m: under the lighter body's own weight; scale of gaps
+  double kt = 0;     // N/m, 0.8 k
+  double ct = 0;     // N s/m, sqrt(kt m)
+  double depth = 0;  // d0, m: under the lighter body's own weight; scale of gaps
   FrictionLaw law = FrictionLaw::anchored;
 };
 
 // `mass`: of the lighter dynamic body of the pair, kg; `size`: least width of the smaller one, m;
-// `gravity`: its magnitude, m/s^2 (0: the standard one stands in); `unequal`: the group holds masses
-// over 100:1, which makes the contact five times as stiff and harden sooner.
+// `gravity`: its magnitude, m/s^2 (0: the standard one stands in); `unequal`: the group holds
+// masses over 100:1, which makes the contact five times as stiff and harden sooner.
 ContactConstants contact_constants(const ContactParameters& parameters, double mass, double size,
                                    double gravity, bool unequal);
 

@@ -27,8 +27,8 @@ void require_range(const std::optional<double>& value, const char* keyword, doub
                    double most, const char* expected) {
   if (!value) return;
   TW_REQUIRE(*value >= least && *value <= most && std::isfinite(*value),
-             std::string("contact parameter #:") + keyword + " is " + show(*value) +
-                 "; expected " + expected);
+             std::string("contact parameter #:") + keyword + " is " + show(*value) + "; expected " +
+                 expected);
 }
 
 // Takes each value that is still open.

@@ -31,7 +31,7 @@ struct ContactSettings {
   std::optional<double> damping;       // s/m, Hunt-Crossley's b
   std::optional<double> fusion_speed;  // m/s
   std::optional<FrictionLaw> friction_law;
-  std::optional<bool> collide;         // set by disable/enable-collisions!
+  std::optional<bool> collide;  // set by disable/enable-collisions!
 };
 
 // What holds for one pair.

@@ -3,8 +3,8 @@
 // Source: A. Chatterjee, A. Ruina, "A new algebraic rigid-body collision law based on impulse space
 // considerations", J. Appl. Mech. 65 (1998), with tangential restitution e_t = 0.
 //
-// Symbols (world frame): n unit normal from body a to body b; u = v_b - v_a, the relative velocity of
-// the contact points, so u.n < 0 when approaching; P the impulse on b (-P on a); K the inverse
+// Symbols (world frame): n unit normal from body a to body b; u = v_b - v_a, the relative velocity
+// of the contact points, so u.n < 0 when approaching; P the impulse on b (-P on a); K the inverse
 // inertia of the contact, u' = u + K P.
 //   P_I  = -(u.n)/(n.K n) n        stops the approach without friction
 //   P_II = -K^-1 u                 stops all relative motion

@@ -73,9 +73,8 @@ class Keyframes : public Motion {
 
   // The segment with start <= time < end; null where the body rests.
   const Segment* segment_at(double time) const {
-    const auto next =
-        std::upper_bound(segments_.begin(), segments_.end(), time,
-                         [](double t, const Segment& s) { return t < s.end; });
+    const auto next = std::upper_bound(segments_.begin(), segments_.end(), time,
+                                       [](double t, const Segment& s) { return t < s.end; });
     return next != segments_.end() && time >= next->start ? &*next : nullptr;
   }
   double share_at(const Segment& s, double time) const {
@@ -124,8 +123,9 @@ Vec3 turn_between(const Quat& q0, const Quat& q1) {
 }
 
 Quat unit_orientation(const Quat& q, const std::string& where) {
-  TW_REQUIRE(is_finite(q) && q.squaredNorm() > 0,
-             "orientation of " + where + " is zero or not finite; expected a quaternion #(w x y z)");
+  TW_REQUIRE(
+      is_finite(q) && q.squaredNorm() > 0,
+      "orientation of " + where + " is zero or not finite; expected a quaternion #(w x y z)");
   return q.normalized();
 }
 
@@ -156,8 +156,10 @@ MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
                                                       " s; expected at most " +
                                                       show(greatest_time) + " s");
     TW_REQUIRE(i == 0 || k.time > keyframes[i - 1].time,
-               "time of " + where + " is " + show(k.time) + "; expected a time after that of the "
-               "keyframe before it (" + show(keyframes[i == 0 ? 0 : i - 1].time) + ")");
+               "time of " + where + " is " + show(k.time) +
+                   "; expected a time after that of the "
+                   "keyframe before it (" +
+                   show(keyframes[i == 0 ? 0 : i - 1].time) + ")");
     TW_REQUIRE(is_finite(k.position), "position of " + where + " is not finite");
     TW_REQUIRE(k.position.cwiseAbs().maxCoeff() <= farthest,
                "position of " + where + " has a coordinate of " +

@@ -32,8 +32,8 @@ Mat3 shifted(const Mat3& inertia, double mass, const Vec3& d) {
 // Principal moments and axes of a symmetric tensor.
 void diagonalise(const Mat3& inertia, Vec3& moments, Quat& axes) {
   const double largest = inertia.diagonal().cwiseAbs().maxCoeff();
-  const double off = std::max({std::abs(inertia(0, 1)), std::abs(inertia(0, 2)),
-                               std::abs(inertia(1, 2))});
+  const double off =
+      std::max({std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
   if (off <= diagonal_tolerance * largest) {
     moments = inertia.diagonal();
     axes = Quat::Identity();

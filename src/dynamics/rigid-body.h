@@ -24,9 +24,9 @@ struct MassSpecification {
 };
 
 struct RigidInertia {
-  double mass = 0;               // kg
-  Vec3 moments = Vec3::Zero();   // principal moments, kg m^2
-  Pose X_BP;                     // P in B
+  double mass = 0;              // kg
+  Vec3 moments = Vec3::Zero();  // principal moments, kg m^2
+  Pose X_BP;                    // P in B
 };
 
 // `name` is for messages.  Errors: a mass or density that is not positive, an inertia that is not

@@ -149,8 +149,8 @@ void orient(const std::vector<Vec3>& centred, std::vector<std::vector<int>>& pol
   for (auto& polygon : polygons) {
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-      area += (point(polygon[i]) - point(polygon[0]))
-                  .cross(point(polygon[i + 1]) - point(polygon[0]));
+      area +=
+          (point(polygon[i]) - point(polygon[0])).cross(point(polygon[i + 1]) - point(polygon[0]));
     if (area.dot(point(polygon[0]) - inside) < 0) std::reverse(polygon.begin(), polygon.end());
     std::rotate(polygon.begin(), std::min_element(polygon.begin(), polygon.end()), polygon.end());
   }
@@ -161,11 +161,11 @@ void orient(const std::vector<Vec3>& centred, std::vector<std::vector<int>>& pol
 
 Polyhedron convex_hull(const std::vector<Vec3>& points) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    TW_REQUIRE(is_finite(points[i]),
-               "point " + std::to_string(i) + " of a hull is (" + show(points[i].x()) + " " +
-                   show(points[i].y()) + " " + show(points[i].z()) + "); expected finite numbers");
-  TW_REQUIRE(points.size() >= 4, "a hull needs at least 4 points; got " +
-                                     std::to_string(points.size()));
+    TW_REQUIRE(is_finite(points[i]), "point " + std::to_string(i) + " of a hull is (" +
+                                         show(points[i].x()) + " " + show(points[i].y()) + " " +
+                                         show(points[i].z()) + "); expected finite numbers");
+  TW_REQUIRE(points.size() >= 4,
+             "a hull needs at least 4 points; got " + std::to_string(points.size()));
   std::vector<Vec3> centred = centred_points(points);
   require_solid(centred);
   QhullRun qhull;

@@ -45,7 +45,7 @@ MassProperties polyhedron_mass(const Polyhedron& polyhedron) {
   // tetrahedra from the polyhedron's middle to a fan of triangles on each face
   const Vec3& origin = polyhedron.center();
   double six_volume = 0;
-  Vec3 first = Vec3::Zero();  // 24 times the first moment about the origin
+  Vec3 first = Vec3::Zero();   // 24 times the first moment about the origin
   Mat3 second = Mat3::Zero();  // 120 times the second moment about the origin
   for (const Polyhedron::Face& face : polyhedron.faces())
     for (int i = 1; i + 1 < face.count; ++i) {
@@ -58,16 +58,15 @@ MassProperties polyhedron_mass(const Polyhedron& polyhedron) {
       const Vec3 sum = a + b + c;
       six_volume += det;
       first += det * sum;
-      second += det * (a * a.transpose() + b * b.transpose() + c * c.transpose() +
-                       sum * sum.transpose());
+      second +=
+          det * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
     }
   MassProperties mass;
   mass.volume = six_volume / 6.0;
   const Vec3 offset = first / 24.0 / mass.volume;
   mass.centroid = origin + offset;
   // Huygens and Steiner: moments about the centroid
-  mass.inertia =
-      inertia_from_moments(second / 120.0 - mass.volume * offset * offset.transpose());
+  mass.inertia = inertia_from_moments(second / 120.0 - mass.volume * offset * offset.transpose());
   return mass;
 }
 
@@ -82,8 +81,8 @@ MassProperties summed_mass(const std::vector<MassProperties>& solids) {
   for (const MassProperties& solid : solids) {
     // parallel axes: I + V (d.d 1 - d d^T)
     const Vec3 d = solid.centroid - sum.centroid;
-    sum.inertia += solid.inertia +
-                   solid.volume * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    sum.inertia +=
+        solid.inertia + solid.volume * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
   }
   return sum;
 }

@@ -43,7 +43,8 @@ void fill_rows(std::size_t rows, std::size_t items, RowOf row_of, ValueOf value_
     values[static_cast<std::size_t>(next[static_cast<std::size_t>(row_of(k))]++)] = value_of(k);
 }
 
-// Numbers of items in groups of four: all first numbers, all second ones and so on; padded with the last.
+// Numbers of items in groups of four: all first numbers, all second ones and so on; padded with the
+// last.
 template <class NumberOf>
 std::vector<double> in_lanes(std::size_t items, int numbers, NumberOf number_of) {
   std::vector<double> lanes;
@@ -79,7 +80,8 @@ struct Greatest {
     for (long long k = 1; k < 4; ++k)
       if (best[k] > best[lane] || (best[k] == best[lane] && best_group[k] < best_group[lane]))
         lane = k;
-    item = static_cast<int>(std::min(4 * best_group[lane] + lane, static_cast<long long>(items) - 1));
+    item =
+        static_cast<int>(std::min(4 * best_group[lane] + lane, static_cast<long long>(items) - 1));
     return best[lane];
   }
 };
@@ -102,9 +104,12 @@ Polyhedron Polyhedron::box(const Vec3& half_edges) {
   for (int i = 0; i < 8; ++i)
     box.vertices_.push_back(half_edges.cwiseProduct(
         Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
-  box.set_faces({{0, 4, 6, 2}, {1, 3, 7, 5},    // x
-                 {0, 1, 5, 4}, {2, 6, 7, 3},    // y
-                 {0, 2, 3, 1}, {4, 5, 7, 6}});  // z
+  box.set_faces({{0, 4, 6, 2},
+                 {1, 3, 7, 5},  // x
+                 {0, 1, 5, 4},
+                 {2, 6, 7, 3},  // y
+                 {0, 2, 3, 1},
+                 {4, 5, 7, 6}});  // z
   // the normals are the axes, without rounding
   for (int f = 0; f < 6; ++f) {
     Face& face = box.faces_[static_cast<std::size_t>(f)];
@@ -209,7 +214,8 @@ void Polyhedron::set_bounds() {
 void Polyhedron::set_lanes() {
   scans_ = vertices_.size() <= scan_limit;
   if (scans_)
-    lanes_ = in_lanes(vertices_.size(), 3, [this](std::size_t i, int k) { return vertices_[i][k]; });
+    lanes_ =
+        in_lanes(vertices_.size(), 3, [this](std::size_t i, int k) { return vertices_[i][k]; });
   plane_lanes_ = in_lanes(faces_.size(), 4, [this](std::size_t i, int k) {
     return k < 3 ? faces_[i].normal[k] : faces_[i].offset;
   });

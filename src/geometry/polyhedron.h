@@ -30,8 +30,8 @@ class Polyhedron {
     int count = 0;
     double area = 0;
   };
-  // The side of a face from one of its corners to the next: in the face's plane, the face lies where
-  // inward.x >= offset.
+  // The side of a face from one of its corners to the next: in the face's plane, the face lies
+  // where inward.x >= offset.
   struct Side {
     Vec3 inward = Vec3::UnitX();
     double offset = 0;

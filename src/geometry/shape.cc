@@ -127,8 +127,7 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
         std::max(shape->radius_about_origin_, radius_about_origin_of(part));
   }
   shape->mass_ = shape->bounded_ ? mass : MassProperties{};
-  shape->least_width_ =
-      shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
+  shape->least_width_ = shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
   TW_REQUIRE(!shape->bounded_ || (shape->least_width_ >= least_length &&
                                   shape->radius_about_origin_ <= 4 * greatest_length),
              "a " + shape->kind_name_ + " is " + show(shape->least_width_) +

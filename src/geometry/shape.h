@@ -2,8 +2,8 @@
 //
 // Every shape is a list of convex parts in the body's frame.  A part is a *core* with a radius: a
 // sphere is a point with a radius, a box or hull is a polyhedron with radius 0; half-spaces and
-// cylinders are parts of their own.  Later shapes (capsule: a segment with a radius; cone, ellipsoid:
-// support mappings) become further kinds here and one row each in the tables of pairs in
+// cylinders are parts of their own.  Later shapes (capsule: a segment with a radius; cone,
+// ellipsoid: support mappings) become further kinds here and one row each in the tables of pairs in
 // collision/separation.cc and collision/manifold.cc.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
@@ -30,16 +30,16 @@ enum class PartKind { sphere, polyhedron, half_space, cylinder };
 // One convex part, placed in the frame of the shape.
 struct ConvexPart {
   PartKind kind = PartKind::sphere;
-  Frame placement;                           // part frame in the shape's frame
-  double radius = 0;                         // sphere, cylinder: its radius; otherwise 0
-  double half_length = 0;                    // cylinder: along z of the part's frame, to either side
-  std::shared_ptr<const Polyhedron> core;    // polyhedron only, in the part's frame
-  Vec3 normal = Vec3::UnitZ();               // half-space: outward unit normal, shape's frame
-  double offset = 0;                         // half-space: solid where normal.x <= offset
+  Frame placement;                         // part frame in the shape's frame
+  double radius = 0;                       // sphere, cylinder: its radius; otherwise 0
+  double half_length = 0;                  // cylinder: along z of the part's frame, to either side
+  std::shared_ptr<const Polyhedron> core;  // polyhedron only, in the part's frame
+  Vec3 normal = Vec3::UnitZ();             // half-space: outward unit normal, shape's frame
+  double offset = 0;                       // half-space: solid where normal.x <= offset
   // A ball around the part, shape's frame; infinite radius for a half-space.
   Vec3 bound_center = Vec3::Zero();
   double bound_radius = 0;
-  bool is_box = false;                       // a box keeps its half edges for drawing
+  bool is_box = false;  // a box keeps its half edges for drawing
   Vec3 half_edges = Vec3::Zero();
 };
 

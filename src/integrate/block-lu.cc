@@ -137,9 +137,7 @@ void visit_set(const Word* set, int words, Visit visit) {
       visit(word_bits * w + std::countr_zero(rest));
 }
 
-std::size_t u(int i) {
-  return static_cast<std::size_t>(i);
-}
+std::size_t u(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

@@ -5,8 +5,8 @@
 //   L_ik = A_ik A_kk^-1,  A_ij -= L_ik A_kj  for all i, j in S_k.
 // There is no pivoting between blocks: callers check the residual.
 //
-// Cost: sum |S_k|^2 products of blocks of 22 ns; 0.1 ms for a cubic lattice of 64 bodies, 1.5 ms for
-// one of 216.
+// Cost: sum |S_k|^2 products of blocks of 22 ns; 0.1 ms for a cubic lattice of 64 bodies, 1.5 ms
+// for one of 216.
 // Source: I. S. Duff, A. M. Erisman, J. K. Reid, Direct Methods for Sparse Matrices, ch. 7 and 10.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later

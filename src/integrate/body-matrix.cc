@@ -66,9 +66,7 @@ BodyMatrix::BodyMatrix(int bodies, const std::vector<std::pair<int, int>>& pairs
 
 BodyMatrix::~BodyMatrix() = default;
 
-void BodyMatrix::clear() {
-  std::fill(values_.begin(), values_.end(), 0.0);
-}
+void BodyMatrix::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 bool BodyMatrix::factor() {
   ++factorizations_;

@@ -158,9 +158,7 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.ct[lane] = frictionless ? 1 : contact.share * law.ct;
 }
 
-bool same_pair(const GroupContact& x, const GroupContact& y) {
-  return x.a == y.a && x.b == y.b;
-}
+bool same_pair(const GroupContact& x, const GroupContact& y) { return x.a == y.a && x.b == y.b; }
 
 // bodies of lanes without contact: those of the first lane
 void finish_pack(ContactPack& pack, int members) {

@@ -43,9 +43,7 @@ constexpr double least_relative_m1 = 1e-20;
 // Bounds on |w| are widened by this, so that rounding in w(t) stays inside.
 constexpr double rounding_margin = 1.0 + 8.0 * std::numeric_limits<double>::epsilon();
 
-bool same(double a, double b) {
-  return std::abs(a - b) <= same_moment * std::max(a, b);
-}
+bool same(double a, double b) { return std::abs(a - b) <= same_moment * std::max(a, b); }
 
 // The angle/2 of (x, y), |angle| < pi, as an unnormalised direction of length^2 2 r (r + x).
 std::pair<double, double> half_angle(double x, double y) {

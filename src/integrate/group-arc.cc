@@ -44,7 +44,8 @@ struct GroupArc::Data {
     Vec3 center_b[lane_count];
   };
   const KeptPack& pack_at(int number, double at) const;
-  // What a contact does to a member; where the work counts, how fast the outside body's material moves there.
+  // What a contact does to a member; where the work counts, how fast the outside body's material
+  // moves there.
   struct MemberForce {
     Vec3 force, other_velocity;
     double normal = 0;
@@ -95,21 +96,11 @@ void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
 GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(start))) {}
 GroupArc::~GroupArc() = default;
 
-const GroupStart& GroupArc::start() const {
-  return data_->start;
-}
-double GroupArc::reached() const {
-  return data_->record.reached();
-}
-const std::string& GroupArc::failure() const {
-  return data_->failure;
-}
-int GroupArc::failed_contact() const {
-  return data_->failed_contact;
-}
-double GroupArc::next_step() const {
-  return data_->stepper.next_step();
-}
+const GroupStart& GroupArc::start() const { return data_->start; }
+double GroupArc::reached() const { return data_->record.reached(); }
+const std::string& GroupArc::failure() const { return data_->failure; }
+int GroupArc::failed_contact() const { return data_->failed_contact; }
+double GroupArc::next_step() const { return data_->stepper.next_step(); }
 
 const GroupCounts& GroupArc::counts() const {
   data_->counts = data_->stepper.counts();
@@ -215,7 +206,9 @@ class MemberMotion final : public Motion {
     const Aabb bend = bounds(from, to).acceleration;
     return v.norm() + bend.lo.cwiseAbs().cwiseMax(bend.hi.cwiseAbs()).norm() * (to - from);
   }
-  double angular_speed_bound(double from, double to) const override { return bounds(from, to).turn; }
+  double angular_speed_bound(double from, double to) const override {
+    return bounds(from, to).turn;
+  }
   Aabb path_bounds(double from, double to) const override { return bounds(from, to).path; }
 
  private:
@@ -246,8 +239,8 @@ Vec3 GroupArc::stretch(int contact, double time) {
   return {s.x[place.lane], s.y[place.lane], s.z[place.lane]};
 }
 
-// The pack of the contact at one instant.  Neighbours in a link are asked for one after the other, and mostly
-// share a pack: the last one is kept.
+// The pack of the contact at one instant.  Neighbours in a link are asked for one after the other,
+// and mostly share a pack: the last one is kept.
 const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
   thread_local KeptPack kept;
   if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;
@@ -259,7 +252,8 @@ const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) c
         set_slot(slot, at, s);
       else
         system.set_outside_slot(slot, at, s.bodies);
-  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.side(number, at), kept.state);
+  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.side(number, at),
+                kept.state);
   for (int i = 0; i < pack.count; ++i) {
     const double* x = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
     kept.center_b[i] = Vec3(x[0], x[1], x[2]);
@@ -289,7 +283,8 @@ ContactForce GroupArc::contact_force(int contact, double time) {
   return force;
 }
 
-GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingContact& c, double at) const {
+GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingContact& c,
+                                                     double at) const {
   const ContactPlace place = system.contact_packs().places[static_cast<std::size_t>(c.contact)];
   const KeptPack& kept = pack_at(place.pack, at);
   const int i = place.lane;
@@ -309,11 +304,13 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   return result;
 }
 
-// Gauss's rule with two points a step.  The force of the dense output is not what the step was made of: damping turns the
-// small error of velocities between the steps' ends into one of forces, always to the same side (2.6 % of the work of a
-// lift at accuracy 1e-4, 0.1 % at 1e-6).  What the step was made of is known as a whole, m dv - F h; the difference is
-// shared out by the normal forces.
-double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, double from, double to) {
+// Gauss's rule with two points a step.  The force of the dense output is not what the step was made
+// of: damping turns the small error of velocities between the steps' ends into one of forces,
+// always to the same side (2.6 % of the work of a lift at accuracy 1e-4, 0.1 % at 1e-6).  What the
+// step was made of is known as a whole, m dv - F h; the difference is shared out by the normal
+// forces.
+double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, double from,
+                         double to) {
   extend(to);
   const Data& d = *data_;
   const GroupMember& body = d.start.members[static_cast<std::size_t>(member)];

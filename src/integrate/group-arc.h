@@ -107,10 +107,10 @@ struct ContactForce {
 
 // Bounds over a stretch of the arc.
 struct GroupBounds {
-  Aabb path;                // of the centre
-  Aabb acceleration;             // holds x'' of the position's interpolant, m/s^2
-  double turn = 0;          // angular speed at most, rad/s
-  double turn_change = 0;   // |w'| at most, of the attitude's interpolant, rad/s^2
+  Aabb path;               // of the centre
+  Aabb acceleration;       // holds x'' of the position's interpolant, m/s^2
+  double turn = 0;         // angular speed at most, rad/s
+  double turn_change = 0;  // |w'| at most, of the attitude's interpolant, rad/s^2
 };
 
 // A contact of a member, and whether the work at it is asked for.
@@ -149,15 +149,18 @@ class GroupArc : public Counted<GroupArc> {
   GroupBounds bounds(int member, double from, double to);
   // The end of the step that holds `time`: beyond it bounds may be much wider.
   double step_end(double time);
-  // What the member's centre of mass and principal frame do over [from, to], as a motion with the same bits: a copy of
-  // that stretch, which keeps nothing else of the arc.  Beyond the stretch it stands.
+  // What the member's centre of mass and principal frame do over [from, to], as a motion with the
+  // same bits: a copy of that stretch, which keeps nothing else of the arc.  Beyond the stretch it
+  // stands.
   MotionPtr motion(int member, double from, double to);
   Vec3 stretch(int contact, double time);  // a's frame
   ContactForce contact_force(int contact, double time);
-  // The work done on a member over [from, to] at those of its contacts that count, by the outside bodies that it meets
-  // there, J: force times the outside body's own speed where it acts.  `contacts`: all of the member's.
+  // The work done on a member over [from, to] at those of its contacts that count, by the outside
+  // bodies that it meets there, J: force times the outside body's own speed where it acts.
+  // `contacts`: all of the member's.
   double work_on(int member, std::span<const WorkingContact> contacts, double from, double to);
-  // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which contacts.
+  // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which
+  // contacts.
   double elastic_energy(double time, const std::vector<bool>& counted);
   double elastic_energy(double time) {
     return elastic_energy(time, std::vector<bool>(start().contacts.size(), true));

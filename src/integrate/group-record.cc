@@ -17,9 +17,7 @@ constexpr int pack_node = 12, pack_step = 24, pack_side = 12;
 enum : int { x_at = 0, v_at = 3, L_at = 6, w_at = 9, q_at = 12, node_numbers = 16 };
 enum : int { theta_at = 0, rate_at = 3, d3_at = 6, d4_at = 12, step_numbers = 18 };
 
-Vec3 vec(const double* p) {
-  return {p[0], p[1], p[2]};
-}
+Vec3 vec(const double* p) { return {p[0], p[1], p[2]}; }
 
 void put(std::vector<double>& to, const double* from, int count) {
   to.insert(to.end(), from, from + count);
@@ -29,9 +27,7 @@ void put(std::vector<double>& to, const Quat& q) {
   to.insert(to.end(), {q.w(), q.x(), q.y(), q.z()});
 }
 
-Quat quat(const double* p) {
-  return Quat(p[0], p[1], p[2], p[3]);
-}
+Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
 
 LaneVec load(const double* p) {
   LaneVec v;

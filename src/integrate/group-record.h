@@ -22,7 +22,8 @@ namespace tw {
 class GroupRecord {
  public:
   GroupRecord(const GroupStart& start, const GroupSystem& system);
-  // A copy of what one member (0 there) does from the step that `from` lies in on; its answers have the same bits.
+  // A copy of what one member (0 there) does from the step that `from` lies in on; its answers have
+  // the same bits.
   GroupRecord stretch_of(int member, double from) const;
 
   int steps() const { return static_cast<int>(times_.size()) - 1; }

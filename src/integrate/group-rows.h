@@ -8,9 +8,7 @@
 
 namespace tw::rows {
 
-inline std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
+inline std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 TW_LANES LaneVec load(const double* p) {
   LaneVec v;
@@ -18,16 +16,10 @@ TW_LANES LaneVec load(const double* p) {
   return v;
 }
 
-TW_LANES void store(const LaneVec& v, double* p) {
-  std::memcpy(p, &v, sizeof v);
-}
+TW_LANES void store(const LaneVec& v, double* p) { std::memcpy(p, &v, sizeof v); }
 
-inline Eigen::Map<Vec3> vec(double* p) {
-  return Eigen::Map<Vec3>(p);
-}
-inline Eigen::Map<const Vec3> vec(const double* p) {
-  return Eigen::Map<const Vec3>(p);
-}
+inline Eigen::Map<Vec3> vec(double* p) { return Eigen::Map<Vec3>(p); }
+inline Eigen::Map<const Vec3> vec(const double* p) { return Eigen::Map<const Vec3>(p); }
 
 inline void store_rotation(const Mat3& m, double* R) {
   for (int r = 0; r < 3; ++r)

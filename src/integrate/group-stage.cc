@@ -36,7 +36,8 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
   for (const int slot : moving_slots_) {
     BodyChange& change = s.changes[index(slot)];
     Vec3 v[3], w[3];
-    for (int j = 0; j < 3; ++j) outside_[index(slot - members_)]->velocity(time + j * d, v[j], w[j]);
+    for (int j = 0; j < 3; ++j)
+      outside_[index(slot - members_)]->velocity(time + j * d, v[j], w[j]);
     vec(change.x) = v[0];
     vec(change.th) = w[0];
     vec(change.v) = (4 * (v[1] - v[0]) - (v[2] - v[0])) / (2 * d);

@@ -79,7 +79,8 @@ void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) 
   set_moving(time, bodies);
 }
 
-void GroupSystem::set_outside_slot(int slot, double time, std::vector<BodyKinematics>& bodies) const {
+void GroupSystem::set_outside_slot(int slot, double time,
+                                   std::vector<BodyKinematics>& bodies) const {
   if (std::binary_search(moving_slots_.begin(), moving_slots_.end(), slot))
     place_outside(slot, time, bodies[index(slot)]);
   else

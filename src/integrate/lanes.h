@@ -21,15 +21,9 @@ using Lanes = double __attribute__((vector_size(lane_count * sizeof(double))));
 // All bits set or none, lane by lane: what a comparison of Lanes yields.
 using LaneMask = long long __attribute__((vector_size(lane_count * sizeof(long long))));
 
-TW_LANES Lanes lanes(double value) {
-  return Lanes{value, value, value, value};
-}
-TW_LANES Lanes min(Lanes a, Lanes b) {
-  return a < b ? a : b;
-}
-TW_LANES Lanes max(Lanes a, Lanes b) {
-  return a > b ? a : b;
-}
+TW_LANES Lanes lanes(double value) { return Lanes{value, value, value, value}; }
+TW_LANES Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
+TW_LANES Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
 // correctly rounded either way
 TW_LANES Lanes sqrt(Lanes a) {
 #ifdef __AVX__
@@ -37,9 +31,7 @@ TW_LANES Lanes sqrt(Lanes a) {
 #endif
   return Lanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
-TW_LANES double sum(Lanes a) {
-  return (a[0] + a[1]) + (a[2] + a[3]);
-}
+TW_LANES double sum(Lanes a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 
 // A vector in each lane.
 struct LaneVec {
@@ -52,15 +44,9 @@ TW_LANES LaneVec operator+(const LaneVec& a, const LaneVec& b) {
 TW_LANES LaneVec operator-(const LaneVec& a, const LaneVec& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-TW_LANES LaneVec operator-(const LaneVec& a) {
-  return {-a.x, -a.y, -a.z};
-}
-TW_LANES LaneVec operator*(Lanes s, const LaneVec& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-TW_LANES Lanes dot(const LaneVec& a, const LaneVec& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+TW_LANES LaneVec operator-(const LaneVec& a) { return {-a.x, -a.y, -a.z}; }
+TW_LANES LaneVec operator*(Lanes s, const LaneVec& a) { return {s * a.x, s * a.y, s * a.z}; }
+TW_LANES Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 TW_LANES LaneVec cross(const LaneVec& a, const LaneVec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -68,9 +54,7 @@ TW_LANES LaneVec select(LaneMask mask, const LaneVec& a, const LaneVec& b) {
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
-TW_LANES LaneVec broadcast(const double* v) {
-  return {lanes(v[0]), lanes(v[1]), lanes(v[2])};
-}
+TW_LANES LaneVec broadcast(const double* v) { return {lanes(v[0]), lanes(v[1]), lanes(v[2])}; }
 // each lane from its own place
 TW_LANES LaneVec gather_vec(const double* a, const double* b, const double* c, const double* d) {
   return {Lanes{a[0], b[0], c[0], d[0]}, Lanes{a[1], b[1], c[1], d[1]},
@@ -102,9 +86,7 @@ TW_LANES LaneMat operator*(Lanes s, const LaneMat& m) {
   return {{s * m.row[0], s * m.row[1], s * m.row[2]}};
 }
 // a b^T
-TW_LANES LaneMat outer(const LaneVec& a, const LaneVec& b) {
-  return {{a.x * b, a.y * b, a.z * b}};
-}
+TW_LANES LaneMat outer(const LaneVec& a, const LaneVec& b) { return {{a.x * b, a.y * b, a.z * b}}; }
 // m [a]x: row i is m_i x a
 TW_LANES LaneMat times_cross(const LaneMat& m, const LaneVec& a) {
   return {{cross(m.row[0], a), cross(m.row[1], a), cross(m.row[2], a)}};

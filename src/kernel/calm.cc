@@ -1,15 +1,16 @@
 // Sleepers: members of a moving group that stand still provisionally.
 //
-// One stone that rocks keeps a heap awake, for rest is decided for whole groups.  So at the check of a large
-// group those of its members that hardly move are laid to rest for the time being: groups at rest of their
-// own, in which the others see still bodies at their border (region.cc), and which wake where the forces on
-// them change.  What comes to rest beside sleepers goes to sleep, too, as long as something moves that touches
-// any of those that hang together with it; the last one wakes them all, and all come to rest together, watched by
-// the rule for whole groups (group-check.cc): nothing is frozen in the end that would have moved.
+// One stone that rocks keeps a heap awake, for rest is decided for whole groups.  So at the check
+// of a large group those of its members that hardly move are laid to rest for the time being:
+// groups at rest of their own, in which the others see still bodies at their border (region.cc),
+// and which wake where the forces on them change.  What comes to rest beside sleepers goes to
+// sleep, too, as long as something moves that touches any of those that hang together with it; the
+// last one wakes them all, and all come to rest together, watched by the rule for whole groups
+// (group-check.cc): nothing is frozen in the end that would have moved.
 //
-// A member is laid to rest when it was slow for a while without getting faster or away (so neither a tower
-// that begins to tip nor a ball that creeps), no loaded contact of it slips, and everything it touches is
-// slow or still, too.
+// A member is laid to rest when it was slow for a while without getting faster or away (so neither
+// a tower that begins to tip nor a ball that creeps), no loaded contact of it slips, and everything
+// it touches is slow or still, too.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/calm.h"
@@ -24,7 +25,8 @@ namespace {
 
 // Calm: slower than this share of sqrt(g size).
 constexpr double calm_share = 5e-4;
-// s; the second half's peak must not exceed the first's by more, and the way made by this share of it.
+// s; the second half's peak must not exceed the first's by more, and the way made by this share of
+// it.
 constexpr double watch = 0.5, growth = 1.1, drift = 0.1;
 // Fewer are not worth a group of their own: a number, and a share of the group.
 constexpr std::size_t least_sleepers = 8;
@@ -70,12 +72,15 @@ std::vector<bool> Kernel::sleepers(const Regroup& work) const {
   }
   const auto too_few = [&] {
     const auto number = static_cast<std::size_t>(std::count(asleep.begin(), asleep.end(), true));
-    return number < least_sleepers || static_cast<double>(number) < least_share * static_cast<double>(moving);
+    return number < least_sleepers ||
+           static_cast<double>(number) < least_share * static_cast<double>(moving);
   };
   if (too_few()) return std::vector<bool>(count, false);
 
   // what touches something that moves, or slips, stays awake
-  const auto place = [&](const Draft* d) { return static_cast<std::size_t>(d - work.drafts.data()); };
+  const auto place = [&](const Draft* d) {
+    return static_cast<std::size_t>(d - work.drafts.data());
+  };
   const auto disturbs = [&](BodyId id) {
     const Draft* draft = work.draft_of(id);
     if (!bodies[id]->dynamic()) return !bodies[id]->fixed();
@@ -85,7 +90,8 @@ std::vector<bool> Kernel::sleepers(const Regroup& work) const {
   for (const OldLink& old : work.before) {
     const BodyId a = first_of(old.pair), b = second_of(old.pair);
     const Draft *da = work.draft_of(a), *db = work.draft_of(b);
-    const bool lies_a = work.changes(da) && asleep[place(da)], lies_b = work.changes(db) && asleep[place(db)];
+    const bool lies_a = work.changes(da) && asleep[place(da)],
+               lies_b = work.changes(db) && asleep[place(db)];
     if (!lies_a && !lies_b) continue;
     bool slips = false;
     const double when = old.group->contact_time(work.key.time);

@@ -9,9 +9,9 @@ namespace tw {
 
 // Speeds are those of the fastest surface point, m/s.
 struct Calm {
-  double since = never;              // s; `never`: it is not calm
-  double early_peak = 0, peak = 0;   // in the first and in the second half of the watch
-  Vec3 x = Vec3::Zero();             // where it was at `since`
+  double since = never;             // s; `never`: it is not calm
+  double early_peak = 0, peak = 0;  // in the first and in the second half of the watch
+  Vec3 x = Vec3::Zero();            // where it was at `since`
   Quat q = Quat::Identity();
 };
 

@@ -6,12 +6,13 @@
 // body in free flight has the height along n
 //   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
 // with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
-// torque-free rotation.  So the time until the plane may be reached is the least root of quadratics:
-// close to the true impact time, and never after it.  Kinematic bodies are bounded by their speed,
-// over a horizon.  Members of groups are bounded by the derivatives of their dense output, over one step.
+// torque-free rotation.  So the time until the plane may be reached is the least root of
+// quadratics: close to the true impact time, and never after it.  Kinematic bodies are bounded by
+// their speed, over a horizon.  Members of groups are bounded by the derivatives of their dense
+// output, over one step.
 //
-// With an allowance the plane gives way by half of it to either side: bodies that slide past each other
-// at touch are then apart for as long as they do.
+// With an allowance the plane gives way by half of it to either side: bodies that slide past each
+// other at touch are then apart for as long as they do.
 //
 // The certificate decides only where the next query is made, never the answer: warm simplices are
 // allowed here.
@@ -41,7 +42,8 @@ struct Plane {
   double allowance = 0;  // points may stand this far on the wrong side
 };
 
-// When a core point (offset r from the centre, world) with a radius may reach the plane, n towards it.
+// When a core point (offset r from the centre, world) with a radius may reach the plane, n towards
+// it.
 double reach(const Mover& side, const Vec3& n, double c, double u, double alpha, const Vec3& r,
              double radius) {
   const double gap = c - n.dot(side.point.x + r) - radius;
@@ -63,8 +65,8 @@ double kinematic_reach(const Mover& side, const ConvexPart& part, const Vec3& n,
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
   double least = never;
   for (const Vec3& vertex : part.core->vertices())
-    least = std::min(least, reach(side, n, c, u, alpha,
-                                  side.frame.R * (part.placement * vertex), 0));
+    least =
+        std::min(least, reach(side, n, c, u, alpha, side.frame.R * (part.placement * vertex), 0));
   return least;
 }
 
@@ -81,7 +83,8 @@ double part_reach(const Mover& side, const ConvexPart& part, const Plane& plane,
   }
   if (as_ball || part.kind == PartKind::sphere)
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
-  if (!side.body->dynamic() && !side.body->fixed()) return kinematic_reach(side, part, n, c, u, alpha);
+  if (!side.body->dynamic() && !side.body->fixed())
+    return kinematic_reach(side, part, n, c, u, alpha);
 
   // heights and speeds of points are linear in them: in the part's frame,
   // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w
@@ -89,12 +92,13 @@ double part_reach(const Mover& side, const ConvexPart& part, const Plane& plane,
   const Vec3 m = n.cross(side.point.w);
   const Vec3 n_P = frame.R.transpose() * n, m_P = frame.R.transpose() * m;
   const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
-  const double pull =
-      alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) - side.bend * side.body->radius;
+  const double pull = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) -
+                      side.bend * side.body->radius;
   if (part.kind == PartKind::cylinder) {
     // the highest point and the fastest, which need not be the same one
     const auto most = [&](const Vec3& along) {
-      return part.half_length * std::abs(along.z()) + part.radius * std::hypot(along.x(), along.y());
+      return part.half_length * std::abs(along.z()) +
+             part.radius * std::hypot(along.x(), along.y());
     };
     const double gap = c - height - most(n_P);
     return gap > 0 ? first_zero(gap, u - speed - most(m_P), pull) : 0;
@@ -112,9 +116,9 @@ double part_reach(const Mover& side, const ConvexPart& part, const Plane& plane,
 }
 
 // Seconds until the two parts may meet, given n from a to b and the witness points.
-double time_apart(const Mover& a, const ConvexPart& part_a, const Mover& b, const ConvexPart& part_b,
-                  const Vec3& n, const Vec3& point_a, const Vec3& point_b, double allowance,
-                  bool as_balls) {
+double time_apart(const Mover& a, const ConvexPart& part_a, const Mover& b,
+                  const ConvexPart& part_b, const Vec3& n, const Vec3& point_a, const Vec3& point_b,
+                  double allowance, bool as_balls) {
   Plane plane;
   plane.allowance = 0.5 * allowance;
   plane.n = n;
@@ -135,7 +139,8 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
   double least = never;
   if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
     least = kinematic_horizon;
-  // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where needed
+  // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
+  // needed
   const bool in_steps = a.step_end != never || b.step_end != never;
   std::optional<Mover> step_a, step_b;
   const auto by_step = [&](const auto& bound) {
@@ -166,9 +171,9 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
         if (spheres || centers - radii > far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
           least = std::min(least, longest([&](const Mover& x, const Mover& y) {
-            return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n, allowance,
-                              true);
-          }));
+                             return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n,
+                                               cb - pb.bound_radius * n, allowance, true);
+                           }));
           continue;
         }
       }
@@ -183,8 +188,8 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
       // where edges and faces turn past each other, a plane that turns with them lasts longer
       if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
         apart = std::max(apart, by_step([&](const Mover& x, const Mover& y) {
-          return turning_time_apart(x, pa, y, pb, s, allowance);
-        }));
+                           return turning_time_apart(x, pa, y, pb, s, allowance);
+                         }));
       least = std::min(least, apart);
     }
   ++counters.certificates;

@@ -2,8 +2,8 @@
 //
 // A pair is followed piece by piece (a piece: both arcs stand).  On each piece the impact is a
 // function of the two arcs' starts alone, as if they were never cut:
-//   exact     spheres that fall alike, sphere and fixed plane: a quadratic (collision/impact-time.h)
-//   on grid   otherwise: once at the common start, then at multiples of h = 2^-20 s.  A conservative
+//   exact     spheres that fall alike, sphere and fixed plane: a quadratic (impact-time.h)
+//   on grid   otherwise: at the common start, then at multiples of h = 2^-20 s.  A conservative
 //             certificate skips grid points at which the pair is surely apart.  The impact lies
 //             before the first grid point with penetration; Brent's method finds it on the signed
 //             distance, cold.
@@ -209,13 +209,13 @@ Key Kernel::impact_key(const Piece& piece, double impact_time) const {
   std::uint32_t microstep = 0;
   for (const State* state : {piece.a, piece.b}) {
     if (!bodies[state->process]->dynamic()) continue;
-    if (state->arc_key.time == impact_time) microstep = std::max(microstep, state->arc_key.microstep);
+    if (state->arc_key.time == impact_time)
+      microstep = std::max(microstep, state->arc_key.microstep);
     for (const State* s = state; s && s->key < piece.end && s->key.time <= impact_time; s = s->next)
       if (s->key.time == impact_time && s->key.kind == KeyKind::edit)
         microstep = std::max(microstep, s->key.microstep);
   }
-  return {impact_time, microstep + 1, KeyKind::impact,
-          pair_id(piece.a->process, piece.b->process)};
+  return {impact_time, microstep + 1, KeyKind::impact, pair_id(piece.a->process, piece.b->process)};
 }
 
 // How fast the nearest points close, m/s; 0 where that is rounding.
@@ -232,7 +232,8 @@ bool Kernel::approaching_at(const Piece& piece, double when) const {
   return closing_at(piece, when, separation_at(piece, when)) > 0;
 }
 
-// Whether the free accelerations press the two together; what a group or the ground carries has none.
+// Whether the free accelerations press the two together; what a group or the ground carries has
+// none.
 bool Kernel::pressed_at(const Piece& piece, const Vec3& normal) const {
   const auto pull = [&](const State& s) {
     return bodies[s.process]->dynamic() && !s.group ? s.acceleration : Vec3(Vec3::Zero());
@@ -280,8 +281,7 @@ std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, cons
   const Body& second = a.id() < b.id() ? b : a;
   for (Key at = from;;) {
     const Piece piece = piece_at(first.id(), second.id(), at);
-    all_exact =
-        !piece.a->error && !piece.b->error && predicted_exactly(piece, first, second);
+    all_exact = !piece.a->error && !piece.b->error && predicted_exactly(piece, first, second);
     if (!all_exact) return std::nullopt;
     const double impact_time = exact_impact(piece, first, second);
     if (impact_time < never) {
@@ -359,7 +359,8 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   return true;
 }
 
-// After a free check at `checked`: no root is left before the bracket that the next check would open.
+// After a free check at `checked`: no root is left before the bracket that the next check would
+// open.
 void Kernel::raise_safe_time(Pair& pair, const Piece& piece, double checked) const {
   const double safe = std::max(checked, pair.next_check - check_grid);
   if (pair.from.time < safe && safe < piece.end.time) pair.from = {safe, 0, KeyKind::birth, 0};

@@ -1,8 +1,9 @@
 // Checkpoints: the committed present of a world, to come back to.
 //
-// What is committed is a state per body, with what edits have added to it, and the next tick per callback;
-// everything else (claims, pairs, events) is found anew, as after any change.  So a run that goes on from a restored checkpoint
-// commits the same history, bit for bit, as one that was never interrupted.
+// What is committed is a state per body, with what edits have added to it, and the next tick per
+// callback; everything else (claims, pairs, events) is found anew, as after any change.  So a run
+// that goes on from a restored checkpoint commits the same history, bit for bit, as one that was
+// never interrupted.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/checkpoint.h"
@@ -42,7 +43,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
     Key next{callback.committed_next, 0, KeyKind::callback,
              static_cast<std::uint64_t>(&callback - callbacks.data())};
     if (callback.def.period)
-      next = first_tick(callback, !begun          ? Key{}
+      next = first_tick(callback, !begun           ? Key{}
                                   : due_.inclusive ? Key{time, 0, KeyKind::group_check, 0}
                                                    : present_key());
     result->callbacks.push_back({next, callback.committed_next});
@@ -53,10 +54,10 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
 void Kernel::restore(const Checkpoint& checkpoint) {
   require_between_runs("a checkpoint was restored");
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
-  TW_REQUIRE(checkpoint.states.size() == bodies.size() &&
-                 checkpoint.callbacks.size() == callbacks.size() &&
-                 checkpoint.removals == removals_,
-             "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
+  TW_REQUIRE(
+      checkpoint.states.size() == bodies.size() &&
+          checkpoint.callbacks.size() == callbacks.size() && checkpoint.removals == removals_,
+      "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
 
   // empty the graph and the event queue
   for (std::uint32_t i = 0; i < pairs.size(); ++i)

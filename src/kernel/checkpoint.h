@@ -32,7 +32,7 @@ struct Checkpoint {
     StateData data;
   };
   std::vector<std::vector<Kept>> states;
-  std::vector<std::pair<Key, double>> callbacks;       // next tick; next time without a period
+  std::vector<std::pair<Key, double>> callbacks;  // next tick; next time without a period
 };
 
 }  // namespace tw

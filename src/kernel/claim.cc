@@ -1,9 +1,9 @@
 // Claims: how far a body's swept box reaches, and whom it may meet there.
 //
-// A body claims its motion window by window.  Its box then covers the *continuous* motion from GVT to
-// the claimed time; a box that comes to overlap another makes the pair active, and the pair is looked
-// at from the lesser claimed time before this claim, which may lie in the past of one of them (the
-// paper, section 4.5 and figure 5).
+// A body claims its motion window by window.  Its box then covers the *continuous* motion from GVT
+// to the claimed time; a box that comes to overlap another makes the pair active, and the pair is
+// looked at from the lesser claimed time before this claim, which may lie in the past of one of
+// them (the paper, section 4.5 and figure 5).
 //
 // Cost: one insertion into the spatial hash and one query a window.
 //
@@ -19,8 +19,8 @@ namespace {
 // Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
 constexpr double box_inflation = 1e-9;
 
-// A body that claims and finds nobody several times in a row claims longer windows, each twice the one
-// before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
+// A body that claims and finds nobody several times in a row claims longer windows, each twice the
+// one before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
 constexpr int patience = 3;
 constexpr int most_doublings = 20;
 
@@ -116,7 +116,8 @@ void Kernel::claim_window(Body& body) {
   const double end = body.fixed() ? never : window_end(body);
   body.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
-    if (!body.unbounded) grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end), body.fixed());
+    if (!body.unbounded)
+      grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end), body.fixed());
     body.placed = true;
     drop_parted_pairs(body);
     const std::uint64_t candidates = counters.candidates;

@@ -1,9 +1,9 @@
-// Clearance: whether a pair is surely apart for a whole window, by how far it is apart and how far its
-// bodies can come towards each other.
+// Clearance: whether a pair is surely apart for a whole window, by how far it is apart and how far
+// its bodies can come towards each other.
 //
-// In a heap most neighbours never touch and hardly move: a distance once measured, less what both have
-// travelled since, keeps answering for many windows without another query.  What is remembered decides
-// only whether to look, never the answer.
+// In a heap most neighbours never touch and hardly move: a distance once measured, less what both
+// have travelled since, keeps answering for many windows without another query.  What is remembered
+// decides only whether to look, never the answer.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace tw {
 namespace {
 
-// Where a body's centre may get to from where it is, and how far turning carries its surface beyond.
+// Where a body's centre may get to from where it is, and how far turning carries its surface
+// beyond.
 struct Travel {
   Vec3 center = Vec3::Zero();
   Aabb displacement{Vec3::Zero(), Vec3::Zero()};
@@ -35,7 +36,8 @@ Travel travel_of(const Body& body, const State& arc, double from, double to) {
     const Vec3 end = center_at(body, arc, to) - t.center;
     const Vec3 apex = (0.125 * dt * dt) * arc.acceleration.cwiseAbs();
     t.displacement = {end.cwiseMin(0.0) - apex, end.cwiseMax(0.0) + apex};
-    t.turning = body.sphere_radius >= 0 ? 0 : angular_speed_bound(body, arc, from, to) * dt * body.radius;
+    t.turning =
+        body.sphere_radius >= 0 ? 0 : angular_speed_bound(body, arc, from, to) * dt * body.radius;
     return t;
   }
   t.displacement = Aabb{Vec3::Zero(), Vec3::Zero()};
@@ -46,11 +48,12 @@ Travel travel_of(const Body& body, const State& arc, double from, double to) {
 
 // What the centres' displacements may do to the distance of two surface points.
 struct RelativeTravel {
-  Vec3 lo, hi;       // of b against a
+  Vec3 lo, hi;  // of b against a
   double turning;
 
   RelativeTravel(const Travel& a, const Travel& b)
-      : lo(b.displacement.lo - a.displacement.hi), hi(b.displacement.hi - a.displacement.lo),
+      : lo(b.displacement.lo - a.displacement.hi),
+        hi(b.displacement.hi - a.displacement.lo),
         turning(a.turning + b.turning) {}
   // in any direction
   double most() const { return lo.cwiseAbs().cwiseMax(hi.cwiseAbs()).norm() + turning; }
@@ -84,8 +87,8 @@ bool Kernel::apart_throughout(Pair& pair, const Piece& piece, double to) {
     left = never;
     for (std::size_t i = 0; i < parts_a.size() && left > 0; ++i)
       for (std::size_t j = 0; j < parts_b.size() && left > 0; ++j) {
-        const Separation s = part_separation(parts_a[i], fa, parts_b[j], fb,
-                                             &pair.caches[i * parts_b.size() + j]);
+        const Separation s =
+            part_separation(parts_a[i], fa, parts_b[j], fb, &pair.caches[i * parts_b.size() + j]);
         left = std::min(left, s.distance - travel.against(s.normal));
       }
   }

@@ -52,8 +52,8 @@ void Kernel::update_gvt() {
   if (limit > gvt || inclusive) commit(limit, inclusive);
 }
 
-// Everything before `limit` (at it, too, if inclusive) is final.  What is committed is so before observers
-// hear of it: an error of theirs leaves the world at its last committed time.
+// Everything before `limit` (at it, too, if inclusive) is final.  What is committed is so before
+// observers hear of it: an error of theirs leaves the world at its last committed time.
 void Kernel::commit(double limit, bool inclusive) {
   const std::exception_ptr error = error_before(limit, inclusive);
   commit_states(limit, inclusive);
@@ -67,8 +67,8 @@ void Kernel::commit(double limit, bool inclusive) {
   if (error) std::rethrow_exception(error);
 }
 
-// The error of the first stopped process that GVT passes, null if there is none: then the commit ends where
-// it stopped.
+// The error of the first stopped process that GVT passes, null if there is none: then the commit
+// ends where it stopped.
 std::exception_ptr Kernel::error_before(double& limit, bool& inclusive) const {
   const State* first = nullptr;
   for (const std::uint32_t process : graph.busy()) {
@@ -97,7 +97,8 @@ void Kernel::commit_states(double limit, bool inclusive) {
   }
   // what one discontinuity tells has one key: in the order told
   std::stable_sort(undelivered_.begin() + static_cast<std::ptrdiff_t>(delivered_before),
-            undelivered_.end(), [](const auto& x, const auto& y) { return x->key < y->key; });
+                   undelivered_.end(),
+                   [](const auto& x, const auto& y) { return x->key < y->key; });
 }
 
 void Kernel::commit_state(State& state) {
@@ -108,7 +109,8 @@ void Kernel::commit_state(State& state) {
   const bool impact = state.key.kind == KeyKind::impact;
   const bool call = state.key.kind == KeyKind::callback && state.changed;
   bool first = impact || call;
-  for (const State* r = state.ring; first && r != &state; r = r->ring) first = state.process < r->process;
+  for (const State* r = state.ring; first && r != &state; r = r->ring)
+    first = state.process < r->process;
   if (first && impact) ++counters.collisions;
   if (first && call) ++counters.callback_changes;
   if (state.key.kind == KeyKind::callback)
@@ -126,8 +128,8 @@ void Kernel::commit_state(State& state) {
   }
 }
 
-// Writing frames drives the stepping loop's data out of the processor's caches, so they go in batches: at
-// the latest when the next slice begins or the run ends.
+// Writing frames drives the stepping loop's data out of the processor's caches, so they go in
+// batches: at the latest when the next slice begins or the run ends.
 bool Kernel::delivery_is_worth_it() const {
   constexpr std::size_t batch = 512, most_waiting_states = 20000;
   if (undelivered_.size() >= 8 * batch) return true;
@@ -138,9 +140,9 @@ bool Kernel::delivery_is_worth_it() const {
   });
 }
 
-// Collisions and frames in time order; a collision at a frame's time comes first.  Each observer hears of a
-// collision once, whatever another one or a call before did: what an error keeps from being delivered is
-// delivered by the next call, and a call delivers one thing at least.
+// Collisions and frames in time order; a collision at a frame's time comes first.  Each observer
+// hears of a collision once, whatever another one or a call before did: what an error keeps from
+// being delivered is delivered by the next call, and a call delivers one thing at least.
 bool Kernel::deliver(double wall_end) {
   const double cpu = thread_cpu_seconds();
   struct AddTime {
@@ -154,8 +156,7 @@ bool Kernel::deliver(double wall_end) {
     for (SinkRecord& s : sinks)
       if (!sink || s.next_time() < sink->next_time()) sink = &s;
     const bool frame_due = sink && due_.reaches(sink->next_time());
-    if (!undelivered_.empty() &&
-        (!frame_due || undelivered_.front()->time <= sink->next_time())) {
+    if (!undelivered_.empty() && (!frame_due || undelivered_.front()->time <= sink->next_time())) {
       const std::shared_ptr<const Collision> collision = undelivered_.front();
       while (next_observer_ < observers.size()) {
         const ObserverRecord& record = observers[next_observer_++];

@@ -1,7 +1,8 @@
 // Reading the contacts of all groups at one instant.
 //
-// A link may stand in two groups: in that of a region that a blow gave new arcs, and in that of those who
-// keep theirs.  One of them has the say (governing); only its contacts count, as in total_energy.
+// A link may stand in two groups: in that of a region that a blow gave new arcs, and in that of
+// those who keep theirs.  One of them has the say (governing); only its contacts count, as in
+// total_energy.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -71,8 +72,10 @@ double Kernel::deepest_contact(double when) const {
     for (const std::uint32_t number : group.links_of(state.member)) {
       const GroupLink& link = group.links[number];
       // from the member that was added first
-      const BodyId other = first_of(link.pair) == body->id() ? second_of(link.pair) : first_of(link.pair);
-      if (other < body->id() && group.contains(other) && state_at(other, when)->group.get() == &group)
+      const BodyId other =
+          first_of(link.pair) == body->id() ? second_of(link.pair) : first_of(link.pair);
+      if (other < body->id() && group.contains(other) &&
+          state_at(other, when)->group.get() == &group)
         continue;
       for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
         depth = std::max(depth, -group.arc->contact_force(static_cast<int>(c), when).gap);

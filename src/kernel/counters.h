@@ -10,7 +10,7 @@ struct Counters {
   // events, as processed
   std::uint64_t events = 0, claims = 0, checks = 0, certificates = 0, predictions = 0;
   std::uint64_t candidates = 0, pairs_made = 0, live_pairs = 0, gvt_computations = 0;
-  double pair_sum = 0;             // live pairs, summed over processed events: for the average
+  double pair_sum = 0;  // live pairs, summed over processed events: for the average
 
   // rollback
   std::uint64_t rollbacks = 0, states_removed = 0, processes_rolled_back = 0;
@@ -20,7 +20,7 @@ struct Counters {
 
   // arcs
   std::uint64_t integrations = 0;
-  double integration_length = 0;      // s, of arcs that have ended
+  double integration_length = 0;  // s, of arcs that have ended
 
   // steps of groups, rolled back ones too
   std::uint64_t implicit_steps = 0, rejected_steps = 0, factorizations = 0, force_evaluations = 0;
@@ -32,8 +32,8 @@ struct Counters {
   // committed
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
-  double kinematic_work = 0;          // J, by kinematic bodies on dynamic ones
-  double max_penetration = 0;         // m, deepest overlap at impacts, in contacts and at frames
+  double kinematic_work = 0;   // J, by kinematic bodies on dynamic ones
+  double max_penetration = 0;  // m, deepest overlap at impacts, in contacts and at frames
 
   // time of this thread, s
   double cpu_seconds = 0, output_cpu_seconds = 0;

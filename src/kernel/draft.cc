@@ -30,14 +30,13 @@ void start_new_arc(Draft& draft, const Key& key) {
 }
 
 void DraftView::require_dynamic(const char* what) const {
-  TW_REQUIRE(draft_.body->dynamic(), std::string(what) + " of " + draft_.body->info.name +
-                                         " cannot be changed; expected a dynamic body (this one is " +
-                                         (draft_.body->fixed() ? "fixed)" : "kinematic)"));
+  TW_REQUIRE(draft_.body->dynamic(),
+             std::string(what) + " of " + draft_.body->info.name +
+                 " cannot be changed; expected a dynamic body (this one is " +
+                 (draft_.body->fixed() ? "fixed)" : "kinematic)"));
 }
 
-double DraftView::kinetic_energy() const {
-  return tw::kinetic_energy(*draft_.body, draft_.point);
-}
+double DraftView::kinetic_energy() const { return tw::kinetic_energy(*draft_.body, draft_.point); }
 
 // The first change of the motion starts a new arc here.
 void DraftView::start_arc() {
@@ -69,8 +68,8 @@ void DraftView::set_applied_force(const Vec3& force) {
   require_dynamic("applied-force");
   TW_REQUIRE(is_finite(force), "applied-force of " + draft_.body->info.name + " is not finite");
   TW_REQUIRE(force.norm() / draft_.body->mass <= greatest_acceleration,
-             "applied-force of " + draft_.body->info.name + " is " + show(force.norm()) +
-                 " N on " + show(draft_.body->mass) + " kg; expected an acceleration of at most " +
+             "applied-force of " + draft_.body->info.name + " is " + show(force.norm()) + " N on " +
+                 show(draft_.body->mass) + " kg; expected an acceleration of at most " +
                  show(greatest_acceleration) + " m/s^2");
   if (force == draft_.data.force) return;
   start_arc();

@@ -13,14 +13,15 @@ namespace tw {
 
 struct Draft {
   const Body* body = nullptr;
-  bool enters = true;               // false: a fixed body that keeps no states
-  bool watched = false;             // what happens to others depends on it, but it doesn't touch them
-  bool placed = false;              // somebody put it elsewhere: its contacts are gone
+  bool enters = true;    // false: a fixed body that keeps no states
+  bool watched = false;  // what happens to others depends on it, but it doesn't touch them
+  bool placed = false;   // somebody put it elsewhere: its contacts are gone
   StateData data;
-  ArcPoint point;                   // at the discontinuity's time
+  ArcPoint point;  // at the discontinuity's time
 };
 
-// Starts a new arc at `key` from the draft's point; the group, if there is one, is still the old one.
+// Starts a new arc at `key` from the draft's point; the group, if there is one, is still the old
+// one.
 void start_new_arc(Draft& draft, const Key& key);
 
 // UserError if a body called `name` were placed too far away (base/limits.h).
@@ -30,7 +31,10 @@ void require_near(const Vec3& position, const std::string& name);
 class DraftView : public StateView {
  public:
   DraftView(Draft& draft, const Key& key, bool may_place, const Vec3& gravity)
-      : draft_(draft), key_(key), may_place_(may_place), gravity_(gravity),
+      : draft_(draft),
+        key_(key),
+        may_place_(may_place),
+        gravity_(gravity),
         state_(body_state(*draft.body, draft.point)) {}
 
   BodyId body() const override { return draft_.body->id(); }

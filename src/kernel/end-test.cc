@@ -1,11 +1,12 @@
 // The end test: where the arcs of a group really end.
 //
-// A group is integrated with the contacts it had at the start.  Before anybody relies on its arcs, each
-// linked pair is looked at where they end: a feature that came down unrepresented, or a contact that
-// closes faster than its spring is meant for, ends the arcs where it touches, and the group check that
-// stands there takes it in.  So the end is a function of the group alone.
+// A group is integrated with the contacts it had at the start.  Before anybody relies on its arcs,
+// each linked pair is looked at where they end: a feature that came down unrepresented, or a
+// contact that closes faster than its spring is meant for, ends the arcs where it touches, and the
+// group check that stands there takes it in.  So the end is a function of the group alone.
 //
-// Cost: one manifold a link, none for pairs that moved less than a fraction of their contact's depth.
+// Cost: one manifold a link, none for pairs that moved less than a fraction of their
+// contact's depth.
 // Source: doc/numerics.md, "Contact groups" (missed features gain energy).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -47,7 +48,8 @@ struct Pairing {
   const Motion& outside_motion(const Body& body) const {
     if (!body.dynamic()) return *body.motion;
     const auto at = std::find(group.outside.begin(), group.outside.end(), body.id());
-    TW_ASSERT(at != group.outside.end(), body.info.name + " is linked and neither member nor outside");
+    TW_ASSERT(at != group.outside.end(),
+              body.info.name + " is linked and neither member nor outside");
     return *group.arc->start().outside[static_cast<std::size_t>(at - group.outside.begin())];
   }
   // The depth of the deepest point, m, as a negative gap; 0: none.  `at_seams`: ghosts left out.

@@ -56,8 +56,8 @@ void EventQueue::withdraw(Handle& handle) {
   if (at < heap_.size()) settle(at, last);
 }
 
-// Priorities are key times or earlier: below a slot whose priority is not earlier than the least time
-// known there is none.  In order that ends at once.
+// Priorities are key times or earlier: below a slot whose priority is not earlier than the least
+// time known there is none.  In order that ends at once.
 double EventQueue::least_time() const {
   double least = never;
   std::vector<std::size_t> open;
@@ -67,8 +67,7 @@ double EventQueue::least_time() const {
     open.pop_back();
     if (heap_[at].priority >= least) continue;
     least = std::min(least, events_[heap_[at].handle].key.time);
-    for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c)
-      open.push_back(c);
+    for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c) open.push_back(c);
   }
   return least;
 }

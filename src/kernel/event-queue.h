@@ -1,8 +1,8 @@
 // The event queue: an indexed 4-ary heap, so that an event can be moved or withdrawn in place and
 // the top is never stale.  The heap holds the priorities themselves: only ties look at the events.
 //
-// Order: by priority (the time of the key; a head start earlier under the adversary scheduler), then
-// by key.  Invariant (validate): parents are not later than children; handles point back.
+// Order: by priority (the time of the key; a head start earlier under the adversary scheduler),
+// then by key.  Invariant (validate): parents are not later than children; handles point back.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -63,8 +63,8 @@ class EventQueue {
     place_[slot.handle] = static_cast<std::uint32_t>(at);
   }
 
-  std::vector<Event> events_;        // by handle
-  std::vector<std::uint32_t> place_; // handle -> index in heap_
+  std::vector<Event> events_;         // by handle
+  std::vector<std::uint32_t> place_;  // handle -> index in heap_
   std::vector<Slot> heap_;
   std::vector<Handle> unused_;
 };

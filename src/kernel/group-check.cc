@@ -1,8 +1,8 @@
 // Group checks: contacts refreshed, fissions found, rest recognised, the next check chosen.
 //
-// Checks lie at birth + k 2^j / rate, j such that no surface point moves more than a twentieth of its
-// body's size in between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do
-// not).  What a check finds depends on the group's arcs alone.
+// Checks lie at birth + k 2^j / rate, j such that no surface point moves more than a twentieth of
+// its body's size in between (doc/numerics.md: finer is cheaper while bodies collide, coarser while
+// they do not).  What a check finds depends on the group's arcs alone.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -20,8 +20,8 @@ constexpr int most_halvings = 5;
 
 // A group is quiet while no surface point is faster than this share of sqrt(g size) ...
 constexpr double quiet_share = 5e-3;
-// ... and rests when it was so for this long, s, no loaded contact slips, and its speed has fallen to half
-// or is below this share: what tips over slowly gets faster, what settles gets slower.
+// ... and rests when it was so for this long, s, no loaded contact slips, and its speed has fallen
+// to half or is below this share: what tips over slowly gets faster, what settles gets slower.
 constexpr double rest_time = 0.2;
 constexpr double still_share = 1e-7;
 
@@ -60,7 +60,8 @@ void Kernel::schedule_group_check(Body& body) {
   }
   Key key = group_check_key(*tail->group, end);
   key.id = body.id();
-  queue.schedule(body.group_check, make_event(key, EventKind::group_check, body.id(), body.head_start));
+  queue.schedule(body.group_check,
+                 make_event(key, EventKind::group_check, body.id(), body.head_start));
 }
 
 void Kernel::schedule_group_checks(const Group& group) {
@@ -107,8 +108,9 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
   }
   for (const BodyId other : before.outside) {
     const Draft* border = bodies[other]->dynamic() ? work.draft_of(other) : nullptr;
-    const bool still = bodies[other]->fixed() ||
-                       (border && !work.changes(border) && border->data.group && border->data.group->at_rest);
+    const bool still =
+        bodies[other]->fixed() ||
+        (border && !work.changes(border) && border->data.group && border->data.group->at_rest);
     if (!still) quiet = false;
   }
   if (!quiet) return false;
@@ -125,7 +127,8 @@ bool Kernel::comes_to_rest(Regroup& work, Group& after, const Group& before) con
          (speed <= 0.5 * before.quiet_speed || speed <= still_share * scale);
 }
 
-// Which links went, which came: counted, and told as fissions where bodies parted; and how deep they are.
+// Which links went, which came: counted, and told as fissions where bodies parted; and how deep
+// they are.
 void Kernel::note_changes(Regroup& work) const {
   for (const LooseLink& link : work.links)
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c)
@@ -133,9 +136,9 @@ void Kernel::note_changes(Regroup& work) const {
   bool changed = false;
   std::size_t lasting = 0;
   for (const OldLink& old : work.before) {
-    const auto at = std::lower_bound(
-        work.links.begin(), work.links.end(), old.pair,
-        [](const LooseLink& l, std::uint64_t pair) { return l.pair < pair; });
+    const auto at =
+        std::lower_bound(work.links.begin(), work.links.end(), old.pair,
+                         [](const LooseLink& l, std::uint64_t pair) { return l.pair < pair; });
     const bool stands = at != work.links.end() && at->pair == old.pair;
     if (stands) {
       ++lasting;
@@ -149,8 +152,8 @@ void Kernel::note_changes(Regroup& work) const {
   work.tally.contact_changes = changed;
 }
 
-// All that hangs together with the group and is checked at the same time: the parts of a group that blows
-// have divided.
+// All that hangs together with the group and is checked at the same time: the parts of a group that
+// blows have divided.
 std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Key& key) const {
   Groups groups{group};
   std::vector<BodyId> all;
@@ -160,15 +163,16 @@ std::vector<BodyId> Kernel::family(const std::shared_ptr<Group>& group, const Ke
     for (const GroupLink& link : groups[i]->links) {
       const BodyId a = first_of(link.pair), b = second_of(link.pair);
       if (!bodies[a]->dynamic() || !bodies[b]->dynamic()) continue;
-      // seen from either side, or two checks of one time would take each other back: so links of those that
-      // have left do not count
+      // seen from either side, or two checks of one time would take each other back: so links of
+      // those that have left do not count
       const State& state_a = *graph.last_before(a, key);
       const State& state_b = *graph.last_before(b, key);
       if (state_a.group != groups[i] && state_b.group != groups[i]) continue;
       const Group* judge = governing(state_a, state_b);
       if (!judge || !judge->link(link.pair)) continue;
       for (const State* state : {&state_a, &state_b}) {
-        if (!state->group || state->error || state->group->next_check != group->next_check) continue;
+        if (!state->group || state->error || state->group->next_check != group->next_check)
+          continue;
         if (group_check_key(*state->group, key.time).microstep != key.microstep) continue;
         add_once(groups, state->group);
       }
@@ -202,13 +206,16 @@ void Kernel::process_group_check(BodyId id) {
   Key key = group_check_key(*group, when);
   ++counters.group_checks;
 
-  // only after the claims of kinematic bodies, and those of all that take part, have reached its time
+  // only after the claims of kinematic bodies, and those of all that take part, have reached its
+  // time
   bool claimed = false;
   for (const BodyId mover : kinematic)
     for (; bodies[mover]->claim.time < key.time; claimed = true) claim_window(*bodies[mover]);
   if (claimed) return;
   const bool early = when < group->next_check;
-  const auto all_concerned = [&] { return early ? early_bodies(*group, when, key) : family(group, key); };
+  const auto all_concerned = [&] {
+    return early ? early_bodies(*group, when, key) : family(group, key);
+  };
   std::vector<BodyId> concerned = all_concerned();
   bool all_known = true;
   for (const BodyId member : concerned) all_known = await(member, key) && all_known;
@@ -256,4 +263,4 @@ std::string Kernel::group_failure(const Group& group) const {
          "; expected finite forces (look at #:stiffness, #:damping and the masses)";
 }
 
-}  // allpace tw
+}  // namespace tw

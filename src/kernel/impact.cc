@@ -1,8 +1,8 @@
 // Impacts: from two arcs that meet to two new states.
 //
 // Single points by the impact law; face-on: at the manifold's centroid first, then at the deepest
-// approaching point until none approaches; simultaneous contacts: the worst approacher first, at most
-// 200 impulses.  A soft impact leaves the motion as it is: the two fuse (regroup.cc).
+// approaching point until none approaches; simultaneous contacts: the worst approacher first, at
+// most 200 impulses.  A soft impact leaves the motion as it is: the two fuse (regroup.cc).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -21,8 +21,9 @@ constexpr std::uint32_t most_microsteps = 100000;
 constexpr double touch_per_accuracy = 0.1;
 
 constexpr std::uint32_t soft_run = 8;
-// Again and again at one instant: slower than this share of the fusion speed it is rounding; after so many
-// impacts it is a heavy body that comes down on a light one, which impulses would stop too slowly.
+// Again and again at one instant: slower than this share of the fusion speed it is rounding; after
+// so many impacts it is a heavy body that comes down on a light one, which impulses would stop too
+// slowly.
 constexpr double grazing = 1e-5;
 constexpr std::uint32_t most_repeated = 2000;
 // The interval of a quick run where the pair is not pressed together, share of that where it is.
@@ -149,8 +150,8 @@ void Kernel::find_impact_points(const Draft& a, const Draft& b) {
   contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
 }
 
-// At seams of the ground: points that neighbours of the fixed body bury give way to those that support;
-// true if there are none.
+// At seams of the ground: points that neighbours of the fixed body bury give way to those that
+// support; true if there are none.
 bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
   const Draft* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
@@ -201,13 +202,13 @@ bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
   const auto pull = [](const Draft& d) {
     return d.body->dynamic() ? d.data.acceleration : Vec3(Vec3::Zero());
   };
-  const bool pressed = a.data.group || b.data.group ||
-                       (pull(b) - pull(a)).dot(contact_points_.front().normal) < 0;
+  const bool pressed =
+      a.data.group || b.data.group || (pull(b) - pull(a)).dot(contact_points_.front().normal) < 0;
 
-  // what nothing presses together may knock about in a corner for a while; a true collapse goes on to
-  // ever shorter intervals
-  const double tau = std::min(slow / gravity, pi * std::sqrt(d0 / gravity)) *
-                     (pressed ? 1 : free_run_share);
+  // what nothing presses together may knock about in a corner for a while; a true collapse goes on
+  // to ever shorter intervals
+  const double tau =
+      std::min(slow / gravity, pi * std::sqrt(d0 / gravity)) * (pressed ? 1 : free_run_share);
   bool quick = true;
   for (Draft* draft : {&a, &b}) {
     if (!draft->body->dynamic()) continue;
@@ -233,8 +234,8 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   const ContactPoint first = contact_points_.front();
   const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
                             double impulse) {
-    collision = Collision{kind,  key,    a.body->id(), b.body->id(), key.time,
-                          point, normal, speed,        impulse};
+    collision =
+        Collision{kind, key, a.body->id(), b.body->id(), key.time, point, normal, speed, impulse};
   };
   if (is_soft(key, a, b, -worst)) {
     if (observed(CollisionKind::fusion))
@@ -272,7 +273,8 @@ void Kernel::run_collision_callbacks(const Collision& collision, Draft& a, Draft
   for (const CollisionCallbackDef& def : collision_callbacks) {
     if (!match_specificity(def.a, def.b, a.body->contact, b.body->contact)) continue;
     // the sides in the order given; where both match either way, the body added first comes first
-    const bool straight = side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
+    const bool straight =
+        side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
     DraftView view_a(a, collision.key, false, options.gravity);
     DraftView view_b(b, collision.key, false, options.gravity);
     ++counters.callbacks_run;

@@ -1,7 +1,8 @@
 // The main loop: least key first, GVT every so often, until everything up to the end is committed.
 //
-// What comes next is the policy's choice (policy.h).  The adversary scheduler gives events or bodies a random head start: they are
-// taken out of order, which makes rollbacks common; the committed history must not change.
+// What comes next is the policy's choice (policy.h).  The adversary scheduler gives events or
+// bodies a random head start: they are taken out of order, which makes rollbacks common; the
+// committed history must not change.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/kernel.h"
@@ -39,8 +40,7 @@ class RunGuard {
 
 Kernel::Kernel() = default;
 
-Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject,
-                         double head_start) {
+Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start) {
   double priority = key.time - head_start;
   if (options.adversary && options.adversary->every_event)
     priority -= options.adversary->head_start * adversary_.real();
@@ -65,8 +65,8 @@ void Kernel::process(Event event) {
   if (options.check) validate_all();
 }
 
-// GVT and commit cost busy processes + pairs; often enough to keep queues and boxes short, rarely enough
-// to be cheap.
+// GVT and commit cost busy processes + pairs; often enough to keep queues and boxes short, rarely
+// enough to be cheap.
 bool Kernel::gvt_is_due() const {
   if (options.gvt_interval > 0) return events_since_gvt_ >= options.gvt_interval;
   const std::size_t scanned = graph.busy().size() + counters.live_pairs;
@@ -84,7 +84,8 @@ bool Kernel::finished() {
 RunStatus Kernel::advance(double until, double slice) {
   TW_REQUIRE(std::isfinite(until),
              "time to run to is " + show(until) + "; expected a finite number of seconds");
-  TW_REQUIRE(!running, "a run was started inside a callback or observer; expected to be between runs");
+  TW_REQUIRE(!running,
+             "a run was started inside a callback or observer; expected to be between runs");
   if (until < time) return RunStatus::finished;
   const RunGuard guard(*this);
   until_ = until;
@@ -110,7 +111,8 @@ void Kernel::deliver_rest() {
 }
 
 bool Kernel::step(double until) {
-  TW_REQUIRE(!running, "a step was made inside a callback or observer; expected to be between runs");
+  TW_REQUIRE(!running,
+             "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(*this);
   until_ = until;
   begin_run();

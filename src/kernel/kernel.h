@@ -4,15 +4,16 @@
 //   advance    claims the next window of a body: extends its swept box, finds new active pairs
 //   pair       moves the safe time of an active pair up, finds its impact, or carries it out
 //   callback   calls a user's procedure with views of its targets
-//   group check  refreshes the contacts of a group, finds its fissions and whether it has come to rest
+//   group check  refreshes the contacts of a group, finds its fissions and whether it rests
 // Redraws and observers need no events: they are served at commit (commit.cc).
 //
 // The subject is spread over files by what it does: claim.cc, check.cc, impact.cc, callbacks.cc,
-// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: region.cc, regroup.cc,
-// linking.cc, group-check.cc, calm.cc, end-test.cc, pass-on.cc.
+// rollback.cc, commit.cc, validate.cc, setup.cc, kernel.cc (the loop); groups: region.cc,
+// regroup.cc, linking.cc, group-check.cc, calm.cc, end-test.cc, pass-on.cc.
 //
-// Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT is
-// touched; a committed state is never removed.  Under --check also every validator of validate.cc.
+// Invariants (always on): keys in a queue increase; GVT never falls; nothing with a key before GVT
+// is touched; a committed state is never removed.  Under --check also the validators of
+// validate.cc.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -48,20 +49,20 @@ namespace tw {
 // Checks of pairs that are not predicted exactly happen at multiples of this, s (2^-20).
 inline constexpr double check_grid = 0x1p-20;
 
-// Boxes of members of moving groups reach this share of their size farther: a group check finds in them
-// whom a member may touch before the next check.
+// Boxes of members of moving groups reach this share of their size farther: a group check finds in
+// them whom a member may touch before the next check.
 inline constexpr double link_margin = 0.1;
 
 inline constexpr std::uint32_t no_pair = 0xffffffffu;
 
 struct CallbackRecord {
   CallbackDef def;
-  Key next;                         // of the next call; time `never`: none
-  double committed_next = never;    // without a period: next time after the last committed call
+  Key next;                       // of the next call; time `never`: none
+  double committed_next = never;  // without a period: next time after the last committed call
   EventQueue::Handle event = EventQueue::none;
   double head_start = 0;
-  bool parked = false;              // a target has stopped
-  bool ended = false;               // a target was removed
+  bool parked = false;  // a target has stopped
+  bool ended = false;   // a target was removed
 };
 
 struct SinkRecord {
@@ -83,7 +84,7 @@ class Kernel {
 
   // ---- setup.cc ----
   BodyId add_body(const BodyDef& def);
-  void remove_body(BodyId id);       // remove.cc
+  void remove_body(BodyId id);  // remove.cc
   void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
@@ -101,7 +102,7 @@ class Kernel {
   // ---- kernel.cc ----
   RunStatus advance(double until, double slice);
   bool step(double until);
-  void process(Event event);         // for policies
+  void process(Event event);  // for policies
 
   // ---- reading ----
   std::uint64_t removals() const { return removals_; }
@@ -121,7 +122,7 @@ class Kernel {
   std::string validate_pairs() const;
   std::string validate_residences() const;
   std::string validate_claims() const;
-  void validate_all() const;         // aborts with the message
+  void validate_all() const;  // aborts with the message
   // A checksum of every queue (states, order): for undo tests.
   std::uint64_t graph_checksum() const;
   std::uint64_t ring_checksum(const Key& key) const;
@@ -135,8 +136,8 @@ class Kernel {
   StateGraph graph;
   EventQueue queue;
   BroadPhase grid;
-  std::vector<BodyId> unbounded;     // bodies that no box holds: every claim tests them
-  std::vector<BodyId> kinematic;     // bodies that move by a given function of time
+  std::vector<BodyId> unbounded;  // bodies that no box holds: every claim tests them
+  std::vector<BodyId> kinematic;  // bodies that move by a given function of time
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> unused_pairs;
   std::vector<CallbackRecord> callbacks;
@@ -145,13 +146,13 @@ class Kernel {
   std::vector<SinkRecord> sinks;
   ContactTable contacts;
   Counters counters;
-  double time = 0;                   // last committed time users see
+  double time = 0;  // last committed time users see
   double gvt = 0;
-  bool begun = false;                // the first run has begun
+  bool begun = false;  // the first run has begun
   bool running = false;
 
  private:
-  friend class KernelTest;           // tests/rollback: looks and pokes inside
+  friend class KernelTest;  // tests/rollback: looks and pokes inside
 
   // ---- setup.cc ----
   void begin_run();
@@ -165,8 +166,8 @@ class Kernel {
   void resolve_shape(Body& body, const BodyDef& def);
   void make_birth(Body& body, const BodyDef& def);
   void validate_body_def(const BodyDef& def, const std::string& name) const;
-  void restart_future();             // forget everything after `time`
-  void renew_groups();               // their contacts take what was set since, and wake
+  void restart_future();  // forget everything after `time`
+  void renew_groups();    // their contacts take what was set since, and wake
   void retry_errors();
   void update_cell();
 
@@ -174,7 +175,7 @@ class Kernel {
   Event make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start);
   bool gvt_is_due() const;
   bool finished();
-  void deliver_rest();               // what is committed, all of it
+  void deliver_rest();  // what is committed, all of it
 
   // ---- claim.cc ----
   void schedule_advance(Body& body);
@@ -267,10 +268,12 @@ class Kernel {
   void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
   template <class GoesOn>
-  std::vector<BodyId> reached_from(const std::vector<BodyId>& ids, const Key& key, GoesOn goes_on) const;
+  std::vector<BodyId> reached_from(const std::vector<BodyId>& ids, const Key& key,
+                                   GoesOn goes_on) const;
   std::vector<BodyId> all_provisional(const std::vector<BodyId>& ids, const Key& key) const;
   std::vector<BodyId> hanging_together(BodyId id, const Key& key) const;
-  bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep, std::vector<BodyId>& movers) const;
+  bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep,
+                 std::vector<BodyId>& movers) const;
   bool own_check_before(BodyId id, const Key& key) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);
@@ -288,7 +291,8 @@ class Kernel {
   bool link(Regroup& work, const Side& a, const Side& b, double interval, bool must);
   bool wants_link(const Side& a, const Side& b, bool linked_before, double interval,
                   const ContactConstants& law) const;
-  ContactConstants contact_law(const Body& a, const Body& b, double lightest, double heaviest) const;
+  ContactConstants contact_law(const Body& a, const Body& b, double lightest,
+                               double heaviest) const;
   LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
                              const ContactConstants& law) const;
   void match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const;
@@ -355,21 +359,22 @@ class Kernel {
   void free_states(double limit);
   std::exception_ptr error_before(double& limit, bool& inclusive) const;
 
-  double cell_ = 1;                  // typical spacing, m
+  double cell_ = 1;                    // typical spacing, m
   bool contacts_may_disable_ = false;  // somebody called disable-collisions!
   long events_since_gvt_ = 0;
-  double slice_end_ = never;         // wall clock, s
-  double until_ = 0;                 // end of the present run
+  double slice_end_ = never;  // wall clock, s
+  double until_ = 0;          // end of the present run
   std::vector<BodyId> newborn_;
   std::deque<std::shared_ptr<const Collision>> undelivered_;  // committed, in time order
-  std::size_t next_observer_ = 0;    // who hears next of the first of them
-  Due due_;                          // frames that may be delivered
+  std::size_t next_observer_ = 0;                             // who hears next of the first of them
+  Due due_;                                                   // frames that may be delivered
   std::uint64_t hash_sum_ = 0, hash_count_ = 0;
   std::uint64_t edits_ = 0, removals_ = 0;
   unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
   Random adversary_{0};
-  mutable std::unordered_map<std::uint64_t, ContactParameters> contact_cache_;  // by contact classes
-  mutable std::vector<BodyId> contact_classes_;         // of each body: the first body of its class
+  mutable std::unordered_map<std::uint64_t, ContactParameters>
+      contact_cache_;                            // by contact classes
+  mutable std::vector<BodyId> contact_classes_;  // of each body: the first body of its class
   mutable std::unordered_map<std::string, BodyId> contact_class_of_material_;
   mutable unsigned contact_cache_version_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after

@@ -36,8 +36,8 @@ std::string show(const Key& key) {
   std::string id = std::to_string(key.id);
   if (key.kind == KeyKind::impact)
     id = std::to_string(key.id >> 32) + "-" + std::to_string(key.id & 0xffffffffu);
-  return std::string(kind_name(key.kind)) + " " + id + " at " + show(key.time) +
-         " s, microstep " + std::to_string(key.microstep);
+  return std::string(kind_name(key.kind)) + " " + id + " at " + show(key.time) + " s, microstep " +
+         std::to_string(key.microstep);
 }
 
 }  // namespace tw

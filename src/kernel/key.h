@@ -21,11 +21,11 @@ namespace tw {
 enum class KeyKind : std::uint8_t {
   birth,
   step,
-  early_edit,   // between runs, where what happens at that instant is still to come
+  early_edit,  // between runs, where what happens at that instant is still to come
   callback,
   group_check,
   impact,
-  edit          // between runs, after what has happened at that instant
+  edit  // between runs, after what has happened at that instant
 };
 
 const char* kind_name(KeyKind kind);
@@ -34,8 +34,8 @@ std::uint64_t kind_code(KeyKind kind);
 
 struct Key {
   double time = 0;
-  // 0 for birth, step, early_edit and callback; else 1 + the larger of those of the arcs that start exactly
-  // at `time`, else 1.
+  // 0 for birth, step, early_edit and callback; else 1 + the larger of those of the arcs that start
+  // exactly at `time`, else 1.
   std::uint32_t microstep = 0;
   KeyKind kind = KeyKind::birth;
   std::uint64_t id = 0;

@@ -1,8 +1,8 @@
-// The work that kinematic bodies do through contacts: with that of impulses (impact.cc, pass-on.cc) what an energy balance
-// needs.
+// The work that kinematic bodies do through contacts: with that of impulses (impact.cc, pass-on.cc)
+// what an energy balance needs.
 //
-// Of a member's contacts with kinematic bodies, over the stretch that it followed the arc.  Nothing is computed in
-// worlds without kinematic bodies, nor in groups that touch none.
+// Of a member's contacts with kinematic bodies, over the stretch that it followed the arc.  Nothing
+// is computed in worlds without kinematic bodies, nor in groups that touch none.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -19,7 +19,8 @@ double Kernel::contact_work(const State& state, double until) const {
   bool any = false;
   for (const std::uint32_t number : group.links_of(state.member)) {
     const GroupLink& link = group.links[number];
-    const BodyId other = first_of(link.pair) == state.process ? second_of(link.pair) : first_of(link.pair);
+    const BodyId other =
+        first_of(link.pair) == state.process ? second_of(link.pair) : first_of(link.pair);
     const bool counts = bodies[other]->info.kind == BodyKind::kinematic;
     any = any || (counts && link.count > 0);
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c)

@@ -1,8 +1,9 @@
-// Linking: which pairs are in contact, at which points, and what becomes of their friction stretches.
+// Linking: which pairs are in contact, at which points, and what becomes of their friction
+// stretches.
 //
-// Whether a pair is linked is a function of the poses and velocities at the discontinuity, of whether it
-// was linked before, and of the interval until the next check; candidates come from the spatial hash,
-// whose boxes are grown so that none is missed.
+// Whether a pair is linked is a function of the poses and velocities at the discontinuity, of
+// whether it was linked before, and of the interval until the next check; candidates come from the
+// spatial hash, whose boxes are grown so that none is missed.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace {
 
 // Where gravity is 0 this stands in for it, m/s^2.
 constexpr double standard_gravity = 9.81;
-// A contact after a refresh is one before it if they are not farther apart, share of the smaller size.
+// A contact after a refresh is one before it if they are not farther apart, share of the smaller
+// size.
 constexpr double same_point = 0.1;
 
 // Whether bounding balls prove a gap above `reach`.
@@ -40,8 +42,8 @@ Vec3 turned_into(const Vec3& stretch, const Vec3& normal) {
   return length > 0 ? Vec3(flat * (stretch.norm() / length)) : Vec3(Vec3::Zero());
 }
 
-// An edge or corner of the ground whose normal is that of a face but for this, rad, is met as the face:
-// beyond a seam the neighbour goes on with it.
+// An edge or corner of the ground whose normal is that of a face but for this, rad, is met as the
+// face: beyond a seam the neighbour goes on with it.
 constexpr double flat_angle = 1e-3;
 
 void flatten(ManifoldPoint& p, const Side& reference, const Body& body_b) {
@@ -75,20 +77,17 @@ double Kernel::fusion_speed(const Body& a, const Body& b) const {
   return std::max(1e-9, contact_parameters(a.id(), b.id()).fusion_speed.value_or(by_default));
 }
 
-// The law of a pair in a group with these masses, kg.  The heaviest may lie on any of its contacts: they are
-// never softer than for a thousandth of it (the law hardens by no more), nor stiffer than for
-// a thousand times the lighter one: a bead on a lorry must not stop the clock.
+// The law of a pair in a group with these masses, kg.  The heaviest may lie on any of its contacts:
+// they are never softer than for a thousandth of it (the law hardens by no more), nor stiffer than
+// for a thousand times the lighter one: a bead on a lorry must not stop the clock.
 ContactConstants Kernel::contact_law(const Body& a, const Body& b, double lightest,
                                      double heaviest) const {
   constexpr double unequal_masses = 100, most_unequal = 1000;
   const double size = std::min(a.least_width, b.least_width);
-  const double mass = !a.dynamic()   ? b.mass
-                      : !b.dynamic() ? a.mass
-                                     : std::min(a.mass, b.mass);
+  const double mass = !a.dynamic() ? b.mass : !b.dynamic() ? a.mass : std::min(a.mass, b.mass);
   return contact_constants(contact_parameters(a.id(), b.id()),
-                           std::clamp(heaviest / most_unequal, mass, most_unequal * mass),
-                           size, gravity_magnitude(),
-                           heaviest > unequal_masses * lightest);
+                           std::clamp(heaviest / most_unequal, mass, most_unequal * mass), size,
+                           gravity_magnitude(), heaviest > unequal_masses * lightest);
 }
 
 LooseContact Kernel::loose_contact(const ManifoldPoint& p, const Side& a, const Side& b,
@@ -136,7 +135,8 @@ bool Kernel::wants_link(const Side& a, const Side& b, bool linked_before, double
 }
 
 // Each new contact takes the stretch of the nearest old one; equal features count as half as far.
-void Kernel::match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const {
+void Kernel::match_stretches(Regroup& work, const LooseLink& link,
+                             const OldLink& was_linked) const {
   const GroupLink* old = was_linked.link;
   const Group& before = *was_linked.group;
   GroupArc& arc = *before.arc;
@@ -172,8 +172,9 @@ void Kernel::match_stretches(Regroup& work, const LooseLink& link, const OldLink
   }
 }
 
-// A spring that is born unloaded lets a body slide before it holds: so a new contact is given the stretch
-// that holds what pulls along it, or, where that exceeds the cone, far more, which slides at once.
+// A spring that is born unloaded lets a body slide before it holds: so a new contact is given the
+// stretch that holds what pulls along it, or, where that exceeds the cone, far more, which slides
+// at once.
 void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const {
   if (link.count == 0) return;
   const LooseContact& first = work.contacts[link.first];
@@ -201,13 +202,15 @@ void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const 
   Mat3 compliance = Mat3::Zero();
   for (const Side* s : {&a, &b}) {
     if (!s->body->dynamic()) continue;
-    const Mat3 turning = link.count > 2 ? Mat3(Mat3::Zero()) : inverse_inertia_world(*s->body, s->point.q);
+    const Mat3 turning =
+        link.count > 2 ? Mat3(Mat3::Zero()) : inverse_inertia_world(*s->body, s->point.q);
     compliance += contact_compliance(1 / s->body->mass, turning, middle - s->point.x);
   }
   const ContactConstants& law = first.contact.law;
   const double cone = law.mu * pressing / n.dot(compliance * n);
-  Vec3 force = along.norm() > 0 ? Vec3(along / along.normalized().dot(compliance * along.normalized()))
-                                : Vec3(Vec3::Zero());
+  Vec3 force = along.norm() > 0
+                   ? Vec3(along / along.normalized().dot(compliance * along.normalized()))
+                   : Vec3(Vec3::Zero());
   const bool slides = law.ct * slip.norm() > cone;
   if (slides) force = cone * slip.normalized();
   constexpr double beyond = 10;
@@ -216,14 +219,15 @@ void Kernel::preload(Regroup& work, const LooseLink& link, const Side& a, const 
   for (std::uint32_t c = 0; c < link.count; ++c) {
     LooseContact& contact = work.contacts[link.first + c];
     const Draft* draft = work.draft_of(contact.tag.reference);
-    const Quat attitude = draft ? draft->point.q
-                                : bodies[contact.tag.reference]->motion->pose(work.key.time).q;
+    const Quat attitude =
+        draft ? draft->point.q : bodies[contact.tag.reference]->motion->pose(work.key.time).q;
     contact.contact.stretch = attitude.conjugate() * turned_into(stretch, contact.normal);
   }
 }
 
-// Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the ground.  Such
-// a pair is linked, with no contact that presses, or its collision checks would see an overlap all the time.
+// Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the
+// ground.  Such a pair is linked, with no contact that presses, or its collision checks would see
+// an overlap all the time.
 bool Kernel::ghosts(const Side& a, const Side& b, double distance) const {
   if (distance > 0 || (!a.body->fixed() && !b.body->fixed())) return false;
   const auto touches = [](const ManifoldPoint& p) { return p.gap <= 0; };

@@ -17,9 +17,9 @@ struct Mover {
   const Body* body;
   Frame frame;
   ArcPoint point;
-  double turn_bound = 0;       // W, rad/s
-  double bend = 0;             // bound on |a point's acceleration against the centre's| / arm, 1/s^2
-  double speed_bound = 0;      // kinematic: the origin's
+  double turn_bound = 0;   // W, rad/s
+  double bend = 0;         // bound on |a point's acceleration against the centre's| / arm, 1/s^2
+  double speed_bound = 0;  // kinematic: the origin's
   Vec3 acceleration = Vec3::Zero();
   Vec3 spread = Vec3::Zero();  // the acceleration differs from `acceleration` by this at most
   double horizon = never;      // bounds hold so far

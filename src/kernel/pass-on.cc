@@ -1,5 +1,6 @@
-// After a blow on a member of a group: what touches it and is now approached too fast for a spring gets an
-// impulse without restitution, fastest first; what does not touch yet is left to collision checks.
+// After a blow on a member of a group: what touches it and is now approached too fast for a spring
+// gets an impulse without restitution, fastest first; what does not touch yet is left to collision
+// checks.
 //
 // Source: doc/numerics.md, "Contact groups".
 //
@@ -15,7 +16,8 @@ namespace tw {
 namespace {
 
 constexpr int most_impulses = 700;
-// A gap below this share of the contact's depth counts as touch: found at the touch, up to rounding.
+// A gap below this share of the contact's depth counts as touch: found at the touch, up to
+// rounding.
 constexpr double touching = 1e-3;
 
 }  // namespace
@@ -36,7 +38,8 @@ std::vector<BodyId> Kernel::pass_on(Regroup& work) const {
     return body;
   };
   const auto parting = [&](const LooseContact& c) {
-    return (body_at(c.tag.other).velocity_at(c.point) - body_at(c.tag.reference).velocity_at(c.point))
+    return (body_at(c.tag.other).velocity_at(c.point) -
+            body_at(c.tag.reference).velocity_at(c.point))
         .dot(c.normal);
   };
 
@@ -63,7 +66,8 @@ std::vector<BodyId> Kernel::pass_on(Regroup& work) const {
       if (bodies[id]->dynamic() && !work.changes(work.draft_of(id))) at_border.push_back(id);
     if (!at_border.empty()) return at_border;
     // of what is held only kinematic bodies move
-    if (!reference.moves) work.tally.kinematic_work += impulse.dot(reference.velocity_at(worst->point));
+    if (!reference.moves)
+      work.tally.kinematic_work += impulse.dot(reference.velocity_at(worst->point));
     if (!other.moves) work.tally.kinematic_work -= impulse.dot(other.velocity_at(worst->point));
     reference.apply(-impulse, worst->point);
     other.apply(impulse, worst->point);
@@ -76,8 +80,7 @@ std::vector<BodyId> Kernel::pass_on(Regroup& work) const {
     bool touches = false, fast = false;
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       const LooseContact& contact = work.contacts[c];
-      const double slow =
-          fusion_speed(*bodies[contact.tag.reference], *bodies[contact.tag.other]);
+      const double slow = fusion_speed(*bodies[contact.tag.reference], *bodies[contact.tag.other]);
       touches = touches || contact.gap <= touching * contact.contact.law.depth;
       fast = fast || -parting(contact) > slow;
     }

@@ -1,7 +1,7 @@
 // Policies: how the main loop goes forward.
 //
-// A policy decides what is processed next; arcs, checks, rollback, GVT and commit are shared.  It is
-// an object chosen at run time, so that one program can compare them.
+// A policy decides what is processed next; arcs, checks, rollback, GVT and commit are shared.  It
+// is an object chosen at run time, so that one program can compare them.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -21,8 +21,8 @@ class Policy {
   virtual void go_forward(Kernel& kernel) = 0;
 };
 
-// "timewarp": the event with the least priority, each body at its own time.  Errors: UserError for any
-// other name.
+// "timewarp": the event with the least priority, each body at its own time.  Errors: UserError for
+// any other name.
 std::unique_ptr<Policy> make_policy(const std::string& name);
 
 }  // namespace tw

@@ -1,14 +1,16 @@
 // Regions: which bodies a discontinuity gives new arcs.
 //
-// What happens to one body of a heap moves others the less the farther away they are: the next few feel it,
-// the hundredth does not before the next group check.  So a discontinuity gives new arcs to the bodies it
-// concerns and to those that touch them.  What these meet at their border follows the arcs that it has; but
-// where it would miss an impulse that changes its velocity by more than a share of what a step of the integrator
-// may be wrong by (at rest: a force of a share of its weight), it is taken in too, until nobody at the border
-// would notice.  At the group check that was due all join again.
+// What happens to one body of a heap moves others the less the farther away they are: the next few
+// feel it, the hundredth does not before the next group check.  So a discontinuity gives new arcs
+// to the bodies it concerns and to those that touch them.  What these meet at their border follows
+// the arcs that it has; but where it would miss an impulse that changes its velocity by more than a
+// share of what a step of the integrator may be wrong by (at rest: a force of a share of its
+// weight), it is taken in too, until nobody at the border would notice.  At the group check that
+// was due all join again.
 //
-// Both arcs of a border's contact hold the same features; the group that was made last has the say in it.
-// States at the border are recorded, so that a rollback of theirs takes those back that relied on them.
+// Both arcs of a border's contact hold the same features; the group that was made last has the say
+// in it. States at the border are recorded, so that a rollback of theirs takes those back that
+// relied on them.
 //
 // Measured: a blow on a heap of 90 sliding rocks moves 4 to 6 of them by more than
 // 1 mm/s before the next check.
@@ -26,9 +28,10 @@ namespace {
 
 // What rests at the border wakes where the force on it changes by this share of its weight.
 constexpr double wake_share = 0.02;
-// What moves there may miss this share of a step's velocity tolerance, for what is missed is lost to the body's
-// momentum.  Where the tolerance was 0.01 sqrt(g size) a row of 16 cubes ended with 2.8 times its momentum with all
-// of it, with 0.9 % too much with this share (with a tenth 1.0 %, at 1.3 times the cost).
+// What moves there may miss this share of a step's velocity tolerance, for what is missed is lost
+// to the body's momentum.  Where the tolerance was 0.01 sqrt(g size) a row of 16 cubes ended
+// with 2.8 times its momentum with all of it, with 0.9 % too much with this share (with a tenth 1.0
+// %, at 1.3 times the cost).
 constexpr double missed_share = 0.3;
 
 void insert(std::vector<BodyId>& ids, BodyId id) {
@@ -60,8 +63,8 @@ Vec3 force_on(BodyId body, const Group& group, const GroupLink& link, double whe
   return sum;
 }
 
-// What `group` gives a body at its border and the body's own group does not know of, N s: Simpson's rule over
-// the steps.
+// What `group` gives a body at its border and the body's own group does not know of, N s: Simpson's
+// rule over the steps.
 Vec3 missed_impulse(BodyId body, const Group& group, const GroupLink& link, const Group& theirs) {
   const GroupLink* known = theirs.link(link.pair);
   const auto missed = [&](double when) {
@@ -101,10 +104,11 @@ std::vector<BodyId> Kernel::remaining(const Group& group, const Key& key) const 
   return result;
 }
 
-// The dynamic bodies linked to bodies of the region, with what stands before `key`: calls back with the
-// group that has the say, the link, the body inside and the other one.
+// The dynamic bodies linked to bodies of the region, with what stands before `key`: calls back with
+// the group that has the say, the link, the body inside and the other one.
 template <class Visit>
-void Kernel::visit_neighbours(const std::vector<BodyId>& inside, const Key& key, Visit visit) const {
+void Kernel::visit_neighbours(const std::vector<BodyId>& inside, const Key& key,
+                              Visit visit) const {
   for (const BodyId id : inside) {
     const State& state = *graph.last_before(id, key);
     const Group* group = state.group.get();
@@ -133,17 +137,21 @@ Region Kernel::region_of(const Key& key, const std::vector<BodyId>& hit, bool wh
 // Those that touch the region and move; what rests wakes where it notices (reached_beyond).
 void Kernel::add_neighbours(Region& region, const Key& key) const {
   std::vector<BodyId> next;
-  visit_neighbours(region.inside, key, [&](const Group& judge, const GroupLink& link, BodyId other) {
-    const auto& theirs = graph.last_before(other, key)->group;
-    const bool rests = theirs && theirs->at_rest;
-    if (!rests && !holds(region.inside, other) && carries(judge, link, key.time)) next.push_back(other);
-  });
+  visit_neighbours(region.inside, key,
+                   [&](const Group& judge, const GroupLink& link, BodyId other) {
+                     const auto& theirs = graph.last_before(other, key)->group;
+                     const bool rests = theirs && theirs->at_rest;
+                     if (!rests && !holds(region.inside, other) && carries(judge, link, key.time))
+                       next.push_back(other);
+                   });
   for (const BodyId id : next) insert(region.inside, id);
 }
 
-// These, and all dynamic bodies that they reach by links over bodies of which `goes_on` holds; ascending.
+// These, and all dynamic bodies that they reach by links over bodies of which `goes_on` holds;
+// ascending.
 template <class GoesOn>
-std::vector<BodyId> Kernel::reached_from(const std::vector<BodyId>& ids, const Key& key, GoesOn goes_on) const {
+std::vector<BodyId> Kernel::reached_from(const std::vector<BodyId>& ids, const Key& key,
+                                         GoesOn goes_on) const {
   std::vector<BodyId> all, next;
   for (const BodyId id : ids) insert(all, id);
   for (next = all; !next.empty();) {
@@ -183,8 +191,8 @@ bool Kernel::disturbed(const Regroup& work, const std::vector<BodyId>& asleep,
   return found;
 }
 
-// Small groups whole, and the border.  What this depends on stands in states of the region and its border:
-// so nothing here may ask how many have left a large group.
+// Small groups whole, and the border.  What this depends on stands in states of the region and its
+// border: so nothing here may ask how many have left a large group.
 void Kernel::complete(Region& region, const Key& key, bool whole) const {
   Groups groups;
   for (const BodyId id : region.inside) add_once(groups, graph.last_before(id, key)->group);
@@ -208,7 +216,8 @@ bool Kernel::own_check_before(BodyId id, const Key& key) const {
   return tail.key < check && check < key;
 }
 
-// Claims windows of a body until its arcs are known to `key`.  False: something else comes first, perhaps.
+// Claims windows of a body until its arcs are known to `key`.  False: something else comes first,
+// perhaps.
 bool Kernel::await(BodyId id, const Key& key) {
   Body& body = *bodies[id];
   // checks and callbacks come before the impacts of their instant
@@ -252,11 +261,13 @@ double Kernel::deviation(const Group& group, BodyId id) const {
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
 
-// Bodies at the border that would notice: what touches them moves otherwise than their arcs assume, or,
-// where they rest, the force on them has changed.
+// Bodies at the border that would notice: what touches them moves otherwise than their arcs assume,
+// or, where they rest, the force on them has changed.
 std::vector<BodyId> Kernel::reached_beyond(const Regroup& work) const {
   std::vector<BodyId> more;
-  const auto lies_beyond = [&](BodyId id) { return bodies[id]->dynamic() && !work.changes(work.draft_of(id)); };
+  const auto lies_beyond = [&](BodyId id) {
+    return bodies[id]->dynamic() && !work.changes(work.draft_of(id));
+  };
   const auto wakes = [&](BodyId id, const Vec3& change) {
     return change.norm() > wake_share * (gravity_magnitude() * bodies[id]->mass);
   };
@@ -355,8 +366,8 @@ void Kernel::regroup_edited(const Key& key, std::vector<Draft>& drafts) {
   if (touches_groups(key, drafts)) regroup(key, drafts, {.whole = true});
 }
 
-// The groups that follow a discontinuity that changed some of the drafts; adds drafts of all others that
-// take part.  False: something may come first, and nothing has been done.
+// The groups that follow a discontinuity that changed some of the drafts; adds drafts of all others
+// that take part.  False: something may come first, and nothing has been done.
 bool Kernel::regroup(const Key& key, std::vector<Draft>& drafts, const Occasion& occasion) {
   std::vector<BodyId> hit;
   for (const Draft& draft : drafts)

@@ -13,7 +13,8 @@ inline constexpr std::size_t least_divided = 8;
 
 struct Region {
   std::vector<BodyId> inside, border;  // dynamic, ascending
-  // What it depends on beyond its border: why a group that comes to rest does so provisionally (calm.cc).
+  // What it depends on beyond its border: why a group that comes to rest does so provisionally
+  // (calm.cc).
   std::vector<BodyId> watched;
 };
 

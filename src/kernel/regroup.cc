@@ -1,5 +1,5 @@
-// Making groups: gathering the members of old ones, carrying their contacts along, and cutting what is
-// linked into new ones.
+// Making groups: gathering the members of old ones, carrying their contacts along, and cutting what
+// is linked into new ones.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/regroup.h"
 
@@ -13,10 +13,12 @@
 namespace tw {
 namespace {
 
-// Contacts of one body with several fixed ones share one stiffness where their normals agree to this, rad.
+// Contacts of one body with several fixed ones share one stiffness where their normals agree to
+// this, rad.
 constexpr double coplanar = 1e-3;
-// Where a corner crosses the edge between two faces that meet at a small angle, both hold it for a moment:
-// as far as they are at one place (share of the size) with one normal (cosine), they hold it together.
+// Where a corner crosses the edge between two faces that meet at a small angle, both hold it for a
+// moment: as far as they are at one place (share of the size) with one normal (cosine), they hold
+// it together.
 constexpr double same_place = 1e-2, same_normal = 0.95;
 
 // Which drafts hang together: roots by path halving.
@@ -39,8 +41,8 @@ void stop(Draft& draft) {
   draft.point.v = draft.point.w = draft.data.v = draft.data.L = Vec3::Zero();
 }
 
-// How much of a point counts: all of it to the depth that one weight makes, less and less to twice that
-// above the surface.  Nothing jumps where a point comes near.
+// How much of a point counts: all of it to the depth that one weight makes, less and less to twice
+// that above the surface.  Nothing jumps where a point comes near.
 double presence(const LooseContact& c) {
   return std::clamp(2 - c.gap / c.contact.law.depth, 0.0, 1.0);
 }
@@ -94,8 +96,11 @@ void Kernel::collect_old(Regroup& work) const {
       const State& a = *graph.last_before(first_of(link.pair), work.key);
       const State& b = *graph.last_before(second_of(link.pair), work.key);
       const Group* judge = governing(a, b);
-      const GroupLink* standing = judge == draft.data.group.get() ? &link : judge ? judge->link(link.pair) : nullptr;
-      if (standing) work.before.push_back({link.pair, judge == a.group.get() ? a.group : b.group, standing});
+      const GroupLink* standing = judge == draft.data.group.get() ? &link
+                                  : judge                         ? judge->link(link.pair)
+                                                                  : nullptr;
+      if (standing)
+        work.before.push_back({link.pair, judge == a.group.get() ? a.group : b.group, standing});
     }
   }
   std::sort(work.before.begin(), work.before.end(),
@@ -117,8 +122,8 @@ void Kernel::carry(Regroup& work, const OldLink& old) const {
   // between runs somebody may have set them anew
   const bool renew = is_edit(work.key);
   if (renew && !may_collide(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)])) return;
-  work.links.push_back({link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count,
-                        link.touched});
+  work.links.push_back(
+      {link.pair, static_cast<std::uint32_t>(work.contacts.size()), link.count, link.touched});
   for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
     const int number = static_cast<int>(c);
     const ContactForce f = arc.contact_force(number, now);
@@ -128,13 +133,15 @@ void Kernel::carry(Regroup& work, const OldLink& old) const {
   }
 }
 
-// Each point's share of its pair's stiffness: 1 / (points that touch or nearly do), those on coplanar
-// neighbours of the ground taken together, and points at one place taken for one.
+// Each point's share of its pair's stiffness: 1 / (points that touch or nearly do), those on
+// coplanar neighbours of the ground taken together, and points at one place taken for one.
 void Kernel::share_out(Regroup& work) const {
   std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
   for (const LooseLink& link : work.links) {
-    const bool both = bodies[first_of(link.pair)]->dynamic() && bodies[second_of(link.pair)]->dynamic();
-    const BodyId mover = bodies[first_of(link.pair)]->dynamic() ? first_of(link.pair) : second_of(link.pair);
+    const bool both =
+        bodies[first_of(link.pair)]->dynamic() && bodies[second_of(link.pair)]->dynamic();
+    const BodyId mover =
+        bodies[first_of(link.pair)]->dynamic() ? first_of(link.pair) : second_of(link.pair);
     double count = 0;
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       if (!both) on_ground.push_back({mover, c});
@@ -153,7 +160,8 @@ void Kernel::share_out(Regroup& work) const {
   }
 }
 
-// With m_i the points at the place of i, itself among them, and n_i the places in its plane: 1 / (n_i m_i).
+// With m_i the points at the place of i, itself among them, and n_i the places in its plane: 1 /
+// (n_i m_i).
 void Kernel::share_ground(const std::vector<LooseContact*>& points, BodyId mover) const {
   const double radius = same_place * bodies[mover]->least_width;
   // seen from the ground all normals point the same way
@@ -185,8 +193,8 @@ MotionPtr Kernel::outside_motion(const Regroup& work, BodyId id) const {
   if (work.changes(&draft)) return make_fixed_motion({draft.point.x, draft.point.q});
   const Group& theirs = *draft.data.group;
   if (theirs.at_rest) return make_fixed_motion({draft.data.x, draft.data.q});
-  // a copy of what the new group will see of it: a group that kept those at its border, and these theirs, would keep
-  // all there ever were
+  // a copy of what the new group will see of it: a group that kept those at its border, and these
+  // theirs, would keep all there ever were
   return theirs.arc->motion(static_cast<int>(draft.data.member), work.key.time, theirs.next_check);
 }
 
@@ -206,9 +214,11 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
     const Side side = side_of(draft);
     speed = std::max(speed, side.surface_speed());
   }
-  const double closeness = group_closeness(options.accuracy, speed / std::sqrt(gravity_magnitude() * size));
+  const double closeness =
+      group_closeness(options.accuracy, speed / std::sqrt(gravity_magnitude() * size));
   start.position_tolerance = closeness * group_position_tolerance(options.accuracy, size);
-  start.velocity_tolerance = closeness * group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
+  start.velocity_tolerance =
+      closeness * group_velocity_tolerance(options.accuracy, size, gravity_magnitude());
 
   const auto index_of = [&](BodyId id) {
     if (const int member = group.member_of(id); member >= 0) return member;
@@ -220,8 +230,9 @@ void Kernel::start_arc_of(Group& group, Regroup& work) const {
   };
   for (GroupLink& link : group.links) {
     const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
-    const ContactConstants law = contact_law(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)],
-                                              group.lightest, group.heaviest);
+    const ContactConstants law =
+        contact_law(*bodies[first_of(link.pair)], *bodies[second_of(link.pair)], group.lightest,
+                    group.heaviest);
     for (std::uint32_t c = link.first; c < link.first + link.count; ++c) {
       LooseContact& loose = work.contacts[c];
       loose.contact.law = law;
@@ -245,7 +256,8 @@ void Group::index_links() {
   const auto each_side = [&](auto&& visit) {
     for (std::uint32_t i = 0; i < links.size(); ++i)
       for (const BodyId id : {first_of(links[i].pair), second_of(links[i].pair)})
-        if (const int member = member_of(id); member >= 0) visit(static_cast<std::size_t>(member), i);
+        if (const int member = member_of(id); member >= 0)
+          visit(static_cast<std::size_t>(member), i);
   };
   link_starts.assign(members.size() + 1, 0);
   each_side([&](std::size_t member, std::uint32_t) { ++link_starts[member + 1]; });
@@ -292,7 +304,8 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
       if (!old->at_rest) group->birth = std::min(group->birth, old->birth);
 
   // the check that is due stays due, unless this is it
-  group->next_check = std::min(border_end, next_check_time(group->birth, now, check_interval(work, members)));
+  group->next_check =
+      std::min(border_end, next_check_time(group->birth, now, check_interval(work, members)));
   const bool is_check = work.key.kind == KeyKind::group_check;
   if (before && !is_check && before->next_check >= now)
     group->next_check = std::min(group->next_check, before->next_check);
@@ -320,7 +333,8 @@ std::shared_ptr<Group> Kernel::make_group(Regroup& work, const std::vector<BodyI
 }
 
 // How many pieces the drafts and their links make; what lies beyond the border is one.
-std::size_t Kernel::count_pieces(const Regroup& work, const std::vector<std::uint64_t>& linked) const {
+std::size_t Kernel::count_pieces(const Regroup& work,
+                                 const std::vector<std::uint64_t>& linked) const {
   const std::size_t rest = work.drafts.size();
   Components components(rest + 1);
   const auto place = [&](BodyId id) {
@@ -348,7 +362,8 @@ void Kernel::count_fissions(Regroup& work, const std::vector<bool>& held) const 
   std::size_t parted = pieces > pieces_before ? pieces - pieces_before : 0;
   for (std::size_t i = 0; i < work.drafts.size(); ++i) {
     const Draft& draft = work.drafts[i];
-    if (work.changes(&draft) && !held[i] && draft.data.group && draft.data.group->members.size() == 1)
+    if (work.changes(&draft) && !held[i] && draft.data.group &&
+        draft.data.group->members.size() == 1)
       ++parted;
   }
   work.tally.fissions = static_cast<std::uint16_t>(parted);
@@ -373,7 +388,9 @@ void Kernel::finish(Regroup& work) {
   for (const LooseLink& link : work.links) {
     const Draft* a = work.draft_of(first_of(link.pair));
     const Draft* b = work.draft_of(second_of(link.pair));
-    const auto place = [&](const Draft* d) { return static_cast<std::size_t>(d - work.drafts.data()); };
+    const auto place = [&](const Draft* d) {
+      return static_cast<std::size_t>(d - work.drafts.data());
+    };
     const bool moves_a = work.changes(a), moves_b = work.changes(b);
     if (moves_a) held[place(a)] = true;
     if (moves_b) held[place(b)] = true;

@@ -1,9 +1,10 @@
 // Making groups: what a discontinuity leaves of links and contacts, and the groups that follow.
 //
-// A discontinuity that touches groups chooses the bodies that get new arcs (region.cc), collects drafts of
-// them and of those at their border, then the links and contacts that hold from there on (carried along,
-// refreshed or new), and then cuts the drafts into connected components: each is a group, a body without
-// links is isolated.  Kinematic and fixed bodies and those at the border link nothing together.
+// A discontinuity that touches groups chooses the bodies that get new arcs (region.cc), collects
+// drafts of them and of those at their border, then the links and contacts that hold from there on
+// (carried along, refreshed or new), and then cuts the drafts into connected components: each is a
+// group, a body without links is isolated.  Kinematic and fixed bodies and those at the border link
+// nothing together.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -18,10 +19,10 @@ namespace tw {
 
 // A contact on its way into a group, with what it looks like now (world frame).
 struct LooseContact {
-  GroupContact contact;          // a and b not yet set
+  GroupContact contact;  // a and b not yet set
   ContactTag tag;
-  double gap = 0;                // m
-  Vec3 normal = Vec3::UnitZ();   // from the reference body to the other
+  double gap = 0;               // m
+  Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
   Vec3 point = Vec3::Zero();
 };
 
@@ -40,23 +41,23 @@ struct OldLink {
 
 // What a discontinuity does to the contacts of the bodies it concerns.
 struct Occasion {
-  bool whole = false;            // their fellows all get new arcs too
-  bool fusion = false;           // the first two come to touch
-  bool look = false;             // their contacts are found anew: a group check
-  bool early = false;            // before that of their groups
-  bool blow = false;             // impulses are passed on
+  bool whole = false;   // their fellows all get new arcs too
+  bool fusion = false;  // the first two come to touch
+  bool look = false;    // their contacts are found anew: a group check
+  bool early = false;   // before that of their groups
+  bool blow = false;    // impulses are passed on
 };
 
 struct Regroup {
   Key key;
-  std::vector<Draft>& drafts;    // with new arcs: the bodies concerned; else those at the border
-  Groups old;  // whose members get new arcs, each once
-  std::vector<OldLink> before;   // of bodies with new arcs, ascending pairs
+  std::vector<Draft>& drafts;   // with new arcs: the bodies concerned; else those at the border
+  Groups old;                   // whose members get new arcs, each once
+  std::vector<OldLink> before;  // of bodies with new arcs, ascending pairs
   bool has_border = false;
-  bool may_sleep = false;        // the check of whole groups
+  bool may_sleep = false;            // the check of whole groups
   bool rests_provisionally = false;  // whatever comes to rest does so for the time being
-  std::vector<Calm> calm;        // of the drafts
-  std::vector<bool> asleep;      // of the drafts: laid to rest provisionally
+  std::vector<Calm> calm;            // of the drafts
+  std::vector<bool> asleep;          // of the drafts: laid to rest provisionally
   std::vector<LooseLink> links;
   std::vector<LooseContact> contacts;
   Groups made;

@@ -1,7 +1,7 @@
 // Removing a body between runs.
 //
-// Numbers of bodies are parts of keys and places in lists, so a removed body stays as what touches nothing: fixed where it
-// was last, without a shape, in no box, no list and no sum.
+// Numbers of bodies are parts of keys and places in lists, so a removed body stays as what touches
+// nothing: fixed where it was last, without a shape, in no box, no list and no sum.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace tw {
 void Kernel::remove_body(BodyId id) {
   require_between_runs("a body was removed");
   Body& body = *bodies[id];
-  TW_REQUIRE(!body.info.removed, "body " + body.info.name + " was removed before; expected one that is there");
+  TW_REQUIRE(!body.info.removed,
+             "body " + body.info.name + " was removed before; expected one that is there");
   const BodyState last = body_state(body, point_at(id, time));
   body.info.removed = true;
   if (begun) restart_future();

@@ -1,5 +1,5 @@
-// Entering a discontinuity: rollback of its receivers, their new states, and what follows for claims
-// and events.
+// Entering a discontinuity: rollback of its receivers, their new states, and what follows for
+// claims and events.
 //
 // First all queues, then all claims, then all events: queues are wholly changed before any pair is
 // looked at again.  Treated are the receivers (even where they lost nothing) and every process that
@@ -38,11 +38,11 @@ void Kernel::check_finite(Draft& draft) const {
   const bool finite = is_finite(d.x) && is_finite(d.q) && is_finite(d.v) && is_finite(d.L);
   if (finite && d.v.norm() <= speed_limit) return;
   const std::string name = draft.body->info.name, when = show(d.arc_time);
-  const std::string message =
-      finite ? "the speed of " + name + " at " + when + " s is " + show(d.v.norm()) +
-                   " m/s; expected at most " + show(speed_limit)
-             : "the motion of " + name + " is no longer finite at " + when +
-                   " s; expected finite positions and velocities";
+  const std::string message = finite ? "the speed of " + name + " at " + when + " s is " +
+                                           show(d.v.norm()) + " m/s; expected at most " +
+                                           show(speed_limit)
+                                     : "the motion of " + name + " is no longer finite at " + when +
+                                           " s; expected finite positions and velocities";
   draft.data.error = std::make_exception_ptr(UserError(message, draft.body->info.place));
 }
 

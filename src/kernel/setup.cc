@@ -1,4 +1,5 @@
-// What comes into the world: bodies, contact parameters, callbacks, sinks; and the beginning of runs.
+// What comes into the world: bodies, contact parameters, callbacks, sinks; and the beginning of
+// runs.
 //
 // A change that may concern the future of bodies (a new body, other contact parameters) forgets
 // everything after the present time; what is committed stays.
@@ -17,7 +18,8 @@ constexpr double start_depth = 1e-6;
 
 void require_finite(const Vec3& v, const char* what, const std::string& name) {
   TW_REQUIRE(is_finite(v), std::string(what) + " of " + name + " is #(" + show(v.x()) + " " +
-                               show(v.y()) + " " + show(v.z()) + "); expected three finite numbers");
+                               show(v.y()) + " " + show(v.z()) +
+                               "); expected three finite numbers");
 }
 
 // kappa = max |Ii - Ij| / Ik: torque-free rotation has |w'| <= kappa |w|^2.
@@ -31,18 +33,20 @@ double turn_excess(const Vec3& m) {
 }  // namespace
 
 void Kernel::require_between_runs(const char* what) const {
-  TW_REQUIRE(!running, std::string(what) +
-                           " inside a callback or observer; expected to be between runs");
+  TW_REQUIRE(!running,
+             std::string(what) + " inside a callback or observer; expected to be between runs");
 }
 
 void Kernel::require_before_first_run(const char* what) const {
-  TW_REQUIRE(!begun, std::string(what) + " after the simulation began; expected before the first run");
+  TW_REQUIRE(!begun,
+             std::string(what) + " after the simulation began; expected before the first run");
 }
 
 // ---- bodies ----
 
 void Kernel::validate_body_def(const BodyDef& def, const std::string& name) const {
-  TW_REQUIRE(!names.contains(name), "name " + name + " is taken; expected a name no other body has");
+  TW_REQUIRE(!names.contains(name),
+             "name " + name + " is taken; expected a name no other body has");
   require_finite(def.position, "position", name);
   require_finite(def.velocity, "velocity", name);
   require_finite(def.angular_velocity, "angular-velocity", name);
@@ -80,9 +84,9 @@ void Kernel::resolve_shape(Body& body, const BodyDef& def) {
     body.plane_normal = frame.R * part.normal;
     body.plane_offset = part.offset + body.plane_normal.dot(frame.p);
   }
-  TW_REQUIRE(!body.unbounded || !body.motion ||
-                 body.motion->angular_speed_bound(-never, never) == 0,
-             body.info.name + " is a half-space that turns; expected a motion without rotation");
+  TW_REQUIRE(
+      !body.unbounded || !body.motion || body.motion->angular_speed_bound(-never, never) == 0,
+      body.info.name + " is a half-space that turns; expected a motion without rotation");
 }
 
 void Kernel::make_birth(Body& body, const BodyDef& def) {
@@ -112,8 +116,8 @@ BodyId Kernel::add_body(const BodyDef& def) {
   validate_body_def(def, name);
 
   auto body = std::make_unique<Body>();
-  body->info = {id, name, def.material, BodyKind::dynamic, def.shape, 0, def.color, def.visible,
-                def.place};
+  body->info = {id, name,      def.material, BodyKind::dynamic, def.shape,
+                0,  def.color, def.visible,  def.place};
   body->contact = {id, def.material};
   if (def.fixed || def.motion) {
     body->info.kind = def.fixed ? BodyKind::fixed : BodyKind::kinematic;
@@ -144,7 +148,9 @@ BodyId Kernel::add_body(const BodyDef& def) {
 
 void Kernel::require_no_overlap(const Body& a, const Body& b) const {
   if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !may_collide(a, b)) return;
-  const auto frame = [&](const Body& body) { return frame_at(body, *state_at(body.id(), time), time); };
+  const auto frame = [&](const Body& body) {
+    return frame_at(body, *state_at(body.id(), time), time);
+  };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
   const double allowed = start_depth * std::min(a.least_width, b.least_width);
   if (s.distance >= -allowed) return;
@@ -185,8 +191,8 @@ void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
   renew_groups();
 }
 
-// Bodies that no rule names differ by their material alone: one class for each material, one for each
-// body that is named.  Few classes, so what is looked up for all pairs stays small.
+// Bodies that no rule names differ by their material alone: one class for each material, one for
+// each body that is named.  Few classes, so what is looked up for all pairs stays small.
 void Kernel::update_contact_classes() const {
   if (contact_cache_version_ != contacts.version()) {
     contact_cache_.clear();
@@ -222,9 +228,9 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
                    " twice; expected each target once");
   TW_REQUIRE(std::isfinite(def.start), "start of callback " + def.name + " is " + show(def.start) +
                                            "; expected a finite number of seconds");
-  TW_REQUIRE(std::abs(def.start) <= greatest_time,
-             "start of callback " + def.name + " is " + show(def.start) +
-                 " s; expected at most " + show(greatest_time) + " s");
+  TW_REQUIRE(std::abs(def.start) <= greatest_time, "start of callback " + def.name + " is " +
+                                                       show(def.start) + " s; expected at most " +
+                                                       show(greatest_time) + " s");
   TW_REQUIRE(!def.period || (std::isfinite(*def.period) && *def.period > 0),
              "period of callback " + def.name + " is " + show(def.period.value_or(0)) +
                  "; expected a positive number of seconds, or #f");
@@ -272,8 +278,8 @@ void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
   require_between_runs("a frame sink was added");
   TW_REQUIRE(std::isfinite(fps) && fps > 0,
              "frames per second are " + show(fps) + "; expected a positive number");
-  TW_REQUIRE(fps <= greatest_rate, "frames per second are " + show(fps) + "; expected at most " +
-                                       show(greatest_rate));
+  TW_REQUIRE(fps <= greatest_rate,
+             "frames per second are " + show(fps) + "; expected at most " + show(greatest_rate));
   SinkRecord record{std::move(sink), fps, static_cast<long>(std::floor(time * fps))};
   while (record.next_time() < time) ++record.next_frame;
   sinks.push_back(std::move(record));
@@ -285,9 +291,9 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 
 // ---- changes between runs ----
 
-// Of an edit that concerns these.  After whatever they have done at this instant, where that is final; else before
-// everything there: a callback that stopped the run, or an impact that an interrupt left, sees what was changed, and
-// doesn't take it back by coming earlier.
+// Of an edit that concerns these.  After whatever they have done at this instant, where that is
+// final; else before everything there: a callback that stopped the run, or an impact that an
+// interrupt left, sees what was changed, and doesn't take it back by coming earlier.
 Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
   if (!due_.inclusive) return {time, 0, KeyKind::early_edit, edits_++};
   std::uint32_t microstep = 1;
@@ -327,13 +333,15 @@ void Kernel::set_gravity(const Vec3& gravity) {
       State* tail = graph.tail(body->id());
       tail->acceleration = gravity + tail->force / body->mass;
     }
-  edit_together([&](BodyId id) { return !newborn(id); }, [&](Draft& draft) {
-    draft.data.acceleration = gravity + draft.data.force / draft.body->mass;
-  });
+  edit_together([&](BodyId id) { return !newborn(id); },
+                [&](Draft& draft) {
+                  draft.data.acceleration = gravity + draft.data.force / draft.body->mass;
+                });
 }
 
-// Gives new arcs, changed by `change`, to all dynamic bodies that are `concerned` and to those that hang together with
-// them: one edit for all that hang together, so that no group is made in between whose members are half changed.
+// Gives new arcs, changed by `change`, to all dynamic bodies that are `concerned` and to those that
+// hang together with them: one edit for all that hang together, so that no group is made in between
+// whose members are half changed.
 void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
                            const std::function<void(Draft&)>& change) {
   std::vector<bool> done(bodies.size(), false);
@@ -353,8 +361,8 @@ void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
   }
 }
 
-// What is below it is past: all that has happened at the present time where that is final, else nothing but what
-// was changed between runs.
+// What is below it is past: all that has happened at the present time where that is final, else
+// nothing but what was changed between runs.
 Key Kernel::present_key() const {
   if (due_.inclusive) return {time, 0xffffffffu, KeyKind::edit, ~0ull};
   return {time, 0, KeyKind::early_edit, ~0ull};

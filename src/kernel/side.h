@@ -12,8 +12,7 @@ struct Side {
   ArcPoint point;
   Frame frame;
 
-  Side(const Body& b, const ArcPoint& p)
-      : body(&b), point(p), frame(p.q.toRotationMatrix(), p.x) {}
+  Side(const Body& b, const ArcPoint& p) : body(&b), point(p), frame(p.q.toRotationMatrix(), p.x) {}
   Vec3 velocity_at(const Vec3& where) const { return point.v + point.w.cross(where - point.x); }
   // A bound on how fast any point of the surface moves now, m/s; a ball's rolls in its place.
   double surface_speed() const {

@@ -35,8 +35,8 @@ void StateGraph::release(State* state) {
 State* StateGraph::append(std::uint32_t process, const Key& key) {
   Queue& queue = queues_[process];
   TW_ASSERT(!queue.tail || queue.tail->key < key,
-            "keys in the queue of body " + std::to_string(process) + " must increase: " +
-                show(key) + " after " + show(queue.tail->key));
+            "keys in the queue of body " + std::to_string(process) +
+                " must increase: " + show(key) + " after " + show(queue.tail->key));
   State* state = allocate();
   state->key = key;
   state->process = process;
@@ -126,9 +126,8 @@ std::size_t StateGraph::rollback(std::uint32_t process, const Key& key,
     }
 
     if (least == last_key) continue;
-    const auto known = std::find_if(touched.begin(), touched.end(), [&](const Touched& t) {
-      return t.process == item.process;
-    });
+    const auto known = std::find_if(touched.begin(), touched.end(),
+                                    [&](const Touched& t) { return t.process == item.process; });
     if (known == touched.end())
       touched.push_back({item.process, least});
     else

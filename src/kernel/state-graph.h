@@ -48,8 +48,8 @@ class StateGraph {
 
   // Removes from `process` every state with key >= `key`, and through rings whatever they touched:
   // nothing else.  A work list, not the call stack.  Adds to `touched` each process that lost a
-  // state, with its least lost key (once a process).  A committed state is never touched: assertion.
-  // Returns the number of states removed.
+  // state, with its least lost key (once a process).  A committed state is never touched:
+  // assertion. Returns the number of states removed.
   std::size_t rollback(std::uint32_t process, const Key& key, std::vector<Touched>& touched,
                        const Farewell& farewell);
 
@@ -60,8 +60,8 @@ class StateGraph {
   // Removes every state of the queue, committed ones too: for restoring a checkpoint.
   void clear(std::uint32_t process);
 
-  // The processes that have more than one state or one that is not committed, each once, in no order:
-  // whom commit must look at.  May name others too, until the next tidy_busy().
+  // The processes that have more than one state or one that is not committed, each once, in no
+  // order: whom commit must look at.  May name others too, until the next tidy_busy().
   const std::vector<std::uint32_t>& busy() const { return busy_; }
   void tidy_busy();
 
@@ -75,7 +75,7 @@ class StateGraph {
   struct Queue {
     State* head = nullptr;
     State* tail = nullptr;
-    bool busy = false;             // stands in busy_
+    bool busy = false;  // stands in busy_
   };
   State* allocate();
   void release(State* state);
@@ -83,7 +83,7 @@ class StateGraph {
 
   std::vector<Queue> queues_;
   std::vector<std::uint32_t> busy_;
-  std::deque<State> pool_;         // addresses stay
+  std::deque<State> pool_;  // addresses stay
   std::vector<State*> unused_;
   std::size_t live_ = 0, peak_ = 0;
 };

@@ -57,8 +57,8 @@ StatisticsTable Kernel::statistics() const {
 
   const double bodies_moving = static_cast<double>(std::max<std::int64_t>(1, moving));
   const std::uint64_t integrations = counters.integrations + kinematic_arcs + steps;
-  const std::uint64_t discontinuities = counters.collisions + counters.fusions + counters.fissions +
-                                        counters.callback_changes;
+  const std::uint64_t discontinuities =
+      counters.collisions + counters.fusions + counters.fissions + counters.callback_changes;
   const double fps = sinks.empty() ? 30 : sinks.front().fps;
   const double frames = std::max(1.0, time * fps);
 

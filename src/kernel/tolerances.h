@@ -1,8 +1,8 @@
 // What follows from the one dial that users see, `accuracy` (relative, default 1e-6).
 //
-// A contact is a spring: its depth, not the step tolerance, bounds how true a heap is.  Steps of contact
-// groups therefore need not resolve more than a small share of the depth; measured motion hardly depends
-// on the tolerance (doc/numerics.md).
+// A contact is a spring: its depth, not the step tolerance, bounds how true a heap is.  Steps of
+// contact groups therefore need not resolve more than a small share of the depth; measured motion
+// hardly depends on the tolerance (doc/numerics.md).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -12,12 +12,15 @@
 
 namespace tw {
 
-// Of one step of a contact group, m: `size` is the least width of its smallest member.  At the default
-// accuracy a tenth of the static depth (2.5e-4 size).
-inline double group_position_tolerance(double accuracy, double size) { return 25 * accuracy * size; }
+// Of one step of a contact group, m: `size` is the least width of its smallest member.  At the
+// default accuracy a tenth of the static depth (2.5e-4 size).
+inline double group_position_tolerance(double accuracy, double size) {
+  return 25 * accuracy * size;
+}
 
-// What moves slowly is followed more closely, as far as to the tolerances of an accuracy of 1e-6: by the
-// fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to rest gains energy.
+// What moves slowly is followed more closely, as far as to the tolerances of an accuracy of 1e-6:
+// by the fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to
+// rest gains energy.
 inline double group_closeness(double accuracy, double share_of_speed) {
   constexpr double closest = 0.1, finest = 1e-6;
   return std::min(1.0, std::max({share_of_speed, closest, finest / accuracy}));

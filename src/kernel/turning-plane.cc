@@ -11,7 +11,8 @@ namespace {
 
 // The plane is followed no longer than this, s.
 constexpr double longest = 2e-3;
-// Vertices this near the plane belong to the facing feature: times the distance, and share of the size.
+// Vertices this near the plane belong to the facing feature: times the distance, and share of the
+// size.
 constexpr double near_distances = 3, near_share = 1e-9;
 
 // The vertices of one body that face the other: none, one, an edge (two of them), or a face.
@@ -34,7 +35,8 @@ Facing facing(const Frame& frame, const ConvexPart& part, const Vec3& n, double 
 }
 
 // The rate of n that keeps an edge of each at its height: n'.e = -n.(w x e) for both.
-Vec3 rate_of_normal(const Vec3& n, const Facing& a, const Vec3& w_a, const Facing& b, const Vec3& w_b) {
+Vec3 rate_of_normal(const Vec3& n, const Facing& a, const Vec3& w_a, const Facing& b,
+                    const Vec3& w_b) {
   if (a.count > 2) return w_a.cross(n);
   if (b.count > 2) return w_b.cross(n);
   const double ra = a.count == 2 ? -n.dot(w_a.cross(a.edge)) : 0;
@@ -61,7 +63,8 @@ double time_to_reach(const Mover& side, const Frame& frame, const ConvexPart& pa
   const double radius = side.body->radius;
   const Vec3 relative = plane.acceleration - side.acceleration;
   const double change = relative.norm() + side.spread.norm() + side.bend * radius;
-  const double speed = (plane.u - side.point.v).norm() + side.point.w.norm() * radius + change * plane.until;
+  const double speed =
+      (plane.u - side.point.v).norm() + side.point.w.norm() * radius + change * plane.until;
   const double distance = (plane.c - side.point.x).norm() + radius;
   const double pull = n.dot(relative) - n.cwiseAbs().dot(side.spread) - side.bend * radius -
                       plane.turn * (2 * speed + plane.turn * distance + plane.until * change);
@@ -92,7 +95,8 @@ double turning_time_apart(const Mover& a, const ConvexPart& part_a, const Mover&
                           const ConvexPart& part_b, const Separation& s, double allowance) {
   if (!(s.distance > 0)) return 0;
   const Frame frame_a = a.frame * part_a.placement, frame_b = b.frame * part_b.placement;
-  const double depth = near_distances * s.distance + near_share * (part_a.bound_radius + part_b.bound_radius);
+  const double depth =
+      near_distances * s.distance + near_share * (part_a.bound_radius + part_b.bound_radius);
   const Facing on_a = facing(frame_a, part_a, s.normal, s.normal.dot(s.point_a), depth);
   const Facing on_b = facing(frame_b, part_b, -s.normal, -s.normal.dot(s.point_b), depth);
 

@@ -75,7 +75,8 @@ std::string Kernel::validate_pairs() const {
   return "";
 }
 
-// Each dynamic body has one residence: the states of a group stand in its members' queues, all of them.
+// Each dynamic body has one residence: the states of a group stand in its members' queues, all of
+// them.
 std::string Kernel::validate_residences() const {
   for (const auto& body : bodies) {
     for (const State* s = graph.head(body->id()); s; s = s->next) {
@@ -204,7 +205,8 @@ std::uint64_t Kernel::ring_checksum(const Key& key) const {
 std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
   std::vector<QueuedState> result;
   for (const State* s = graph.head(id); s; s = s->next)
-    result.push_back({s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
+    result.push_back(
+        {s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
   return result;
 }
 

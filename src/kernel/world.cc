@@ -14,9 +14,9 @@ World::~World() = default;
 const WorldOptions& World::options() const { return kernel_->options; }
 
 void World::set_gravity(const Vec3& gravity) {
-  TW_REQUIRE(gravity.norm() <= greatest_acceleration,
-             "gravity is " + show(gravity.norm()) + " m/s^2; expected at most " +
-                 show(greatest_acceleration));
+  TW_REQUIRE(gravity.norm() <= greatest_acceleration, "gravity is " + show(gravity.norm()) +
+                                                          " m/s^2; expected at most " +
+                                                          show(greatest_acceleration));
   kernel_->set_gravity(gravity);
 }
 
@@ -146,8 +146,9 @@ ContactSurvey World::survey_contacts(double when) const { return kernel_->survey
 Vec3 World::total_momentum() const { return kernel_->total_momentum(kernel_->time); }
 
 std::string World::history_hash() const {
-  TW_REQUIRE(kernel_->options.hash, "the hash was not asked for; expected --hash, or set_hash before "
-                                    "the first run");
+  TW_REQUIRE(kernel_->options.hash,
+             "the hash was not asked for; expected --hash, or set_hash before "
+             "the first run");
   return kernel_->history_hash();
 }
 

@@ -28,9 +28,8 @@ struct Aabb {
   }
   // True also when the boxes only touch.
   bool overlaps(const Aabb& other) const {
-    return lo.x() <= other.hi.x() && other.lo.x() <= hi.x() &&
-           lo.y() <= other.hi.y() && other.lo.y() <= hi.y() &&
-           lo.z() <= other.hi.z() && other.lo.z() <= hi.z();
+    return lo.x() <= other.hi.x() && other.lo.x() <= hi.x() && lo.y() <= other.hi.y() &&
+           other.lo.y() <= hi.y() && lo.z() <= other.hi.z() && other.lo.z() <= hi.z();
   }
   bool contains(const Vec3& point) const {
     return lo.x() <= point.x() && point.x() <= hi.x() && lo.y() <= point.y() &&

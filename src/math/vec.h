@@ -6,9 +6,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-// Eigen's packet code rounds differently from its scalar code (fused multiply-add), and which of the
-// two computes an element of a 3 x 3 matrix depends on the address of the object: the same run twice
-// would give other bits.  So no packets; 3-vectors gain nothing from them.
+// Eigen's packet code rounds differently from its scalar code (fused multiply-add), and which of
+// the two computes an element of a 3 x 3 matrix depends on the address of the object: the same run
+// twice would give other bits.  So no packets; 3-vectors gain nothing from them.
 #ifndef EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_VECTORIZE
 #endif
@@ -50,15 +50,14 @@ struct Frame {
   Frame operator*(const Frame& other) const { return {R * other.R, R * other.p + p}; }
 };
 
-inline Pose operator*(const Pose& a, const Pose& b) {
-  return {a.q * b.p + a.p, a.q * b.q};
-}
+inline Pose operator*(const Pose& a, const Pose& b) { return {a.q * b.p + a.p, a.q * b.q}; }
 
 inline bool is_finite(const Vec3& v) { return std::isfinite(v.x() + v.y() + v.z()); }
 inline bool is_finite(const Quat& q) { return std::isfinite(q.w() + q.x() + q.y() + q.z()); }
 
-// |v| without overflow or underflow on the way.  (Eigen's stableNorm sums in an order that depends on
-// the operand's address, and so do its vectorised reductions: the build turns vectorisation off.)
+// |v| without overflow or underflow on the way.  (Eigen's stableNorm sums in an order that depends
+// on the operand's address, and so do its vectorised reductions: the build turns vectorisation
+// off.)
 inline double scaled_norm(const Vec3& v) {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0) || !std::isfinite(largest)) return v.norm();

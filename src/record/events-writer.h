@@ -1,5 +1,5 @@
-// Writes every committed collision, fusion and fission as a row of CSV, in time order; a fission one row for
-// each contact that broke.
+// Writes every committed collision, fusion and fission as a row of CSV, in time order; a fission
+// one row for each contact that broke.
 //
 // Frames: point (m) and normal (unit, from body1 to body2) in the world frame; impulse in N s.
 //

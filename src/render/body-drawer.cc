@@ -31,8 +31,7 @@ GLuint make_buffer(const GlApi& gl, GLenum kind, const T& data, std::size_t coun
   GLuint buffer = 0;
   gl.GenBuffers(1, &buffer);
   gl.BindBuffer(kind, buffer);
-  gl.BufferData(kind, static_cast<GLsizeiptr>(count * sizeof data[0]), data.data(),
-                GL_STATIC_DRAW);
+  gl.BufferData(kind, static_cast<GLsizeiptr>(count * sizeof data[0]), data.data(), GL_STATIC_DRAW);
   return buffer;
 }
 
@@ -67,8 +66,8 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
 
 void BodyDrawer::add_part(const ConvexPart& part, const DrawBody& body, Part record) {
   if (part.kind == PartKind::half_space) return;
-  const bool smooth = body.smooth.value_or(part.kind == PartKind::sphere ||
-                                           part.kind == PartKind::cylinder);
+  const bool smooth =
+      body.smooth.value_or(part.kind == PartKind::sphere || part.kind == PartKind::cylinder);
   if (part.kind == PartKind::sphere) record.placement.R *= part.radius;
   if (part.kind == PartKind::sphere && smooth) {
     balls_.push_back(record);

@@ -38,8 +38,8 @@ class BodyDrawer {
   // One part of a visible body.
   struct Part {
     std::size_t body = 0;
-    Frame placement;          // in the body; the matrix scales too
-    Eigen::Vector4f color;    // linear; gloss
+    Frame placement;        // in the body; the matrix scales too
+    Eigen::Vector4f color;  // linear; gloss
   };
   // x, y, z and 1 of a point to world axes: three rows; colour
   struct MeshInstance {

@@ -14,9 +14,9 @@ namespace {
 using Point = Eigen::Vector2d;
 
 struct Stroke {
-  Point from, to;        // pixels
-  double distance = 0;   // from the eye along the view, m
-  double strength = 1;   // 0..1
+  Point from, to;       // pixels
+  double distance = 0;  // from the eye along the view, m
+  double strength = 1;  // 0..1
   Ink ink = white_ink;
 };
 
@@ -80,9 +80,8 @@ void draw_contacts(Image& image, std::span<const DrawContact> contacts, const Vi
     strokes.push_back(*stroke);
   }
   // nearer lines over farther ones
-  std::stable_sort(strokes.begin(), strokes.end(), [](const Stroke& x, const Stroke& y) {
-    return x.distance > y.distance;
-  });
+  std::stable_sort(strokes.begin(), strokes.end(),
+                   [](const Stroke& x, const Stroke& y) { return x.distance > y.distance; });
   const double widest = std::clamp(1.3 * image.height / 720.0, 0.8, 8.0);
   for (const Stroke& stroke : strokes) {
     // short lines stay lines

@@ -16,8 +16,8 @@ std::string show_vector(const Vec3& v) {
 }
 
 void check_finite(const Vec3& v, const char* what) {
-  TW_REQUIRE(is_finite(v), std::string(what) + " is " + show_vector(v) +
-                               "; expected three finite numbers");
+  TW_REQUIRE(is_finite(v),
+             std::string(what) + " is " + show_vector(v) + "; expected three finite numbers");
 }
 
 }  // namespace
@@ -25,11 +25,11 @@ void check_finite(const Vec3& v, const char* what) {
 Vec3 default_color(std::size_t body, bool fixed) {
   if (fixed) return {0.78, 0.76, 0.72};
   // muted hues, neighbours far apart
-  static const std::array<Vec3, 10> palette = {
-      Vec3(0.85, 0.37, 0.28), Vec3(0.25, 0.53, 0.74), Vec3(0.93, 0.69, 0.26),
-      Vec3(0.36, 0.65, 0.45), Vec3(0.56, 0.42, 0.67), Vec3(0.90, 0.53, 0.27),
-      Vec3(0.29, 0.66, 0.69), Vec3(0.83, 0.47, 0.58), Vec3(0.62, 0.68, 0.29),
-      Vec3(0.43, 0.47, 0.60)};
+  static const std::array<Vec3, 10> palette = {Vec3(0.85, 0.37, 0.28), Vec3(0.25, 0.53, 0.74),
+                                               Vec3(0.93, 0.69, 0.26), Vec3(0.36, 0.65, 0.45),
+                                               Vec3(0.56, 0.42, 0.67), Vec3(0.90, 0.53, 0.27),
+                                               Vec3(0.29, 0.66, 0.69), Vec3(0.83, 0.47, 0.58),
+                                               Vec3(0.62, 0.68, 0.29), Vec3(0.43, 0.47, 0.60)};
   return palette[body % palette.size()];
 }
 
@@ -45,8 +45,7 @@ void check_camera(const Camera& camera, std::size_t body_count) {
   check_finite(camera.up, "camera: up");
   TW_REQUIRE(camera.up.norm() > 0, "camera: up is zero; expected a direction");
   TW_REQUIRE(camera.fov > 0 && camera.fov < pi,
-             "camera: fov is " + show(camera.fov) +
-                 "; expected an angle between 0 and pi radians");
+             "camera: fov is " + show(camera.fov) + "; expected an angle between 0 and pi radians");
   TW_REQUIRE(!camera.eye || !camera.target || *camera.eye != *camera.target,
              "camera: eye and target are both " + show_vector(*camera.eye) +
                  "; expected two different points");
@@ -83,13 +82,11 @@ void check_size(const ImageSize& size, Quality quality) {
              "size is " + text + "; expected width and height from 1 to 16384 pixels");
   // about 28 bytes of buffers for every sample
   const double samples = (quality == Quality::best ? 4.0 : 1.0) * size.width * size.height;
-  const bool sides_fit =
-      quality != Quality::best || (size.width <= 8192 && size.height <= 8192);
+  const bool sides_fit = quality != Quality::best || (size.width <= 8192 && size.height <= 8192);
   TW_REQUIRE(samples <= 72e6 && sides_fit,
              "size is " + text + "; too large for quality " +
-                 (quality == Quality::best ? "best" : "draft or normal") +
-                 ", expected at most " + (quality == Quality::best ? "18" : "72") +
-                 " million pixels");
+                 (quality == Quality::best ? "best" : "draft or normal") + ", expected at most " +
+                 (quality == Quality::best ? "18" : "72") + " million pixels");
 }
 
 }  // namespace tw

@@ -18,33 +18,33 @@ namespace tw {
 
 // A body is known by its index in the order of registration.
 struct DrawBody {
-  ShapePtr shape;               // null: nothing to see
-  Pose pose;                    // where it is as long as no frame says otherwise
-  std::optional<Vec3> color;    // absent: default_color()
-  std::optional<bool> smooth;   // absent: spheres are smooth, all else has facets
-  bool fixed = false;           // only for the default colour
+  ShapePtr shape;              // null: nothing to see
+  Pose pose;                   // where it is as long as no frame says otherwise
+  std::optional<Vec3> color;   // absent: default_color()
+  std::optional<bool> smooth;  // absent: spheres are smooth, all else has facets
+  bool fixed = false;          // only for the default colour
   bool visible = true;
-  std::string name;             // for messages
+  std::string name;  // for messages
 };
 
 // What is absent is chosen so that the scene is in view.
 struct Camera {
   std::optional<Vec3> eye, target;
   Vec3 up = Vec3::UnitZ();
-  double fov = 0.7;                    // vertical, radians, inside (0, pi)
+  double fov = 0.7;  // vertical, radians, inside (0, pi)
   // Eye and target move with this body: by its displacement from the pose of its registration.
   std::optional<std::size_t> follow;
 };
 
 struct Light {
-  Vec3 direction{-0.75, 0.35, -1.0};   // in which the light flies; any length but zero
+  Vec3 direction{-0.75, 0.35, -1.0};  // in which the light flies; any length but zero
   Vec3 color{1.0, 0.97, 0.91};
 };
 
 struct Sky {
   Vec3 zenith{0.33, 0.53, 0.80};
   Vec3 horizon{0.80, 0.86, 0.92};
-  Vec3 ground{0.48, 0.51, 0.55};       // seen below the horizon where there is no ground
+  Vec3 ground{0.48, 0.51, 0.55};  // seen below the horizon where there is no ground
   // Share of the light lost per metre.  Absent: 1/25 of the camera's distance from its target.
   std::optional<double> fog;
 };
@@ -59,19 +59,19 @@ struct DrawScene {
 // A line over the picture, its middle at `point`.
 struct DrawContact {
   Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();         // unit
-  double length = 0;                   // m
-  bool slipping = false;               // else it sticks: another colour
+  Vec3 normal = Vec3::UnitZ();  // unit
+  double length = 0;            // m
+  bool slipping = false;        // else it sticks: another colour
 };
 
 struct DrawFrame {
   double time = 0;
-  std::vector<Pose> poses;             // by body; bodies past its end keep the pose they had
-  std::vector<DrawBody> added;         // registered before this frame is drawn
-  std::vector<std::size_t> removed;    // bodies that are not seen any more
-  std::optional<Camera> camera;        // from this frame on
-  std::vector<HudLine> hud;            // lines below the time, UTF-8 (Latin-1 is drawn)
-  std::vector<DrawContact> contacts;   // drawn over the picture
+  std::vector<Pose> poses;            // by body; bodies past its end keep the pose they had
+  std::vector<DrawBody> added;        // registered before this frame is drawn
+  std::vector<std::size_t> removed;   // bodies that are not seen any more
+  std::optional<Camera> camera;       // from this frame on
+  std::vector<HudLine> hud;           // lines below the time, UTF-8 (Latin-1 is drawn)
+  std::vector<DrawContact> contacts;  // drawn over the picture
 };
 
 enum class Quality {

@@ -21,7 +21,10 @@ struct FontData {
 const std::vector<FontData>& font_data() {
   static const std::vector<FontData> data = {
 #define TW_FONT_BEGIN(size) {size, {
-#define TW_FONT_END }},
+#define TW_FONT_END \
+  }                 \
+  }                 \
+  ,
 #include "render/font-data.inc"
 #undef TW_FONT_BEGIN
 #undef TW_FONT_END

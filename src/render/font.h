@@ -11,8 +11,8 @@ namespace tw {
 // Coverage of one letter, 0..15 per pixel, rows from the top.
 struct Glyph {
   int width = 0, height = 0;
-  int left = 0, top = 0;   // from the pen to the left edge; from the baseline up to the top edge
-  int advance = 0;         // to the next pen position
+  int left = 0, top = 0;  // from the pen to the left edge; from the baseline up to the top edge
+  int advance = 0;        // to the next pen position
   std::vector<std::uint8_t> coverage;
 };
 
@@ -28,7 +28,7 @@ class Font {
  private:
   friend struct FontMaker;
   int size_ = 0;
-  std::vector<Glyph> glyphs_;   // of 32..126, then 160..255
+  std::vector<Glyph> glyphs_;  // of 32..126, then 160..255
 };
 
 // The characters of UTF-8 text; bytes that are not UTF-8 become question marks.

@@ -55,9 +55,7 @@ FramePipeline::FramePipeline(const FrameSettings& settings, const DrawScene& sce
   thread_ = start_quiet_thread([this] { work(); });
 }
 
-FramePipeline::~FramePipeline() {
-  abandon();
-}
+FramePipeline::~FramePipeline() { abandon(); }
 
 void FramePipeline::abandon() {
   {

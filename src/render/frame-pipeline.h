@@ -22,8 +22,8 @@ namespace tw {
 
 struct FrameSettings {
   RenderSettings render;
-  std::string frames;     // a folder, made where it is missing, or a pattern like out/%05d.png
-  long first_frame = 0;   // the number of the first frame submitted
+  std::string frames;    // a folder, made where it is missing, or a pattern like out/%05d.png
+  long first_frame = 0;  // the number of the first frame submitted
 };
 
 class FramePipeline {
@@ -64,7 +64,7 @@ class FramePipeline {
 
   const FrameSettings settings_;
   const FrameName name_;
-  DrawScene scene_;   // read by the thread only
+  DrawScene scene_;  // read by the thread only
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -25,8 +25,8 @@ bool has_extension(const GlApi& gl, const char* wanted) {
 
 GlApi load_gl_api(const GlLoader& load) {
   GlApi gl;
-#define TW_GL_LOAD(name, NAME)                                        \
-  gl.name = reinterpret_cast<PFNGL##NAME##PROC>(load("gl" #name));    \
+#define TW_GL_LOAD(name, NAME)                                     \
+  gl.name = reinterpret_cast<PFNGL##NAME##PROC>(load("gl" #name)); \
   TW_REQUIRE(gl.name, "cannot draw: the OpenGL library has no function gl" #name);
   TW_GL_FUNCTIONS(TW_GL_LOAD)
 #undef TW_GL_LOAD

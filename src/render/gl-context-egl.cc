@@ -24,8 +24,7 @@ struct EglApi {
   void* (*get_platform_display)(unsigned platform, void* native, const std::intptr_t* attributes);
   unsigned (*initialize)(void* display, std::int32_t* major, std::int32_t* minor);
   unsigned (*bind_api)(unsigned api);
-  void* (*create_context)(void* display, void* config, void* share,
-                          const std::int32_t* attributes);
+  void* (*create_context)(void* display, void* config, void* share, const std::int32_t* attributes);
   unsigned (*destroy_context)(void* display, void* context);
   unsigned (*make_current)(void* display, void* draw, void* read, void* context);
   void* (*get_proc_address)(const char* name);
@@ -34,8 +33,9 @@ struct EglApi {
 class EglContext final : public GlContext {
  public:
   EglContext(const EglApi& api, void* display) : GlContext("EGL"), api_(api), display_(display) {
-    const std::int32_t attributes[] = {egl_context_major_version, 3, egl_context_minor_version, 3,
-                                       egl_context_profile_mask, egl_core_profile, egl_none};
+    const std::int32_t attributes[] = {
+        egl_context_major_version, 3,       egl_context_minor_version, 3, egl_context_profile_mask,
+        egl_core_profile,          egl_none};
     api_.bind_api(egl_opengl_api);
     context_ = api_.create_context(display_, nullptr, nullptr, attributes);
     TW_REQUIRE(context_, "cannot draw: EGL gives no OpenGL 3.3 context");

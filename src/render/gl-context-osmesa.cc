@@ -28,9 +28,15 @@ struct OsmesaApi {
 class OsmesaContext final : public GlContext {
  public:
   explicit OsmesaContext(const OsmesaApi& api) : GlContext("OSMesa"), api_(api) {
-    const int attributes[] = {osmesa_format, osmesa_rgba, osmesa_profile, osmesa_core_profile,
-                              osmesa_context_major_version, 3,
-                              osmesa_context_minor_version, 3, 0};
+    const int attributes[] = {osmesa_format,
+                              osmesa_rgba,
+                              osmesa_profile,
+                              osmesa_core_profile,
+                              osmesa_context_major_version,
+                              3,
+                              osmesa_context_minor_version,
+                              3,
+                              0};
     context_ = api_.create_context_attribs(attributes, nullptr);
     TW_REQUIRE(context_, "cannot draw: OSMesa gives no OpenGL 3.3 context");
     // the default framebuffer is never drawn to, but must be there

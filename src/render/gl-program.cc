@@ -10,8 +10,7 @@ namespace tw {
 
 namespace {
 
-GLuint compile(const GlApi& gl, GLenum kind, const std::string& preamble,
-               const char* source) {
+GLuint compile(const GlApi& gl, GLenum kind, const std::string& preamble, const char* source) {
   const GLuint shader = gl.CreateShader(kind);
   const std::string head = "#version 330 core\n" + preamble;
   const std::array<const char*, 2> texts = {head.c_str(), source};

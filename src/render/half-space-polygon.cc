@@ -78,8 +78,8 @@ void cut_by_others(std::vector<Face>& faces, const Vec3& center, double reach) {
 }  // namespace
 
 std::vector<HalfSpacePolygon> half_space_polygons(std::span<const DrawBody> bodies,
-                                                  std::span<const Pose> poses,
-                                                  const Vec3& center, double reach) {
+                                                  std::span<const Pose> poses, const Vec3& center,
+                                                  double reach) {
   std::vector<Face> faces = all_faces(bodies, poses);
   cut_by_others(faces, center, reach);
   std::vector<HalfSpacePolygon> polygons;

@@ -18,21 +18,20 @@ namespace tw {
 
 struct HalfSpacePolygon {
   std::size_t body = 0;
-  Vec3 normal = Vec3::UnitZ();       // out of the solid, unit, world
-  Vec3 origin = Vec3::Zero();        // a point of the plane that moves with the body, world
+  Vec3 normal = Vec3::UnitZ();  // out of the solid, unit, world
+  Vec3 origin = Vec3::Zero();   // a point of the plane that moves with the body, world
   Vec3 u = Vec3::UnitX(), v = Vec3::UnitY();  // axes of the plane, moving with the body
-  std::vector<Vec3> corners;         // counter-clockwise seen from outside, world
+  std::vector<Vec3> corners;                  // counter-clockwise seen from outside, world
 };
 
 // All visible faces; an unbounded one reaches `reach` metres to each side of `center`.  A
 // half-space that is not visible cuts the others all the same.  Bodies whose pose is not finite are
 // left out.
 std::vector<HalfSpacePolygon> half_space_polygons(std::span<const DrawBody> bodies,
-                                                  std::span<const Pose> poses,
-                                                  const Vec3& center, double reach);
+                                                  std::span<const Pose> poses, const Vec3& center,
+                                                  double reach);
 
 // Grows `bounds` by the corners in which three half-space faces meet.
-void add_enclosed_room(std::span<const DrawBody> bodies, std::span<const Pose> poses,
-                       Aabb& bounds);
+void add_enclosed_room(std::span<const DrawBody> bodies, std::span<const Pose> poses, Aabb& bounds);
 
 }  // namespace tw

@@ -86,10 +86,12 @@ void draw_panel(Image& image, const Hud& hud, const Layout& layout) {
     lines.push_back(decode_utf8(line.text));
     width = std::max(width, layout.small.width(lines.back()));
   }
-  const int height = layout.large.line_height() +
-                     static_cast<int>(lines.size()) * layout.small.line_height();
-  blend_box(image, {layout.margin, layout.margin, width + 2 * layout.padding,
-                    height + 2 * layout.padding - layout.padding / 2}, {24, 24, 24}, 140);
+  const int height =
+      layout.large.line_height() + static_cast<int>(lines.size()) * layout.small.line_height();
+  blend_box(image,
+            {layout.margin, layout.margin, width + 2 * layout.padding,
+             height + 2 * layout.padding - layout.padding / 2},
+            {24, 24, 24}, 140);
   const int x = layout.margin + layout.padding;
   int y = layout.margin + layout.padding / 2 + layout.large.line_height() * 7 / 8;
   layout.large.draw(image, time, x, y);

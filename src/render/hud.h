@@ -12,7 +12,7 @@
 namespace tw {
 
 struct HudLine {
-  std::string text;        // UTF-8
+  std::string text;  // UTF-8
   Ink ink = white_ink;
 
   HudLine(std::string line, const Ink& color = white_ink) : text(std::move(line)), ink(color) {}
@@ -20,9 +20,9 @@ struct HudLine {
 };
 
 struct Hud {
-  double time = 0;                  // s; shown as "t = 12.480 s"
-  std::vector<HudLine> lines;       // below it, smaller
-  std::string footer;               // at the lower right, UTF-8
+  double time = 0;             // s; shown as "t = 12.480 s"
+  std::vector<HudLine> lines;  // below it, smaller
+  std::string footer;          // at the lower right, UTF-8
   // A bar of a round length at the lower left; none where pixels_per_metre is 0.
   double pixels_per_metre = 0;
 };

@@ -69,9 +69,8 @@ Mesh facet_mesh(const Polyhedron& polyhedron) {
   for (const Polyhedron::Face& face : polyhedron.faces()) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (int i = 0; i < face.count; ++i)
-      mesh.vertices.push_back(
-          {polyhedron.vertex(polyhedron.corner(face.first + i)).cast<float>(),
-           face.normal.cast<float>()});
+      mesh.vertices.push_back({polyhedron.vertex(polyhedron.corner(face.first + i)).cast<float>(),
+                               face.normal.cast<float>()});
     add_fan(mesh, first, face.count);
   }
   return mesh;

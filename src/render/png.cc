@@ -46,8 +46,8 @@ bool write_all(png_structp png, png_infop info, Encoder* encoder, const Image* i
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, encoder, append, flush);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image->width),
-               static_cast<png_uint_32>(image->height), 8, PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+               static_cast<png_uint_32>(image->height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_compression_level(png, 2);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -62,8 +62,7 @@ bool write_all(png_structp png, png_infop info, Encoder* encoder, const Image* i
 std::vector<std::uint8_t> encode_png(const Image& image) {
   Encoder encoder;
   encoder.bytes.reserve(image.rgb.size() / 2);
-  png_structp png =
-      png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error, on_warning);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &encoder, on_error, on_warning);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool written = info && write_all(png, info, &encoder, &image);
   png_destroy_write_struct(&png, &info);

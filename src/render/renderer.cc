@@ -19,8 +19,8 @@ namespace {
 constexpr GLenum texture_srgb_decode = 0x8A48;
 constexpr GLint skip_decode = 0x8A4A;
 
-constexpr double farthest_pose = 1e12;   // m; beyond, products overflow single precision
-constexpr double ground_reach = 4000;    // of an unbounded plane, in distances of the target
+constexpr double farthest_pose = 1e12;  // m; beyond, products overflow single precision
+constexpr double ground_reach = 4000;   // of an unbounded plane, in distances of the target
 
 bool drawable(const Pose& pose) {
   return is_finite(pose.p) && is_finite(pose.q) && pose.p.cwiseAbs().maxCoeff() <= farthest_pose;
@@ -55,8 +55,8 @@ std::string spiral_points(int count) {
   for (int i = 0; i < count; ++i) {
     const double angle = 2.39996 * i, share = (i + 0.5) / count;
     char point[80];
-    std::snprintf(point, sizeof point, " look(%.6f, %.6f, %.6f)", std::cos(angle),
-                  std::sin(angle), share);
+    std::snprintf(point, sizeof point, " look(%.6f, %.6f, %.6f)", std::cos(angle), std::sin(angle),
+                  share);
     text += point;
   }
   return text + "\n";
@@ -239,8 +239,8 @@ void Renderer::set_rays(const GlProgram& program) const {
 
 void Renderer::draw_grounds() {
   const Vec3 target = view_.eye + view_.focus_distance * view_.forward;
-  const auto polygons = half_space_polygons(scene_.bodies, poses_, target,
-                                            ground_reach * view_.focus_distance);
+  const auto polygons =
+      half_space_polygons(scene_.bodies, poses_, target, ground_reach * view_.focus_distance);
   if (polygons.empty()) return;
   programs_->ground.use();
   programs_->ground.set("projection", projection_);

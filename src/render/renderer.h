@@ -1,9 +1,10 @@
 // Draws frames of one scene into pictures in memory.
 //
 // Passes: two shadow maps (sun; straight above), surfaces (colour, normal, depth), light with sky
-// and fog, smoothing of edges; then, in memory, contacts and the HUD.  Light is computed once per pixel, not per triangle, since llvmpipe
-// shades whole blocks of pixels for each triangle.  Depth is reversed (1 at the near plane, 0 at
-// infinity) in 32-bit floats: two planes 2 cm apart stay apart at 5 km.
+// and fog, smoothing of edges; then, in memory, contacts and the HUD.  Light is computed once per
+// pixel, not per triangle, since llvmpipe shades whole blocks of pixels for each triangle.  Depth
+// is reversed (1 at the near plane, 0 at infinity) in 32-bit floats: two planes 2 cm apart stay
+// apart at 5 km.
 //
 // The thread that makes a Renderer is the only one that may use it.
 //
@@ -28,7 +29,7 @@ struct RenderSettings {
   ImageSize size;
   Quality quality = Quality::normal;
   bool hud = true;
-  std::string footer;   // at the lower right
+  std::string footer;  // at the lower right
 };
 
 class Renderer {
@@ -84,9 +85,9 @@ class Renderer {
   std::vector<bool> removed_;  // bodies that are not seen any more
   View view_;
   Matrix4f projection_ = Matrix4f::Identity();
-  Aabb first_bounds_;           // of the scene as registered: what cameras are fitted to
-  double cell_size_ = 1;        // of the checks on half-spaces, m
-  double body_size_ = 1;        // median radius, m
+  Aabb first_bounds_;     // of the scene as registered: what cameras are fitted to
+  double cell_size_ = 1;  // of the checks on half-spaces, m
+  double body_size_ = 1;  // median radius, m
   long skipped_poses_ = 0;
   int surface_width_ = 0, surface_height_ = 0;
   GLuint color_ = 0, normal_ = 0, depth_ = 0, lit_ = 0, final_ = 0;

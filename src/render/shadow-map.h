@@ -34,7 +34,7 @@ class ShadowMap {
             const GlProgram& sphere_program, const Vec3& eye) const;
 
   GLuint texture() const { return texture_; }
-  double texel() const { return 2 * half_side_ / side_; }   // m
+  double texel() const { return 2 * half_side_ / side_; }  // m
   double texel_share() const { return 1.0 / side_; }
   // From eye-relative world coordinates to the texture's, depth in z, all 0..1.
   Matrix4f to_texture(const Vec3& eye) const;

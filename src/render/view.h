@@ -18,11 +18,11 @@ namespace tw {
 struct View {
   Vec3 eye = Vec3::Zero();
   Vec3 right = Vec3::UnitX(), up = Vec3::UnitZ(), forward = Vec3::UnitY();
-  double tan_half_fov = 0.5;      // vertical
-  double aspect = 1;              // width over height
-  double focus_distance = 1;      // from the eye to the target, m
-  double near_distance = 0.001;   // nothing nearer is drawn, m
-  int height = 1;                 // of the picture, pixels
+  double tan_half_fov = 0.5;     // vertical
+  double aspect = 1;             // width over height
+  double focus_distance = 1;     // from the eye to the target, m
+  double near_distance = 0.001;  // nothing nearer is drawn, m
+  int height = 1;                // of the picture, pixels
 
   // Pixel (from the left, from the top) on which a world point falls; nullopt behind the eye.
   std::optional<Eigen::Vector2d> project(const Vec3& point) const;

@@ -55,12 +55,9 @@ const BodyInfo& info_of(SCM object) {
 
 const char* kind_text(BodyKind kind) {
   switch (kind) {
-    case BodyKind::fixed:
-      return "fixed";
-    case BodyKind::kinematic:
-      return "kinematic";
-    default:
-      return "dynamic";
+    case BodyKind::fixed: return "fixed";
+    case BodyKind::kinematic: return "kinematic";
+    default: return "dynamic";
   }
 }
 

@@ -88,9 +88,7 @@ SCM describe_body(void* data) {
   return SCM_UNSPECIFIED;
 }
 
-SCM ignore_handler(void*, SCM, SCM) {
-  return SCM_UNSPECIFIED;
-}
+SCM ignore_handler(void*, SCM, SCM) { return SCM_UNSPECIFIED; }
 
 // the stack still stands here: what the message needs of it is taken now
 SCM on_throw(void* data, SCM key, SCM arguments) {
@@ -114,16 +112,15 @@ void* call_barrier(void* data) {
   return data;
 }
 
-Place place_of(SCM place) {
-  return is_place(place) ? to_place(place) : Place{};
-}
+Place place_of(SCM place) { return is_place(place) ? to_place(place) : Place{}; }
 
 [[noreturn]] void throw_described(const CallState& state) {
   // where the stack of C is full Guile unwinds first: nothing could be described
   static const SCM key_overflow = scm_gc_protect_object(scm_from_utf8_symbol("stack-overflow"));
   if (scm_is_eq(state.key, key_overflow))
     throw SchemeError(
-        "a procedure calls itself without end, or too often; expected a recursion that ends", {}, "");
+        "a procedure calls itself without end, or too often; expected a recursion that ends", {},
+        "");
   const SCM d = state.description;
   if (!scm_is_vector(d) || SCM_SIMPLE_VECTOR_LENGTH(d) != 3)
     throw SchemeError("a Scheme procedure failed, and so did describing its error", {}, "");
@@ -156,9 +153,7 @@ SCM call_scheme(SCM procedure, std::span<SCM> arguments) {
   throw_described(state);
 }
 
-bool inside_call() {
-  return call_depth > 0;
-}
+bool inside_call() { return call_depth > 0; }
 
 void require_outside_callbacks(const char* what) {
   TW_REQUIRE(!inside_call(),

@@ -215,12 +215,14 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
                                                    : CollisionKind::collision;
   const auto hook =
       std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
-  to_world(world).add_collision_observer([hook](const Collision& collision) {
-    SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
-    call_hook(*hook, arguments, collision.time, [&] {
-      return body_names(hook->box->world, std::array{collision.body1, collision.body2});
-    });
-  }, wanted);
+  to_world(world).add_collision_observer(
+      [hook](const Collision& collision) {
+        SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
+        call_hook(*hook, arguments, collision.time, [&] {
+          return body_names(hook->box->world, std::array{collision.body1, collision.body2});
+        });
+      },
+      wanted);
   return SCM_UNSPECIFIED;
 }
 

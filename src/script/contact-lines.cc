@@ -55,7 +55,9 @@ void add_contacts(DrawFrame& frame, const World& world) {
     frame.contacts.push_back(
         {contact.point, contact.normal, scale.length(contact.force), contact.slipping});
   }
-  const auto say = [&](const std::string& text, const Ink& ink) { frame.hud.emplace_back(text, ink); };
+  const auto say = [&](const std::string& text, const Ink& ink) {
+    frame.hud.emplace_back(text, ink);
+  };
   say("groups " + std::to_string(survey.groups), white_ink);
   say("contacts sticking " + std::to_string(frame.contacts.size() - slipping), sticking_ink);
   say("contacts slipping " + std::to_string(slipping), slipping_ink);

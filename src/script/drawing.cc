@@ -22,19 +22,13 @@ TW_PRIMITIVES(define_drawing_primitives)
 
 #ifndef TW_RENDER
 
-TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") {
-  return SCM_BOOL_F;
-}
+TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") { return SCM_BOOL_F; }
 
-void define_drawing() {
-  define_drawing_primitives();
-}
+void define_drawing() { define_drawing_primitives(); }
 
 #else
 
-TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") {
-  return SCM_BOOL_T;
-}
+TW_PRIMITIVE(can_draw, "%drawing?", (), "Is drawing compiled in?") { return SCM_BOOL_T; }
 
 namespace {
 
@@ -57,9 +51,7 @@ DrawerBox& to_drawer(SCM object) {
 }
 
 // The value of a symbol in an alist, #f if it is not there.
-SCM entry(SCM alist, const char* name) {
-  return scm_assq_ref(alist, scm_from_utf8_symbol(name));
-}
+SCM entry(SCM alist, const char* name) { return scm_assq_ref(alist, scm_from_utf8_symbol(name)); }
 
 template <class Target>
 void set_vec3(Target& target, SCM alist, const char* name) {

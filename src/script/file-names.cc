@@ -19,9 +19,7 @@ namespace {
 // bytes 80 to FF stand at U+10FE80 to U+10FEFF
 constexpr char32_t escape_base = 0x10FE00;
 
-bool is_escape(char32_t c) {
-  return c >= escape_base + 0x80 && c <= escape_base + 0xFF;
-}
+bool is_escape(char32_t c) { return c >= escape_base + 0x80 && c <= escape_base + 0xFF; }
 
 struct Decoded {
   char32_t character = 0;
@@ -83,9 +81,7 @@ std::string bytes_of_text(std::string_view text) {
   return bytes;
 }
 
-SCM from_argument(const char* bytes) {
-  return from_string(text_of_bytes(bytes));
-}
+SCM from_argument(const char* bytes) { return from_string(text_of_bytes(bytes)); }
 
 std::string to_file_name(SCM value, const char* name) {
   std::string bytes = bytes_of_text(to_string(value, name));

@@ -12,7 +12,8 @@ namespace tw {
 
 class FrameDrawer : public FrameSink {
  public:
-  // Opens the drawing library.  `scene` holds the world's bodies at present; `contacts`: they are drawn.
+  // Opens the drawing library.  `scene` holds the world's bodies at present; `contacts`: they are
+  // drawn.
   FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
               std::vector<HudLine> hud, bool contacts);
 
@@ -35,8 +36,8 @@ class FrameDrawer : public FrameSink {
 DrawScene draw_scene(const World& world);
 DrawBody draw_body(const World& world, BodyId id);
 
-// Adds the contacts of a world to a frame of its present, or of the time of the frame that a sink is being
-// handed: a line for each that carries load, and lines of the HUD.
+// Adds the contacts of a world to a frame of its present, or of the time of the frame that a sink
+// is being handed: a line for each that carries load, and lines of the HUD.
 void add_contacts(DrawFrame& frame, const World& world);
 
 }  // namespace tw

@@ -13,11 +13,22 @@
 
 namespace tw {
 
-enum class LiveKind { world, shape, motion, slots, callback, view, error, border_call, recorder, checkpoint };
+enum class LiveKind {
+  world,
+  shape,
+  motion,
+  slots,
+  callback,
+  view,
+  error,
+  border_call,
+  recorder,
+  checkpoint
+};
 inline constexpr int live_kinds = 10;
 inline constexpr std::array<const char*, live_kinds> live_names{
-    "worlds", "shapes", "motions", "slots", "callbacks", "views", "errors", "calls", "recorders",
-    "checkpoints"};
+    "worlds", "shapes", "motions", "slots",     "callbacks",
+    "views",  "errors", "calls",   "recorders", "checkpoints"};
 
 inline std::array<std::atomic<std::int64_t>, live_kinds> live_counts{};
 

@@ -27,9 +27,7 @@ struct Folders {
   }
 };
 
-Folders configured_folders() {
-  return {TW_GUILE_SITE_DIR, TW_GUILE_SITE_CCACHE_DIR};
-}
+Folders configured_folders() { return {TW_GUILE_SITE_DIR, TW_GUILE_SITE_CCACHE_DIR}; }
 
 // The configured folders, seen from where the executable is rather than from BINDIR.
 Folders folders_beside_executable() {

@@ -59,9 +59,7 @@ struct Guarded<body> {
     static ::tw::PrimitiveList list;             \
     return list;                                 \
   }                                              \
-  void define_function() {                       \
-    primitive_list().define();                   \
-  }
+  void define_function() { primitive_list().define(); }
 
 #define TW_PRIMITIVE(function, scheme_name, arguments, doc)                                      \
   static SCM function arguments;                                                                 \

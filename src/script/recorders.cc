@@ -39,9 +39,7 @@ Recorder& to_recorder(SCM object) {
   return *static_cast<Recorder*>(scm_foreign_object_ref(object, 0));
 }
 
-SCM from_recorder(Recorder* recorder) {
-  return scm_make_foreign_object_1(recorder_type, recorder);
-}
+SCM from_recorder(Recorder* recorder) { return scm_make_foreign_object_1(recorder_type, recorder); }
 
 BodyNames names_of(const World& world) {
   return [&world](BodyId id) { return world.body(id).name; };

@@ -135,13 +135,9 @@ void ScmMotion::velocity(double time, Vec3& v, Vec3& w) const {
   w = turn_between(before.q, after.q) / (2 * difference_step);
 }
 
-double ScmMotion::speed_bound(double, double) const {
-  return origin_speed_;
-}
+double ScmMotion::speed_bound(double, double) const { return origin_speed_; }
 
-double ScmMotion::angular_speed_bound(double, double) const {
-  return angular_speed_;
-}
+double ScmMotion::angular_speed_bound(double, double) const { return angular_speed_; }
 
 Aabb ScmMotion::path_bounds(double from, double to) const {
   Aabb box;

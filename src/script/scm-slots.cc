@@ -122,9 +122,7 @@ ScmSlots::ScmSlots(std::shared_ptr<const Names> names) : names_(std::move(names)
   if (!values_) throw std::bad_alloc();
 }
 
-ScmSlots::~ScmSlots() {
-  GC_FREE(values_);
-}
+ScmSlots::~ScmSlots() { GC_FREE(values_); }
 
 SlotsPtr ScmSlots::from_alist(SCM alist) {
   constexpr const char* expected = "an association list like '((bounces . 0)), each name once";

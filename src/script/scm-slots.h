@@ -4,7 +4,7 @@
 // place, setting one makes a new ScmSlots.  A value is a copy of what was given: of numbers,
 // booleans, symbols, keywords, characters, strings, bodies, and pairs and vectors of such; nothing
 // else can be frozen, and is refused.  Its strings and vectors are read-only.  Pairs cannot be made
-// so: who changes a pair of a slot changes it in all states that hold it, which --check finds. 
+// so: who changes a pair of a slot changes it in all states that hold it, which --check finds.
 // Values stand in memory that the garbage collector scans as a root and never frees by itself; the
 // destructor frees it. Cost: a copy with one value set 0.1-0.2 us.
 //

@@ -44,9 +44,7 @@ bool has_type(SCM object, SCM type) {
   return SCM_STRUCTP(object) && scm_is_eq(SCM_STRUCT_VTABLE(object), type);
 }
 
-void* field(SCM object, std::size_t index) {
-  return scm_foreign_object_ref(object, index);
-}
+void* field(SCM object, std::size_t index) { return scm_foreign_object_ref(object, index); }
 
 SCM scm_field(SCM object, std::size_t index) {
   return SCM_PACK_POINTER(scm_foreign_object_ref(object, index));
@@ -56,9 +54,7 @@ SCM scm_field(SCM object, std::size_t index) {
 
 // ---- worlds ----
 
-bool is_world(SCM object) {
-  return has_type(object, world_type);
-}
+bool is_world(SCM object) { return has_type(object, world_type); }
 
 WorldBox& to_world_box(SCM object) {
   if (!is_world(object)) throw BadValue{"the world", object, "a world, as (make-world) returns"};
@@ -73,9 +69,7 @@ SCM make_world_handle() {
   return handle;
 }
 
-SCM world_table(SCM world) {
-  return scm_field(world, 1);
-}
+SCM world_table(SCM world) { return scm_field(world, 1); }
 
 void keep_with_world(SCM world, SCM object) {
   static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("kept"));
@@ -85,13 +79,9 @@ void keep_with_world(SCM world, SCM object) {
 
 // ---- bodies ----
 
-bool is_body(SCM object) {
-  return has_type(object, body_type);
-}
+bool is_body(SCM object) { return has_type(object, body_type); }
 
-SCM body_world(SCM body) {
-  return scm_field(body, 1);
-}
+SCM body_world(SCM body) { return scm_field(body, 1); }
 
 BodyId to_body(SCM world, SCM object, const char* name) {
   if (!is_body(object)) throw BadValue{name, object, "a body"};
@@ -119,9 +109,7 @@ SCM from_body(SCM world, BodyId id) {
 
 // ---- views ----
 
-bool is_view(SCM object) {
-  return has_type(object, view_type);
-}
+bool is_view(SCM object) { return has_type(object, view_type); }
 
 StateView& to_view(SCM view) {
   auto* pointer = static_cast<StateView*>(field(view, 0));
@@ -131,9 +119,7 @@ StateView& to_view(SCM view) {
   return *pointer;
 }
 
-SCM view_world(SCM view) {
-  return scm_field(view, 1);
-}
+SCM view_world(SCM view) { return scm_field(view, 1); }
 
 SCM make_view(StateView& view, SCM world) {
   ++live_counts[static_cast<std::size_t>(LiveKind::view)];
@@ -147,9 +133,7 @@ void kill_view(SCM view) {
 
 // ---- shapes, motions ----
 
-bool is_shape(SCM object) {
-  return has_type(object, shape_type);
-}
+bool is_shape(SCM object) { return has_type(object, shape_type); }
 
 ShapePtr to_shape(SCM object, const char* name) {
   if (!is_shape(object)) throw BadValue{name, object, "a shape, as (sphere 0.1) returns"};
@@ -162,9 +146,7 @@ SCM from_shape(ShapePtr shape) {
   return scm_make_foreign_object_1(shape_type, box);
 }
 
-bool is_motion(SCM object) {
-  return has_type(object, motion_type);
-}
+bool is_motion(SCM object) { return has_type(object, motion_type); }
 
 MotionPtr to_motion(SCM object, const char* name) {
   if (!is_motion(object))
@@ -180,9 +162,7 @@ SCM from_motion(MotionPtr motion, SCM kept) {
 
 // ---- collisions ----
 
-bool is_collision(SCM object) {
-  return has_type(object, collision_type);
-}
+bool is_collision(SCM object) { return has_type(object, collision_type); }
 
 const CollisionCopy& to_collision(SCM object) {
   if (!is_collision(object))
@@ -190,9 +170,7 @@ const CollisionCopy& to_collision(SCM object) {
   return *static_cast<const CollisionCopy*>(field(object, 0));
 }
 
-SCM collision_world(SCM object) {
-  return scm_field(object, 1);
-}
+SCM collision_world(SCM object) { return scm_field(object, 1); }
 
 SCM from_collision(const Collision& collision, bool reversed, SCM world) {
   static_assert(std::is_trivially_destructible_v<CollisionCopy>);
@@ -215,9 +193,7 @@ const Checkpoint& to_checkpoint(SCM object) {
   return *static_cast<CheckpointBox*>(field(object, 0))->checkpoint;
 }
 
-SCM checkpoint_world(SCM object) {
-  return scm_field(object, 1);
-}
+SCM checkpoint_world(SCM object) { return scm_field(object, 1); }
 
 void define_types() {
   checkpoint_type = make_type("<checkpoint>", {"box", "world"}, finalize_box<CheckpointBox>);

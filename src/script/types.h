@@ -36,9 +36,7 @@ struct WorldBox : Live<LiveKind::world> {
 // ---- worlds ----
 bool is_world(SCM object);
 WorldBox& to_world_box(SCM object);
-inline World& to_world(SCM object) {
-  return to_world_box(object).world;
-}
+inline World& to_world(SCM object) { return to_world_box(object).world; }
 SCM make_world_handle();
 // The world's hash table for whatever Scheme keeps with it.
 SCM world_table(SCM world);

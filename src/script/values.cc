@@ -74,9 +74,7 @@ std::uint64_t to_seed(SCM value, const char* name) {
   return scm_to_uint64(value);
 }
 
-bool to_bool(SCM value) {
-  return scm_is_true(value);
-}
+bool to_bool(SCM value) { return scm_is_true(value); }
 
 std::string text_of(SCM value) {
   if (!scm_is_string(value)) return "";
@@ -122,8 +120,7 @@ Quat to_quat(SCM value, const char* name) {
 Mat3 to_inertia(SCM value, const char* name) {
   double x[3];
   if (read_reals(value, x, 3)) return Vec3(x[0], x[1], x[2]).asDiagonal();
-  constexpr const char* expected =
-      "three principal moments #(Ixx Iyy Izz), or three rows of three";
+  constexpr const char* expected = "three principal moments #(Ixx Iyy Izz), or three rows of three";
   Mat3 m;
   const std::vector<SCM> rows = to_elements(value, name, expected);
   if (rows.size() != 3) throw BadValue{name, value, expected};

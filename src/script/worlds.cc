@@ -17,9 +17,7 @@ WorldBox& quiet_box(SCM world, const char* what) {
   return to_world_box(world);
 }
 
-World& quiet_world(SCM world, const char* what) {
-  return quiet_box(world, what).world;
-}
+World& quiet_world(SCM world, const char* what) { return quiet_box(world, what).world; }
 
 // Adds the calls into Guile that happen while it lives to the world's statistics.
 class CallCounter {

@@ -40,9 +40,7 @@ std::string describe(const Spin& spin) {
   return out.str();
 }
 
-Quat tilted() {
-  return Quat(0.3, 0.4, -0.5, 0.7).normalized();
-}
+Quat tilted() { return Quat(0.3, 0.4, -0.5, 0.7).normalized(); }
 
 double angle_between(const Quat& a, const Quat& b) {
   const Quat d = a.conjugate() * b;
@@ -399,9 +397,7 @@ TEST(FreeRotation, attitude_and_evaluate_give_the_same_bits) {
   }
 }
 
-TEST(FreeRotation, is_small_enough_to_live_in_every_arc) {
-  EXPECT_LT(sizeof(FreeRotation), 400u);
-}
+TEST(FreeRotation, is_small_enough_to_live_in_every_arc) { EXPECT_LT(sizeof(FreeRotation), 400u); }
 
 // Moments over nine decades, equal or nearly equal pairs, components that vanish or are tiny,
 // speeds over a hundred decades: always finite, unit, and of constant momentum and energy.

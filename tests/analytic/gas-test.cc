@@ -1,7 +1,7 @@
 // Gases without a table against the dedicated event-driven program.
 //
-// Tolerance: a gas multiplies errors; after 2 s two programs that differ by rounding alone are 1e-11 m
-// apart, two that miss one impact about a metre.
+// Tolerance: a gas multiplies errors; after 2 s two programs that differ by rounding alone are
+// 1e-11 m apart, two that miss one impact about a metre.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
@@ -72,8 +72,8 @@ TEST(Gas, of_400_and_1600_agrees_with_the_event_driven_program_to_1e_9) {
     EXPECT_EQ(collisions, md.pair_collisions() + md.wall_collisions());
     double apart = 0;
     for (int i = 0; i < count; ++i)
-      apart = std::max(apart,
-                       (world.state(static_cast<BodyId>(i)).position - md.position(i)).norm());
+      apart =
+          std::max(apart, (world.state(static_cast<BodyId>(i)).position - md.position(i)).norm());
     EXPECT_LT(apart, 1e-9) << count;
   }
 }

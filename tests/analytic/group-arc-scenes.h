@@ -20,9 +20,7 @@ inline ContactConstants constants(double mass, double size, double mu,
 }
 
 // Gravity in the frame of a plane that falls towards +x.
-inline Vec3 slope_gravity(double angle) {
-  return g * Vec3(std::sin(angle), 0, -std::cos(angle));
-}
+inline Vec3 slope_gravity(double angle) { return g * Vec3(std::sin(angle), 0, -std::cos(angle)); }
 
 inline GroupStart on_the_ground(double end) {
   GroupStart start;

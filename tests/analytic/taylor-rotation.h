@@ -32,9 +32,7 @@ inline Quat4L product(const Quat4L& a, const Quat4L& b) {
           a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
 }
 
-inline Quat4L conjugate(const Quat4L& a) {
-  return {a[0], -a[1], -a[2], -a[3]};
-}
+inline Quat4L conjugate(const Quat4L& a) { return {a[0], -a[1], -a[2], -a[3]}; }
 
 struct TaylorRotation {
   Vec3L moments{};

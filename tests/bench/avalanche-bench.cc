@@ -27,25 +27,25 @@ namespace tw::bench {
 namespace {
 
 // what a run must keep to
-constexpr double most_depth = 2e-3;        // m
-constexpr double most_rise = 1e-6;         // of the energy at the start
-constexpr double most_integration = 0.2;   // beyond the duration
-constexpr double most_rollback = 0.16;     // of the duration
+constexpr double most_depth = 2e-3;       // m
+constexpr double most_rise = 1e-6;        // of the energy at the start
+constexpr double most_integration = 0.2;  // beyond the duration
+constexpr double most_rollback = 0.16;    // of the duration
 
-constexpr double scene_accuracy = 1e-4;    // that of scenes/avalanche.scm
+constexpr double scene_accuracy = 1e-4;  // that of scenes/avalanche.scm
 
 struct Outcome {
-  std::string error;          // empty: none
-  double reached = 0;         // s
-  double worst_frame = 0;     // s of CPU
-  double measuring = 0;       // s of CPU, outside the kernel
-  double depth = 0;           // m
-  double depth_time = 0;      // s
-  std::string deepest;        // who
-  double rise = 0;            // over the energy at the start
-  double rise_time = 0;       // s
-  double moved = 0;           // s: the last frame at which somebody moved
-  int moving = 0, lost = 0;   // at the end
+  std::string error;         // empty: none
+  double reached = 0;        // s
+  double worst_frame = 0;    // s of CPU
+  double measuring = 0;      // s of CPU, outside the kernel
+  double depth = 0;          // m
+  double depth_time = 0;     // s
+  std::string deepest;       // who
+  double rise = 0;           // over the energy at the start
+  double rise_time = 0;      // s
+  double moved = 0;          // s: the last frame at which somebody moved
+  int moving = 0, lost = 0;  // at the end
 };
 
 class AvalancheRun {
@@ -95,8 +95,7 @@ AvalancheRun::AvalancheRun(const OtherScene& scene, double accuracy)
 void AvalancheRun::advance(double when) {
   const double before = statistic(world_, "cpu_seconds");
   world_.advance(when);
-  outcome_.worst_frame =
-      std::max(outcome_.worst_frame, statistic(world_, "cpu_seconds") - before);
+  outcome_.worst_frame = std::max(outcome_.worst_frame, statistic(world_, "cpu_seconds") - before);
 }
 
 void AvalancheRun::look() {
@@ -187,18 +186,20 @@ bool run_row(const std::string& file, double until, double accuracy) {
   const std::string rest =
       o.moving > 0 ? std::to_string(o.moving) + " move" : number("%.1f s", o.moved);
   const std::string judged = verdict(o, beyond, rollback);
-  std::printf("| %s | %.1f | %.1f | %.0f | %.0f | %.0f | %.0f | %+.1f | %.4f | %.0f | %.3f | %d | "
-              "%.1e | %s | %.1f | %s |\n",
-              seed_of(file).c_str(), cpu, 1e3 * cpu / (duration * frames_per_second),
-              1e3 * o.worst_frame, value("collisions"), value("fusions"), value("fissions"),
-              100 * beyond, 100 * rollback, step, 1e3 * o.depth, o.lost, o.rise, rest.c_str(),
-              o.measuring, judged.c_str());
+  std::printf(
+      "| %s | %.1f | %.1f | %.0f | %.0f | %.0f | %.0f | %+.1f | %.4f | %.0f | %.3f | %d | "
+      "%.1e | %s | %.1f | %s |\n",
+      seed_of(file).c_str(), cpu, 1e3 * cpu / (duration * frames_per_second), 1e3 * o.worst_frame,
+      value("collisions"), value("fusions"), value("fissions"), 100 * beyond, 100 * rollback, step,
+      1e3 * o.depth, o.lost, o.rise, rest.c_str(), o.measuring, judged.c_str());
   std::fflush(stdout);
   return judged == "ok";
 }
 
 [[noreturn]] void usage(const char* program) {
-  std::fprintf(stderr, "usage: %s FILE... [--until=SECONDS] [--accuracy=EPS]     FILE is written by dump-bodies.scm\n",
+  std::fprintf(stderr,
+               "usage: %s FILE... [--until=SECONDS] [--accuracy=EPS]     FILE is written by "
+               "dump-bodies.scm\n",
                program);
   std::exit(2);
 }
@@ -213,19 +214,24 @@ int main(int argc, char** argv) {
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument.rfind("--until=", 0) == 0) until = std::atof(argument.c_str() + 8);
-    else if (argument.rfind("--accuracy=", 0) == 0) accuracy = std::atof(argument.c_str() + 11);
-    else if (argument[0] == '-') usage(argv[0]);
-    else files.push_back(argument);
+    if (argument.rfind("--until=", 0) == 0)
+      until = std::atof(argument.c_str() + 8);
+    else if (argument.rfind("--accuracy=", 0) == 0)
+      accuracy = std::atof(argument.c_str() + 11);
+    else if (argument[0] == '-')
+      usage(argv[0]);
+    else
+      files.push_back(argument);
   }
   if (files.empty() || !(until > 0) || !(accuracy > 0)) usage(argv[0]);
 
   std::printf("%g s; depths at every frame\n\n", until);
-  std::puts("| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
-            " integration, % | rollback, % | step | depth, mm | lost | rise | at rest |"
-            " measuring, s | verdict |\n"
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-            " --- | --- |");
+  std::puts(
+      "| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
+      " integration, % | rollback, % | step | depth, mm | lost | rise | at rest |"
+      " measuring, s | verdict |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+      " --- | --- |");
   std::fflush(stdout);
   bool good = true;
   try {

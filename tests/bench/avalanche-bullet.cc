@@ -1,7 +1,7 @@
 // The avalanche in Bullet: sequential impulses, all bodies as convex hulls.
 //
-// Bullet's hulls get a margin around them; it is set to 1 mm (default 4 cm), so that rocks have their
-// own size.
+// Bullet's hulls get a margin around them; it is set to 1 mm (default 4 cm), so that rocks have
+// their own size.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <btBulletDynamicsCommon.h>
 
@@ -28,7 +28,8 @@ btQuaternion to_bullet(const Quat& q) {
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 Quat from_bullet(const btQuaternion& q) { return Quat(q.w(), q.x(), q.y(), q.z()); }
 
-// Bullet's inertia is diagonal: the body frame is turned to the principal axes, whose frame is q_BP.
+// Bullet's inertia is diagonal: the body frame is turned to the principal axes, whose frame is
+// q_BP.
 struct Principal {
   btVector3 moments;
   Quat q_BP;
@@ -118,8 +119,8 @@ OtherState BulletEngine::state(std::size_t index) const {
   const btRigidBody& body = *bodies_[index];
   OtherState state;
   state.pose.p = from_bullet(body.getWorldTransform().getOrigin());
-  state.pose.q = (from_bullet(body.getWorldTransform().getRotation()) * q_BP_[index].conjugate())
-                     .normalized();
+  state.pose.q =
+      (from_bullet(body.getWorldTransform().getRotation()) * q_BP_[index].conjugate()).normalized();
   state.velocity = from_bullet(body.getLinearVelocity());
   state.angular_velocity = from_bullet(body.getAngularVelocity());
   return state;

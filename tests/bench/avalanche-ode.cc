@@ -1,7 +1,7 @@
 // The avalanche in ODE: quick step, all bodies as convex hulls.
 //
-// Also tried: the ground as one triangle mesh (13 ms a frame instead of 16, but rocks sink in by 0.5 m
-// and one was lost), and the rocks as meshes, too (85 ms, 0.4 m).
+// Also tried: the ground as one triangle mesh (13 ms a frame instead of 16, but rocks sink in by
+// 0.5 m and one was lost), and the rocks as meshes, too (85 ms, 0.4 m).
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <ode/ode.h>
 
@@ -98,7 +98,8 @@ dBodyID OdeEngine::add_rock(const OtherBody& rock, dGeomID geom) {
   dGeomSetBody(geom, body);
   const Mat3& i = rock.inertia;
   dMass mass;
-  dMassSetParameters(&mass, rock.mass, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2));
+  dMassSetParameters(&mass, rock.mass, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2),
+                     i(1, 2));
   dBodySetMass(body, &mass);
   const dQuaternion q = {rock.pose.q.w(), rock.pose.q.x(), rock.pose.q.y(), rock.pose.q.z()};
   dBodySetQuaternion(body, q);

@@ -1,7 +1,7 @@
 // Timing and statistics for the benchmark programs that print Markdown tables.
 //
-// CPU time of this thread, never wall time: the machine is shared.  The best of several runs is what
-// counts: everything that disturbs a run makes it slower.
+// CPU time of this thread, never wall time: the machine is shared.  The best of several runs is
+// what counts: everything that disturbs a run makes it slower.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -78,8 +78,9 @@ void print_case_cold(const std::string& name, const std::string& unit, const Err
 
 int main() {
   using namespace tw::bench;
-  std::puts("| case | collisions | first run, ms | start, ms | loop, ms | error |\n"
-            "| --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| case | collisions | first run, ms | start, ms | loop, ms | error |\n"
+      "| --- | --- | --- | --- | --- | --- |");
   print_case_cold("brick", "rad", attitude_error);
   print_case_cold("bounce", "m", height_error);
   print_case_cold("billiard", "m", worst_position);

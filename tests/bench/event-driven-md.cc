@@ -49,7 +49,8 @@ Gas make_gas(int count) {
 EventDrivenMd::EventDrivenMd(const Gas& gas) : side_(gas.side), radius_(gas.radius) {
   const std::size_t count = gas.position.size();
   const double spacing = side_ / std::cbrt(static_cast<double>(count));
-  cells_ = std::max(1, static_cast<int>(side_ / std::max(2.0 * radius_, cell_per_spacing * spacing)));
+  cells_ =
+      std::max(1, static_cast<int>(side_ / std::max(2.0 * radius_, cell_per_spacing * spacing)));
   edge_ = side_ / cells_;
   lists_.assign(static_cast<std::size_t>(cells_ * cells_ * cells_), nobody);
 
@@ -179,7 +180,8 @@ void EventDrivenMd::look_in_cell(std::int32_t i, int x, int y, int z, double now
     const double gap = r.squaredNorm() - 4 * radius_ * radius_;
     const double discriminant = half * half - u.squaredNorm() * gap;
     if (discriminant <= 0) continue;
-    const double when = std::max(now, start + std::max(0.0, gap) / (std::sqrt(discriminant) - half));
+    const double when =
+        std::max(now, start + std::max(0.0, gap) / (std::sqrt(discriminant) - half));
     if (when < a.impact && when < b.impact) meet(i, j, when);
   }
 }

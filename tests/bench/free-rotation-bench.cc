@@ -23,9 +23,7 @@ const Case cases[] = {
 };
 
 // An attitude that is aligned with no axis.
-Quat start() {
-  return Quat(0.3, 0.4, -0.5, 0.7).normalized();
-}
+Quat start() { return Quat(0.3, 0.4, -0.5, 0.7).normalized(); }
 
 void evaluate(benchmark::State& state, const Case& c) {
   const Quat q0 = start();

@@ -1,5 +1,6 @@
-// What an elastic gas costs, beside the dedicated event-driven program, in the same run; and whether
-// memory stays bounded over 1e6 collisions.  Prints the Markdown tables of doc/performance.md.
+// What an elastic gas costs, beside the dedicated event-driven program, in the same run; and
+// whether memory stays bounded over 1e6 collisions.  Prints the Markdown tables of
+// doc/performance.md.
 //
 //   gas-bench            both tables
 //   gas-bench N RUNS     one row: for profilers
@@ -46,7 +47,7 @@ void fill(World& world, const Gas& gas) {
 struct Row {
   double md = never, loop = never, start = never;  // s, best of the runs
   long collisions = 0;
-  double apart = 0;                                // m, the worst sphere's distance
+  double apart = 0;  // m, the worst sphere's distance
 };
 
 // Both programs by turns, so that whatever else the machine does meets both.
@@ -77,7 +78,9 @@ Row measure(int count, int runs) {
   return row;
 }
 
-double per_collision(const Row& row) { return 1e6 * row.loop / static_cast<double>(row.collisions); }
+double per_collision(const Row& row) {
+  return 1e6 * row.loop / static_cast<double>(row.collisions);
+}
 
 Row print_row(int count, int runs) {
   const Row row = measure(count, runs);
@@ -89,27 +92,30 @@ Row print_row(int count, int runs) {
 }
 
 void print_growth() {
-  std::puts("| N | collisions | event-driven, ms | timewarp, ms | ratio | us per collision "
-            "| start, ms | apart, m |\n| --- | --- | --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| N | collisions | event-driven, ms | timewarp, ms | ratio | us per collision "
+      "| start, ms | apart, m |\n| --- | --- | --- | --- | --- | --- | --- | --- |");
   Row first, last;
   for (const int count : {200, 400, 800, 1600, 3200}) {
     last = print_row(count, std::max(10, 16000 / count));
     if (count == 200) first = last;
   }
-  std::printf("\nFrom N = 200 to 3200 the cost per collision grows by %.2f, per sphere and second by "
-              "%.2f (event-driven: %.2f and %.2f).\n\n",
-              per_collision(last) / per_collision(first), last.loop / first.loop / 16,
-              last.md / first.md * static_cast<double>(first.collisions) /
-                  static_cast<double>(last.collisions),
-              last.md / first.md / 16);
+  std::printf(
+      "\nFrom N = 200 to 3200 the cost per collision grows by %.2f, per sphere and second by "
+      "%.2f (event-driven: %.2f and %.2f).\n\n",
+      per_collision(last) / per_collision(first), last.loop / first.loop / 16,
+      last.md / first.md * static_cast<double>(first.collisions) /
+          static_cast<double>(last.collisions),
+      last.md / first.md / 16);
 }
 
 // gas-200 until 1e6 collisions are committed, looked at every 1e5.
 void print_memory() {
   World world;
   fill(world, make_gas(200));
-  std::puts("| collisions | simulated, s | CPU, s | peak states | peak resident, MB "
-            "| energy drift |\n| --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| collisions | simulated, s | CPU, s | peak states | peak resident, MB "
+      "| energy drift |\n| --- | --- | --- | --- | --- | --- |");
   double next = 1e5;
   for (double until = 25; next <= 1e6; until += 25) {
     world.advance(until);

@@ -5,7 +5,8 @@
 //
 // - moving: CPU over 0.5 to 2 s of the run, in which the rocks fall on the heap and settle
 // - events, discontinuities: in that time, for each body
-// - at rest: when nothing moved any more (looked at every 0.25 s), or how many still move after 20 s
+// - at rest: when nothing moved any more (looked at every 0.25 s), or how many still move after 20
+// s
 // - resting: CPU over the 10 s after that
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -20,8 +21,8 @@
 namespace tw::bench {
 namespace {
 
-constexpr int smallest = 100;             // rocks
-constexpr double cell = 0.575;            // of the pit's floor, for each rock of a layer, m
+constexpr int smallest = 100;   // rocks
+constexpr double cell = 0.575;  // of the pit's floor, for each rock of a layer, m
 constexpr double moving_from = 0.5, moving_until = 2, patience = 20, resting = 10;  // s
 
 // A pit of `across` times `along` cells with walls of fixed boxes.
@@ -93,8 +94,7 @@ double run_row(int doublings, double first) {
   double when = moving_until;
   while (moving_bodies(world) > 0 && when < patience) world.advance(when += 0.25);
   const int moving = moving_bodies(world);
-  const std::string rest =
-      moving > 0 ? std::to_string(moving) + " move" : show(when) + " s";
+  const std::string rest = moving > 0 ? std::to_string(moving) + " move" : show(when) + " s";
   const double rest_before = Costs(world).cpu;
   world.advance(when + resting);
   const double rest_each = (Costs(world).cpu - rest_before) / count / resting;
@@ -102,8 +102,7 @@ double run_row(int doublings, double first) {
   std::printf("| %d | %.0f | %.0f | %.0f | %.1f | %.2f | %.2f | %s | %.3g |\n", count,
               statistic(world, "largest_group_bodies"), (after.events - before.events) / count,
               (after.discontinuities - before.discontinuities) / count, after.cpu, 1e3 * each,
-              first > 0 ? each / first : 1.0,
-              rest.c_str(), 1e6 * rest_each);
+              first > 0 ? each / first : 1.0, rest.c_str(), 1e6 * rest_each);
   std::fflush(stdout);
   return each;
 }
@@ -117,9 +116,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s [DOUBLINGS]     of 100 rocks, 0 to 10\n", argv[0]);
     return 2;
   }
-  std::puts("| N | largest group | events a body | discontinuities a body | CPU until 2 s, s |"
-            " moving, ms per body and s | over N = 100 | at rest | resting, us per body and s |\n"
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| N | largest group | events a body | discontinuities a body | CPU until 2 s, s |"
+      " moving, ms per body and s | over N = 100 | at rest | resting, us per body and s |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
   double first = 0;
   for (int doublings = 0; doublings <= most; ++doublings) {
     const double each = tw::bench::run_row(doublings, first);

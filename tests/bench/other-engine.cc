@@ -42,13 +42,20 @@ bool read_option(const std::string& text, OtherOptions& options) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-  if (name == "--until") options.until = std::atof(value.c_str());
-  else if (name == "--rate") options.rate = std::atol(value.c_str());
-  else if (name == "--iterations") options.iterations = std::atoi(value.c_str());
-  else if (name == "--poses") options.poses = value;
-  else if (text == "--sleep") options.sleep = true;
-  else if (text[0] != '-' && options.file.empty()) options.file = text;
-  else return false;
+  if (name == "--until")
+    options.until = std::atof(value.c_str());
+  else if (name == "--rate")
+    options.rate = std::atol(value.c_str());
+  else if (name == "--iterations")
+    options.iterations = std::atoi(value.c_str());
+  else if (name == "--poses")
+    options.poses = value;
+  else if (text == "--sleep")
+    options.sleep = true;
+  else if (text[0] != '-' && options.file.empty())
+    options.file = text;
+  else
+    return false;
   return true;
 }
 
@@ -74,8 +81,9 @@ void run_other_engine(OtherEngine& engine, const OtherScene& scene, const OtherO
     poses << "time,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
     write_poses(poses, 0, scene, states);
   }
-  std::puts("| s | CPU ms per frame | slowest frame, ms | depth so far, mm | lost | energy, MJ |\n"
-            "| --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| s | CPU ms per frame | slowest frame, ms | depth so far, mm | lost | energy, MJ |\n"
+      "| --- | --- | --- | --- | --- | --- |");
   std::printf("| 0 | | | %.2f | %d | %.4f |\n", 1e3 * meter.depth(), meter.lost(),
               1e-6 * meter.energy());
 

@@ -1,4 +1,5 @@
-// Runs the avalanche in another engine: reads the bodies that dump-bodies.scm wrote, steps, measures.
+// Runs the avalanche in another engine: reads the bodies that dump-bodies.scm wrote, steps,
+// measures.
 //
 // Depths are measured at the frames and are not part of an engine's CPU time.
 //
@@ -23,11 +24,11 @@ class OtherEngine {
 // What the command line says.
 struct OtherOptions {
   std::string file;
-  double until = 45;              // s
-  long rate = 240;                // steps per second, a multiple of 30
-  bool sleep = false;             // the engine may put bodies to sleep
-  int iterations = 0;             // of the solver; 0: the engine's default
-  std::string poses;              // a CSV file like that of `timewarp --poses`, or none
+  double until = 45;   // s
+  long rate = 240;     // steps per second, a multiple of 30
+  bool sleep = false;  // the engine may put bodies to sleep
+  int iterations = 0;  // of the solver; 0: the engine's default
+  std::string poses;   // a CSV file like that of `timewarp --poses`, or none
 };
 
 // Prints how to use the program and exits with 2 where the command line makes no sense.

@@ -72,7 +72,8 @@ SceneMeter::SceneMeter(const OtherScene& scene) : scene_(scene), frames_(scene.b
 
 void SceneMeter::place(std::size_t index, const Pose& pose) {
   frames_[index] = Frame(pose);
-  hash_.place(static_cast<std::uint32_t>(index), scene_.bodies[index].shape->bounds(frames_[index]));
+  hash_.place(static_cast<std::uint32_t>(index),
+              scene_.bodies[index].shape->bounds(frames_[index]));
 }
 
 void SceneMeter::measure(std::size_t index, const OtherState& state) {

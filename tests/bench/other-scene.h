@@ -1,7 +1,7 @@
 // A scene as dump-bodies.scm writes it, and what may be measured on its bodies whatever moves them.
 //
-// The measure of depth is ours (collision/separation.h), the same for all engines: the deepest overlap
-// of any two bodies of which one moves.
+// The measure of depth is ours (collision/separation.h), the same for all engines: the deepest
+// overlap of any two bodies of which one moves.
 //
 // Frames and units: world frame, SI.
 //
@@ -22,11 +22,11 @@ inline constexpr long frames_per_second = 30;
 
 struct OtherBody {
   bool fixed = false;
-  double mass = 0;                // kg; 0 for fixed ones
-  Mat3 inertia = Mat3::Zero();    // about the centre of mass, body axes
+  double mass = 0;              // kg; 0 for fixed ones
+  Mat3 inertia = Mat3::Zero();  // about the centre of mass, body axes
   Pose pose;
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
-  ShapePtr shape;                 // one hull; the frame's origin is the centre of mass
+  ShapePtr shape;  // one hull; the frame's origin is the centre of mass
   const Polyhedron& hull() const { return *shape->parts()[0].core; }
 };
 
@@ -50,7 +50,7 @@ class SceneMeter {
   explicit SceneMeter(const OtherScene& scene);
   // Looks at these states, one a body; those of fixed bodies are not looked at.
   void look(const std::vector<OtherState>& states);
-  double depth() const { return depth_; }    // deepest overlap, m
+  double depth() const { return depth_; }  // deepest overlap, m
   // Of whom, a moving body first; 0, 0 where nothing overlaps.
   std::pair<std::size_t, std::size_t> deepest() const { return deepest_; }
   double energy() const { return energy_; }  // kinetic and potential, J

@@ -64,12 +64,11 @@ void warm(benchmark::State& state, const ShapePtr& a, const ShapePtr& b) {
   SimplexCache cache;
   std::size_t i = 0;
   for (auto _ : state)
-    benchmark::DoNotOptimize(part_separation(a->parts()[0], origin, b->parts()[0],
-                                             frames[i++ % frames.size()], &cache));
+    benchmark::DoNotOptimize(
+        part_separation(a->parts()[0], origin, b->parts()[0], frames[i++ % frames.size()], &cache));
 }
 
-void manifold(benchmark::State& state, const ShapePtr& a, const ShapePtr& b,
-              Situation situation) {
+void manifold(benchmark::State& state, const ShapePtr& a, const ShapePtr& b, Situation situation) {
   const std::vector<Frame> frames = tumble(*a, *b, gap_of(situation));
   const Frame origin;
   std::vector<ContactPoint> points;

@@ -1,11 +1,13 @@
-// The rigid-body tests of SimBenchmark (github.com/leggedrobotics/SimBenchmark), their metrics, and the
-// figures that its authors measured at dt = 1 ms, erp = 0, on an i7-7700HQ.  Prints a Markdown table.
+// The rigid-body tests of SimBenchmark (github.com/leggedrobotics/SimBenchmark), their metrics, and
+// the figures that its authors measured at dt = 1 ms, erp = 0, on an i7-7700HQ.  Prints a Markdown
+// table.
 //
-// - rolling: a box of 10 kg, 20 x 20 x 1 m, with 5 x 5 balls of 1 kg on it, is pushed by 150 N; mean
-//   squared velocity error of box and first ball against the closed form, m^2/s^2.  (Ours is all made
-//   in the first 50 ms, while the contacts are loaded: 13 mm/s that stay.)
+// - rolling: a box of 10 kg, 20 x 20 x 1 m, with 5 x 5 balls of 1 kg on it, is pushed by 150 N;
+//   mean squared velocity error of box and first ball against the closed form, m^2/s^2.  (Ours is
+//   all made in the first 50 ms, while the contacts are loaded: 13 mm/s that stay.)
 // - bouncing: 49 elastic balls of 10 kg dropped from 5 m; mean squared error of the energy, J^2.
-// - 666: 6 x 6 x 6 balls of 10 kg with e = 0, nearly touching; mean of the sum of squared depths, m^2.
+// - 666: 6 x 6 x 6 balls of 10 kg with e = 0, nearly touching; mean of the sum of squared
+//   depths, m^2.
 // - elastic 666: the same from 1.1 m with e = 1; mean squared error of the energy, J^2.
 //
 // The means are over time, at 1 kHz.  Arguments name the tests to run; none: all.
@@ -53,7 +55,7 @@ struct Test {
   std::string name, published;
   double duration = 0;  // s
   std::function<Metric(World&)> fill;
-  double scale = 0;     // the energy that sqrt(metric) is divided by; 0: the metric as it is
+  double scale = 0;  // the energy that sqrt(metric) is divided by; 0: the metric as it is
 };
 
 void set_contact(World& world, const ContactSide& a, const ContactSide& b, double restitution,
@@ -68,8 +70,10 @@ BodyId add(World& world, const ShapePtr& shape, double mass, const Vec3& positio
   BodyDef def;
   def.shape = shape;
   def.position = position;
-  if (mass > 0) def.mass = mass;
-  else def.fixed = true;
+  if (mass > 0)
+    def.mass = mass;
+  else
+    def.fixed = true;
   return world.add_body(def);
 }
 
@@ -154,8 +158,7 @@ Metric fill_rolling(World& world, const Vec3& direction) {
   world.advance(0);
   world.edit(box, [&](StateView& view) { view.set_applied_force(force * direction); });
   constexpr double balls = side * side * ball_mass;
-  constexpr double a =
-      (force - mu * (box_mass + balls) * gravity) / (box_mass + 2.0 / 7 * balls);
+  constexpr double a = (force - mu * (box_mass + balls) * gravity) / (box_mass + 2.0 / 7 * balls);
   return [direction](double time, Poses poses) {
     const Vec3 expected = a * time * direction;
     return (poses[0].state.velocity - expected).squaredNorm() +
@@ -165,18 +168,20 @@ Metric fill_rolling(World& world, const Vec3& direction) {
 
 const std::vector<Test>& tests() {
   static const std::vector<Test> all = {
-      {"rolling", "see the next", 4,
-       [](World& w) { return fill_rolling(w, Vec3::UnitY()); }, 0},
+      {"rolling", "see the next", 4, [](World& w) { return fill_rolling(w, Vec3::UnitY()); }, 0},
       {"rolling-diagonal", "Bullet 3.9e-27, RaiSim 4.1e-7, MuJoCo 2e-3 to 7e-3, ODE and DART 3.14",
        4,
-       [](World& w) { return fill_rolling(w, {0.5, std::sqrt(0.75), 0}); }, 0},
+       [](World& w) {
+         return fill_rolling(w, {0.5, std::sqrt(0.75), 0});
+       },
+       0},
       {"bouncing", "RaiSim 5.7e-6 in 0.24 s, ODE 5.7e-4 in 1.9 s, Bullet 1.1e-2 in 0.85 s", 20,
        fill_bouncing, 49 * mass * gravity * 5},
       {"elastic-666", "RaiSim 8.4e-5 in 0.66 s, ODE 3.1e-4 in 5.6 s, Bullet 5.9e-3 in 2.3 s", 10,
        [](World& w) { return fill_666(w, 1, 1.101), energy_error(); },
        216 * mass * gravity * (1.101 + 2.5 * 0.21)},
-      {"666", "RaiSim 1.35e-4 in 1.5 s, ODE 1.5e-4 in 10 s, DART 2.8e-4, MuJoCo 0.095, Bullet 0.38", 10,
-       [](World& w) { return fill_666(w, 0, 0.101), Metric(squared_depths); }, 0},
+      {"666", "RaiSim 1.35e-4 in 1.5 s, ODE 1.5e-4 in 10 s, DART 2.8e-4, MuJoCo 0.095, Bullet 0.38",
+       10, [](World& w) { return fill_666(w, 0, 0.101), Metric(squared_depths); }, 0},
   };
   return all;
 }
@@ -200,8 +205,9 @@ void run_test(const Test& test) {
 int main(int argc, char** argv) {
   using namespace tw::bench;
   const std::set<std::string> wanted(argv + 1, argv + argc);
-  std::puts("| test | CPU, s | metric | collisions | groups | published |\n"
-            "| --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| test | CPU, s | metric | collisions | groups | published |\n"
+      "| --- | --- | --- | --- | --- | --- |");
   for (const Test& test : tests())
     if (wanted.empty() || wanted.count(test.name)) run_test(test);
   return 0;

@@ -1,13 +1,14 @@
 // Scenes that break rigid-body simulators, run to their ends: prints the table of doc/stability.md.
 //
-// Arguments: names of rows (or their beginnings); none: all.  --heaps N: as many random heaps of mixed
-// shapes and half as many of angular ones, default 20.
-// A row is given 120 s of CPU.
+// Arguments: names of rows (or their beginnings); none: all.  --heaps N: as many random heaps of
+// mixed shapes and half as many of angular ones, default 20. A row is given 120 s of CPU.
 //
 // - at rest: when the last body stopped, or which one is fastest at the end
-// - depth: deepest overlap of two bodies at the end, from separation queries; as a share of the smaller
+// - depth: deepest overlap of two bodies at the end, from separation queries; as a share of the
+// smaller
 //   one's least width
-// - rise: the largest rise of the total energy above a level it had fallen to, over the energy at the
+// - rise: the largest rise of the total energy above a level it had fallen to, over the energy at
+// the
 //   start above the floor
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -78,8 +79,8 @@ std::string verdict(const StabilityScene& scene, const StabilityOutcome& o) {
 void run_row(const StabilityScene& scene) {
   test::StabilityRun run(scene, budget);
   const StabilityOutcome o = run.run();
-  const std::string rest = o.at_rest() ? number("%.2f", o.rest_time)
-                                       : o.fastest_body + number(" %.2g m/s", o.fastest);
+  const std::string rest =
+      o.at_rest() ? number("%.2f", o.rest_time) : o.fastest_body + number(" %.2g m/s", o.fastest);
   std::printf("| %s | %s | %g | %.2g | %.2g | %s | %.2g (%.2g %%) | %.1e | %.3g | %lld | %s |\n",
               scene.name.c_str(), scene.what.c_str(), scene.duration, o.cpu, o.worst_second,
               rest.c_str(), 1e3 * o.deepest, 100 * o.deepest_share, o.rise_share(), o.travel,
@@ -102,12 +103,15 @@ int main(int argc, char** argv) {
   std::vector<std::string> wanted;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument == "--heaps" && i + 1 < argc) heaps = std::atoi(argv[++i]);
-    else wanted.push_back(argument);
+    if (argument == "--heaps" && i + 1 < argc)
+      heaps = std::atoi(argv[++i]);
+    else
+      wanted.push_back(argument);
   }
-  std::puts("| row | scene | simulated, s | CPU, s | worst CPU per s | at rest, s | depth, mm |"
-            " rise | travel, m | collisions | verdict |\n"
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  std::puts(
+      "| row | scene | simulated, s | CPU, s | worst CPU per s | at rest, s | depth, mm |"
+      " rise | travel, m | collisions | verdict |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
   for (const auto& scene : rows(heaps))
     if (is_wanted(scene.name, wanted)) run_row(scene);
   return 0;

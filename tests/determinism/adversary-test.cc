@@ -19,13 +19,9 @@ void expect_same_under_adversaries(const Scene& scene, std::int64_t least_collis
   EXPECT_GT(tally.rollbacks, seeds) << scene.name << ": the adversaries did nothing";
 }
 
-TEST(Adversary, gas_of_100) {
-  expect_same_under_adversaries(gas_scene(100), 100);
-}
+TEST(Adversary, gas_of_100) { expect_same_under_adversaries(gas_scene(100), 100); }
 
-TEST(Adversary, gas_of_200) {
-  expect_same_under_adversaries(gas_scene(200), 300);
-}
+TEST(Adversary, gas_of_200) { expect_same_under_adversaries(gas_scene(200), 300); }
 
 TEST(Adversary, lattice_that_hits_at_the_same_instants) {
   expect_same_under_adversaries(lattice_scene(4, 1, long_tests() ? 20 : 5), 200);
@@ -47,9 +43,7 @@ TEST(Adversary, cradle_hit_from_both_sides_at_once) {
   expect_same_under_adversaries(cradle_scene(40), 50);
 }
 
-TEST(Adversary, floor_of_36_bouncing_balls) {
-  expect_same_under_adversaries(floor_scene(1.5), 50);
-}
+TEST(Adversary, floor_of_36_bouncing_balls) { expect_same_under_adversaries(floor_scene(1.5), 50); }
 
 TEST(Adversary, cubes_that_meet_face_on_at_the_same_instants) {
   const int most = long_tests() ? seeds : 8;  // cubes that slide past each other cost many checks

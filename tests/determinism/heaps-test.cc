@@ -57,13 +57,9 @@ TEST(Heaps, tower_hit_by_a_ball_under_adversaries) {
   expect_same_under_adversaries(scenes()[1], 100);
 }
 
-TEST(Heaps, platform_under_adversaries) {
-  expect_same_under_adversaries(scenes()[2], 100);
-}
+TEST(Heaps, platform_under_adversaries) { expect_same_under_adversaries(scenes()[2], 100); }
 
-TEST(Heaps, tiles_under_adversaries) {
-  expect_same_under_adversaries(scenes()[3], 100);
-}
+TEST(Heaps, tiles_under_adversaries) { expect_same_under_adversaries(scenes()[3], 100); }
 
 // GVT intervals, windows, pieces, frames, observers, with and without an adversary.
 TEST(Heaps, settings_of_the_run_have_no_influence) {

@@ -1,5 +1,5 @@
-// The books: work of kinematic bodies through contacts, and the deepest penetration, beside what is measured
-// without asking the contacts.
+// The books: work of kinematic bodies through contacts, and the deepest penetration, beside what is
+// measured without asking the contacts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -16,15 +16,16 @@ BodyId add_platform(World& world, std::vector<Keyframe> frames, bool smooth) {
   return world.add_body(platform);
 }
 
-// Energy at the end less that at the start and the work of kinematic bodies: minus what was lost on the way.
+// Energy at the end less that at the start and the work of kinematic bodies: minus what was lost on
+// the way.
 double gain_beyond_work(const World& world) {
   const auto table = world.statistics();
   return number_of(table, "energy_end") - number_of(table, "energy_start") -
          number_of(table, "kinematic_work");
 }
 
-// A box of 64 kg is carried up by 1 m and 0.5 m aside: m g h, and nothing beside but what the contacts' springs took
-// while the weight came on.
+// A box of 64 kg is carried up by 1 m and 0.5 m aside: m g h, and nothing beside but what the
+// contacts' springs took while the weight came on.
 TEST(KinematicWork, of_a_lift_is_the_weight_times_the_way) {
   World world;
   set_contact_for_all(world, 0, 0.6);
@@ -39,8 +40,8 @@ TEST(KinematicWork, of_a_lift_is_the_weight_times_the_way) {
   EXPECT_GE(gain_beyond_work(world), -2e-4 * mg);
 }
 
-// A box put on a belt that runs at v is brought to v: half of the work is its kinetic energy, the other half is lost
-// in sliding.
+// A box put on a belt that runs at v is brought to v: half of the work is its kinetic energy, the
+// other half is lost in sliding.
 TEST(KinematicWork, of_a_belt_is_twice_the_energy_it_gives) {
   World world;
   set_contact_for_all(world, 0, 0.5);

@@ -123,7 +123,8 @@ TEST(Contacts, in_a_heap_every_body_obeys_newton_so_no_contact_is_missing_or_the
       // impacts in between
       if ((two - one).norm() > 0.05 * mass * g) continue;
       ++looked_at;
-      EXPECT_NEAR((0.5 * (one + two) - mass * g * Vec3::UnitZ() - change).norm(), 0, 0.1 * mass * g);
+      EXPECT_NEAR((0.5 * (one + two) - mass * g * Vec3::UnitZ() - change).norm(), 0,
+                  0.1 * mass * g);
     }
   }
   EXPECT_GT(looked_at, 60);

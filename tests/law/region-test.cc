@@ -29,8 +29,8 @@ std::vector<BodyId> row_with_blow(World& world, int count, double speed) {
   return row;
 }
 
-// The blow runs down the row, from region to region: none of its momentum gets lost at their borders
-// beyond what steps may be wrong by, and no energy comes from there.
+// The blow runs down the row, from region to region: none of its momentum gets lost at their
+// borders beyond what steps may be wrong by, and no energy comes from there.
 TEST(Region, a_blow_runs_down_a_row_with_its_momentum) {
   for (const double speed : {0.3, 1.0, 3.0}) {
     World world;
@@ -40,7 +40,8 @@ TEST(Region, a_blow_runs_down_a_row_with_its_momentum) {
     double least = at_rest + 0.5 * speed * speed;
     for (int i = 1; i <= 100; ++i) {
       world.advance(0.01 * i);
-      EXPECT_NEAR(world.total_momentum().x(), speed, 5e-3 * speed) << speed << " m/s, " << 0.01 * i << " s";
+      EXPECT_NEAR(world.total_momentum().x(), speed, 5e-3 * speed)
+          << speed << " m/s, " << 0.01 * i << " s";
       const double energy = world.total_energy();
       EXPECT_LT(energy, least + 1e-3 * speed * speed) << 0.01 * i << " s";
       least = std::min(least, energy);
@@ -51,8 +52,8 @@ TEST(Region, a_blow_runs_down_a_row_with_its_momentum) {
   }
 }
 
-// Measured: 2.4e-4, 8e-5, 2.1e-4 and 1.5e-4.  With borders that may miss all of a step's tolerance, and tolerances
-// that do not shrink with the speed, 1e-4 ended with 2.8 times the momentum.
+// Measured: 2.4e-4, 8e-5, 2.1e-4 and 1.5e-4.  With borders that may miss all of a step's tolerance,
+// and tolerances that do not shrink with the speed, 1e-4 ended with 2.8 times the momentum.
 TEST(Region, the_momentum_of_a_row_is_kept_at_any_accuracy) {
   for (const double accuracy : {1e-6, 1e-5, 5e-5, 1e-4}) {
     World world;

@@ -1,7 +1,7 @@
 // Slide, creep and stack against their closed forms.
 //
-// Tolerances are those of the contact's own spring: a body that begins to slide does so with its weight
-// not yet carried, which costs mu times the depth at rest.
+// Tolerances are those of the contact's own spring: a body that begins to slide does so with its
+// weight not yet carried, which costs mu times the depth at rest.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
@@ -65,7 +65,8 @@ TEST(RestingCases, stack_of_ten_stands_still) {
   }
 }
 
-// What starts the group anew keeps the friction's stretch: a box held by it must not slip a little each time.
+// What starts the group anew keeps the friction's stretch: a box held by it must not slip a little
+// each time.
 TEST(RestingCases, taps_do_not_make_a_box_creep) {
   World world;
   const Case c = read_case("creep");
@@ -96,7 +97,8 @@ TEST(RestingCases, box_near_the_friction_angle_stays_or_slides) {
     World world;
     const double angle = std::atan(0.5) + off * pi / 180;
     set_contact_for_all(world, 0, 0.5);
-    const Vec3 normal(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
+    const Vec3 normal(std::sin(angle), 0, std::cos(angle)),
+        down(std::cos(angle), 0, -std::sin(angle));
     add_wall(world, normal, 0);
     BodyDef box = body_of(make_box({1, 1, 0.5}), 0.25 * normal, Vec3::Zero());
     box.orientation = rotation_by(Vec3(0, angle, 0));
@@ -121,7 +123,8 @@ TEST(RestingCases, slowly_tipping_tower_is_not_frozen) {
     // a slab on its edge, the centre over the edge but for `past` radians
     const double half_width = 0.1, half_height = 0.5;
     const double balance = std::atan2(half_width, half_height);
-    BodyDef slab = body_of(make_box({2 * half_width, 0.4, 2 * half_height}), Vec3::Zero(), Vec3::Zero());
+    BodyDef slab =
+        body_of(make_box({2 * half_width, 0.4, 2 * half_height}), Vec3::Zero(), Vec3::Zero());
     slab.orientation = rotation_by(Vec3(0, balance + past, 0));
     const Vec3 edge = slab.orientation * Vec3(half_width, 0, -half_height);
     slab.position = Vec3(0, 0, -edge.z());

@@ -17,10 +17,11 @@ struct Descent {
 };
 
 Descent run_down(const ShapePtr& shape, double radius, double angle, double mu, double duration,
-             const Quat& attitude = Quat::Identity()) {
+                 const Quat& attitude = Quat::Identity()) {
   World world;
   set_contact_for_all(world, 0, mu);
-  const Vec3 normal(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
+  const Vec3 normal(std::sin(angle), 0, std::cos(angle)),
+      down(std::cos(angle), 0, -std::sin(angle));
   add_wall(world, normal, 0);
   BodyDef def = body_of(shape, radius * normal, Vec3::Zero());
   def.orientation = attitude;
@@ -49,7 +50,8 @@ TEST(Rolling, ball_slips_down_a_steep_slope) {
 
 TEST(Rolling, cylinder_rolls_down_a_slope) {
   const double angle = 0.2, a = 2.0 / 3 * g * std::sin(angle);
-  const Descent run = run_down(make_cylinder(0.2, 0.6), 0.2, angle, 0.5, 2, rotation_by(Vec3(pi / 2, 0, 0)));
+  const Descent run =
+      run_down(make_cylinder(0.2, 0.6), 0.2, angle, 0.5, 2, rotation_by(Vec3(pi / 2, 0, 0)));
   EXPECT_NEAR(run.speed, 2 * a, 1e-4 * 2 * a);
   EXPECT_NEAR(run.moved, 2 * a, 1e-4 * 2 * a);
 }

@@ -8,7 +8,8 @@ namespace tw::test {
 namespace {
 
 // A floor 8 m long of `tiles` boxes, and a body that crosses it at 3 m/s for a second.
-BodyState cross(int tiles, bool one_union, const ShapePtr& shape, double friction, const Vec3& spin) {
+BodyState cross(int tiles, bool one_union, const ShapePtr& shape, double friction,
+                const Vec3& spin) {
   World world;
   set_contact_for_all(world, 0.2, friction);
   const double length = 8.0 / tiles;

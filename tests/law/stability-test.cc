@@ -1,5 +1,5 @@
-// Scenes that break rigid-body simulators, shrunk: no error, no gain of energy, nothing sinks or stalls.
-// The whole table is doc/stability.md.
+// Scenes that break rigid-body simulators, shrunk: no error, no gain of energy, nothing sinks or
+// stalls. The whole table is doc/stability.md.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ StabilityOutcome expect_stable(const StabilityScene& scene, double rise, double 
   EXPECT_FALSE(o.stalled) << scene.name << " at " << o.reached << " s";
   EXPECT_LE(o.rise_share(), rise) << scene.name << " at " << o.rise_time << " s";
   EXPECT_LE(o.deepest_share, depth) << scene.name << " " << o.deepest_pair;
-  EXPECT_EQ(o.at_rest(), scene.rests || o.at_rest()) << scene.name << " moves: " << o.fastest_body
-                                                     << " at " << o.fastest << " m/s";
+  EXPECT_EQ(o.at_rest(), scene.rests || o.at_rest())
+      << scene.name << " moves: " << o.fastest_body << " at " << o.fastest << " m/s";
   return o;
 }
 
@@ -75,8 +75,9 @@ TEST(Stability, stiffness_over_six_decades) {
   }
 }
 
-// What is deep is measured by the contact's own law: in a soft heap no ripple of less than half of its depth is a feature
-// that nobody has seen, as it would be beside the depth of the default stiffness, a quarter of a thousandth of the size.
+// What is deep is measured by the contact's own law: in a soft heap no ripple of less than half of
+// its depth is a feature that nobody has seen, as it would be beside the depth of the default
+// stiffness, a quarter of a thousandth of the size.
 TEST(Stability, ripples_of_a_soft_heap_are_no_unseen_features) {
   World world;
   ContactSettings settings;
@@ -91,8 +92,8 @@ TEST(Stability, ripples_of_a_soft_heap_are_no_unseen_features) {
   EXPECT_LT(count_of(table, "early_ends"), count_of(table, "group_checks") / 100);
 }
 
-// What is known to gain energy, and by how much (doc/stability.md): no more than that, and where it is much less the
-// number here is to follow.
+// What is known to gain energy, and by how much (doc/stability.md): no more than that, and where it
+// is much less the number here is to follow.
 void expect_known_gain(const StabilityScene& scene, double known) {
   const StabilityOutcome o = StabilityRun(scene, budget).run();
   EXPECT_EQ(o.error, "") << scene.name;
@@ -105,8 +106,8 @@ TEST(Stability, known_gains_of_energy_get_no_larger) {
   expect_known_gain(heavy_blow_scene(1e3, 30), 7.4e-4);
 }
 
-// mu m g on a ring: a flat box and a disc lose their spin at a constant rate, and a ball on its pole
-// keeps it.
+// mu m g on a ring: a flat box and a disc lose their spin at a constant rate, and a ball on its
+// pole keeps it.
 TEST(Stability, thousand_radians_a_second_in_contact) {
   const StabilityScene disc =
       spin_scene("disc", make_cylinder(0.1, 0.05), 0.025, {0, 0, 1000}, true, 20);
@@ -145,19 +146,20 @@ TEST(Stability, heaps_without_and_with_all_restitution) {
 
 // A drum that stands on its cap must not rock for ever between two ways of seeing its rim.
 TEST(Stability, drum_on_its_cap_comes_to_rest_under_a_load) {
-  StabilityScene scene{"drum", "a drum on a tile, a box on it", 6, true, [](World& world) {
-                         set_contact_for_all(world, 0.2, 0.5);
-                         BodyDef tile;
-                         tile.shape = make_box({2, 2, 1});
-                         tile.position = Vec3(0, 0, -0.5);
-                         tile.fixed = true;
-                         world.add_body(named(tile, "tile"));
-                         BodyDef drum = body_of(make_cylinder(0.14, 0.28), {0, 0, 0.16}, Vec3::Zero());
-                         drum.orientation = rotation_by(Vec3(0.02, 0.03, 0));
-                         world.add_body(named(drum, "drum"));
-                         BodyDef box = body_of(make_box({0.2, 0.2, 0.3}), {0.07, 0.03, 0.5}, Vec3::Zero());
-                         world.add_body(named(box, "load"));
-                       }};
+  StabilityScene scene{
+      "drum", "a drum on a tile, a box on it", 6, true, [](World& world) {
+        set_contact_for_all(world, 0.2, 0.5);
+        BodyDef tile;
+        tile.shape = make_box({2, 2, 1});
+        tile.position = Vec3(0, 0, -0.5);
+        tile.fixed = true;
+        world.add_body(named(tile, "tile"));
+        BodyDef drum = body_of(make_cylinder(0.14, 0.28), {0, 0, 0.16}, Vec3::Zero());
+        drum.orientation = rotation_by(Vec3(0.02, 0.03, 0));
+        world.add_body(named(drum, "drum"));
+        BodyDef box = body_of(make_box({0.2, 0.2, 0.3}), {0.07, 0.03, 0.5}, Vec3::Zero());
+        world.add_body(named(box, "load"));
+      }};
   expect_stable(scene, 1e-3, 2e-3);
 }
 

@@ -96,9 +96,8 @@ TEST(ContactOverlay, what_cannot_be_seen_changes_nothing) {
   const Image bare = picture_with({});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   // behind the eye, beside the picture, nowhere
-  const Image image = picture_with(
-      {contact_at({0, -9, 3}), contact_at({400, 0, 0}), contact_at({0, 0, -1e300}),
-       contact_at({nan, 0, 0})});
+  const Image image = picture_with({contact_at({0, -9, 3}), contact_at({400, 0, 0}),
+                                    contact_at({0, 0, -1e300}), contact_at({nan, 0, 0})});
   EXPECT_EQ(hash_of(image), hash_of(bare));
 }
 

@@ -24,8 +24,8 @@ TEST(FrameName, a_pattern_is_followed) {
 }
 
 TEST(FrameName, other_patterns_are_refused) {
-  for (const char* pattern : {"", "%s.png", "out/%", "%d-%d.png", "%%.png", "%n", "%099d.png",
-                              "%5", "%d/x.png", "%ld.png"})
+  for (const char* pattern : {"", "%s.png", "out/%", "%d-%d.png", "%%.png", "%n", "%099d.png", "%5",
+                              "%d/x.png", "%ld.png"})
     EXPECT_NE(user_error_of([&] { FrameName name(pattern); }), "") << pattern;
 }
 

@@ -46,12 +46,11 @@ TEST(FramePipeline, numbers_can_go_on_where_another_ended) {
 }
 
 TEST(FramePipeline, nothing_is_made_when_the_folder_cannot_be) {
-  EXPECT_NE(user_error_of([] {
-    FramePipeline pipeline(settings_for("/dev/full"), DrawScene());
-  }), "");
-  EXPECT_NE(user_error_of([] {
-    FramePipeline pipeline(settings_for("/proc/timewarp/frames"), DrawScene());
-  }), "");
+  EXPECT_NE(user_error_of([] { FramePipeline pipeline(settings_for("/dev/full"), DrawScene()); }),
+            "");
+  EXPECT_NE(user_error_of(
+                [] { FramePipeline pipeline(settings_for("/proc/timewarp/frames"), DrawScene()); }),
+            "");
 }
 
 TEST(FramePipeline, a_full_disk_is_raised_once_and_earlier_frames_remain) {
@@ -86,9 +85,9 @@ TEST(FramePipeline, errors_of_the_scene_are_raised_at_once_and_later_ones_too) {
   const TemporaryFolder folder;
   DrawScene scene = ball_over_ground();
   scene.sky.fog = -1;
-  EXPECT_TRUE(contains(user_error_of([&] {
-    FramePipeline pipeline(settings_for(folder.path().string()), scene);
-  }), "fog is -1"));
+  EXPECT_TRUE(contains(
+      user_error_of([&] { FramePipeline pipeline(settings_for(folder.path().string()), scene); }),
+      "fog is -1"));
   FramePipeline pipeline(settings_for(folder.path().string()), ball_over_ground());
   DrawFrame frame = frame_at(0);
   frame.camera = Camera();
@@ -157,13 +156,17 @@ TEST(RenderImage, one_picture_becomes_one_file) {
   render_image(folder / "shot.png", small_settings(), ball_over_ground(), frame_at(0));
   EXPECT_GT(fs::file_size(folder / "shot.png"), 100u);
   EXPECT_TRUE(contains(user_error_of([&] {
-    render_image(folder / "no/shot.png", small_settings(), ball_over_ground(), frame_at(0));
-  }), "No such file or directory"));
+                         render_image(folder / "no/shot.png", small_settings(), ball_over_ground(),
+                                      frame_at(0));
+                       }),
+                       "No such file or directory"));
   EXPECT_TRUE(contains(user_error_of([&] {
-    RenderSettings settings = small_settings();
-    settings.size = {0, 3};
-    render_image(folder / "shot.png", settings, ball_over_ground(), frame_at(0));
-  }), "size is 0x3"));
+                         RenderSettings settings = small_settings();
+                         settings.size = {0, 3};
+                         render_image(folder / "shot.png", settings, ball_over_ground(),
+                                      frame_at(0));
+                       }),
+                       "size is 0x3"));
 }
 
 }  // namespace

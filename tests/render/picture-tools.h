@@ -14,11 +14,11 @@
 namespace tw::test {
 
 // Ends the test as skipped where this machine cannot draw.
-#define TW_SKIP_WITHOUT_OPENGL()                   \
-  try {                                            \
-    ::tw::gl_library();                            \
-  } catch (const ::tw::UserError& error) {         \
-    GTEST_SKIP() << error.what();                  \
+#define TW_SKIP_WITHOUT_OPENGL()           \
+  try {                                    \
+    ::tw::gl_library();                    \
+  } catch (const ::tw::UserError& error) { \
+    GTEST_SKIP() << error.what();          \
   }
 
 inline RenderSettings small_settings(Quality quality = Quality::draft) {

@@ -77,9 +77,7 @@ TEST(View, scene_bounds_hold_all_that_is_visible_and_bounded) {
   EXPECT_EQ(bounds.hi, Vec3(3, 1, 1));
 }
 
-TEST(View, an_empty_scene_has_bounds_too) {
-  EXPECT_EQ(scene_bounds({}, {}).size(), Vec3(2, 2, 2));
-}
+TEST(View, an_empty_scene_has_bounds_too) { EXPECT_EQ(scene_bounds({}, {}).size(), Vec3(2, 2, 2)); }
 
 }  // namespace
 }  // namespace tw::test

@@ -1,4 +1,5 @@
-// Delivery of what is committed: observers that throw, checkpoints with frames and undelivered collisions.
+// Delivery of what is committed: observers that throw, checkpoints with frames and undelivered
+// collisions.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -19,8 +20,8 @@ struct Failing {
   }
 };
 
-// A dense gas commits more than a batch at a time: its observer is called in the middle of a run.  The error leaves
-// the world at a time that edits, new bodies and the next run can start from.
+// A dense gas commits more than a batch at a time: its observer is called in the middle of a run.
+// The error leaves the world at a time that edits, new bodies and the next run can start from.
 TEST(Delivery, error_of_an_observer_leaves_the_world_at_its_committed_time) {
   const auto run_on = [](World& world, const std::function<void(World&)>& change) {
     const auto failing = std::make_shared<Failing>();
@@ -49,8 +50,8 @@ TEST(Delivery, error_of_an_observer_leaves_the_world_at_its_committed_time) {
   run_on(gravity, [](World& world) { world.set_gravity({0, 0, -1}); });
 }
 
-// The first of two throws, at a collision of its own: the second hears of that collision all the same, and
-// nobody hears of one twice.
+// The first of two throws, at a collision of its own: the second hears of that collision all the
+// same, and nobody hears of one twice.
 TEST(Delivery, every_observer_hears_of_every_collision_once) {
   for (const long fails_at : {0L, 7L, 100L}) {
     World world;
@@ -70,18 +71,19 @@ TEST(Delivery, every_observer_hears_of_every_collision_once) {
   }
 }
 
-// An observer throws while what a callback's error has made final is delivered.  The callback's error is mended
-// then; nobody must hear of it any more.
+// An observer throws while what a callback's error has made final is delivered.  The callback's
+// error is mended then; nobody must hear of it any more.
 TEST(Delivery, error_that_was_mended_is_not_raised_later) {
   World world;
   world.set_gravity(Vec3::Zero());
   set_contact_for_all(world, 1, 0);
   const BodyId a = add_ball(world, 0.5, {0, 0, 0}, {2, 0, 0});
   add_ball(world, 0.5, {2, 0, 0}, Vec3::Zero());
-  add_callback(world, {a}, 1, 10, [](double, std::span<StateView* const> targets) -> std::optional<double> {
-    if (targets[0]->state().velocity.norm() > 0) return std::nullopt;
-    throw UserError("it stands still");
-  });
+  add_callback(world, {a}, 1, 10,
+               [](double, std::span<StateView* const> targets) -> std::optional<double> {
+                 if (targets[0]->state().velocity.norm() > 0) return std::nullopt;
+                 throw UserError("it stands still");
+               });
   Failing observer;
   observer.fails_at = 0;
   world.add_collision_observer([&](const Collision& c) { observer(c); });
@@ -108,8 +110,8 @@ void fill_with_bouncers(World& world) {
   for (int i = 0; i < 3; ++i) add_ball(world, 0.1, {1.0 * i, 0, 0.5 + 0.3 * i}, Vec3::Zero());
 }
 
-// Frames after a restore are those of a run that was never interrupted, none twice and none left out, also where
-// the checkpoint lies between frames or at one.
+// Frames after a restore are those of a run that was never interrupted, none twice and none left
+// out, also where the checkpoint lies between frames or at one.
 TEST(Delivery, frames_after_a_restore_are_those_of_one_run) {
   for (const double when : {0.0, 0.5, 0.53}) {
     World plain;

@@ -1,4 +1,5 @@
-// Edits where what happens at the present time is still to come: after a callback's error, after an interrupt.
+// Edits where what happens at the present time is still to come: after a callback's error, after an
+// interrupt.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -21,7 +22,8 @@ BodyId add_fussy_ball(World& world, double start) {
   return ball;
 }
 
-// An edit that mends nothing leaves the error, and one that mends it is seen by the callback, which runs again.
+// An edit that mends nothing leaves the error, and one that mends it is seen by the callback, which
+// runs again.
 TEST(EarlyEdits, come_before_the_callback_that_stopped_the_run) {
   for (const double start : {0.0, 0.25})
     for (const bool undo_redo : {false, true}) {
@@ -98,7 +100,8 @@ TEST(EarlyEdits, of_a_member_of_a_group_hold) {
   set_contact_for_all(world, 0.2, 0.5);
   add_block(world, {10, 10, 1}, {0, 0, -0.5});
   std::vector<BodyId> boxes;
-  for (int i = 0; i < 3; ++i) boxes.push_back(add_box(world, {0.4, 0.4, 0.2}, {0, 0, 0.1 + 0.2 * i}));
+  for (int i = 0; i < 3; ++i)
+    boxes.push_back(add_box(world, {0.4, 0.4, 0.2}, {0, 0, 0.1 + 0.2 * i}));
   bool armed = true;
   add_callback(world, {boxes[1]}, 1 / 480.0 * 32, 10, [&](double, std::span<StateView* const>) {
     if (std::exchange(armed, false)) throw UserError("once");

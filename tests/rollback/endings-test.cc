@@ -9,9 +9,7 @@
 namespace tw::test {
 namespace {
 
-std::int64_t events_of(const World& world) {
-  return count_of(world.statistics(), "events");
-}
+std::int64_t events_of(const World& world) { return count_of(world.statistics(), "events"); }
 
 // Two bodies that fly apart for ever: their next check lies infinitely far, which holds up nobody.
 TEST(Endings, bodies_that_fly_apart_for_ever_do_not_hold_up_the_run) {

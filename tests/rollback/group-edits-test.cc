@@ -53,7 +53,8 @@ std::vector<double> motion(World& world) {
   return numbers;
 }
 
-// A callback that reads members leaves their arcs alone: the same motion bit for bit, no group more.
+// A callback that reads members leaves their arcs alone: the same motion bit for bit, no group
+// more.
 TEST(GroupCallbacks, that_read_a_member_leave_its_motion_alone) {
   Stack quiet;
   quiet.world.advance(0.5);
@@ -115,8 +116,8 @@ TEST(GroupCallbacks, that_set_a_force_start_the_group_anew) {
   });
 }
 
-// The groups are born at 0 s, so checks lie on multiples of 1/512 s: a callback comes before the check of
-// its instant.
+// The groups are born at 0 s, so checks lie on multiples of 1/512 s: a callback comes before the
+// check of its instant.
 TEST(GroupCallbacks, at_the_very_instants_of_group_checks) {
   expect_pushes_alike(0, 0.125, 1 / 64.0, [](StateView& view) {
     if (view.state().velocity.x() < 0.1) view.set_velocity(view.state().velocity + Vec3(0.2, 0, 0));
@@ -150,7 +151,8 @@ void expect_edit_wakes(const std::function<void(World&, const Members&)>& change
       const Vec3 before = scene.world.state(scene.boxes[2]).position;
       change(scene.world, scene.boxes);
       scene.world.advance(when + 0.1);
-      EXPECT_GT((scene.world.state(scene.boxes[2]).position - before).norm(), 1e-6) << "at " << when;
+      EXPECT_GT((scene.world.state(scene.boxes[2]).position - before).norm(), 1e-6)
+          << "at " << when;
       scene.world.advance(when + 0.3);
       if (seed == 0) expected = scene.world.history_hash();
       EXPECT_EQ(scene.world.history_hash(), expected) << "seed " << seed << " at " << when;
@@ -182,7 +184,8 @@ TEST(GroupEdits, gravity_wakes_groups) {
   expect_edit_wakes([](World& world, const Members&) { world.set_gravity({8, 0, -3}); });
 }
 
-// All of a heap get new arcs at once: not a group for each member, whose neighbours still fall the old way.
+// All of a heap get new arcs at once: not a group for each member, whose neighbours still fall the
+// old way.
 TEST(GroupEdits, gravity_and_parameters_make_each_group_once) {
   World world;
   heap_scene(40, 0).fill(world);
@@ -266,7 +269,8 @@ TEST(GroupErrors, error_of_a_callback_on_a_member_is_raised_at_its_time) {
                      throw UserError("no more");
                    });
       try {
-        ASSERT_NE(scene.world.advance(1, 2), RunStatus::slice_over) << "seed " << seed << " " << member;
+        ASSERT_NE(scene.world.advance(1, 2), RunStatus::slice_over)
+            << "seed " << seed << " " << member;
         FAIL() << "no error";
       } catch (const UserError& error) {
         EXPECT_STREQ(error.what(), "no more");

@@ -1,5 +1,5 @@
-// Contact groups in the state graph: figure 4 of the paper, rollback through fusions and fissions, and
-// how long groups live.
+// Contact groups in the state graph: figure 4 of the paper, rollback through fusions and fissions,
+// and how long groups live.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ namespace {
 
 using Members = std::vector<BodyId>;
 
-// Figure 4 with bodies that fall: a lies on the floor, b comes to lie on a, c hits b hard and bounces,
-// settles on b, rolls off its edge, and comes to lie on the floor.  `far` lies on the same floor, `flier`
-// flies: they have no part in it.
+// Figure 4 with bodies that fall: a lies on the floor, b comes to lie on a, c hits b hard and
+// bounces, settles on b, rolls off its edge, and comes to lie on the floor.  `far` lies on the same
+// floor, `flier` flies: they have no part in it.
 struct Figure4 {
   explicit Figure4(const Schedule& schedule = Schedule()) {
     apply(world, schedule);
@@ -111,8 +111,8 @@ TEST(Groups, figure_4_fusions_collisions_and_fissions_come_in_order) {
   EXPECT_EQ(scene.world.kernel().validate_residences(), "");
 }
 
-// From every discontinuity of every member: what is removed is what hangs on it, and the run that goes
-// on ends in the same graph, and in the same history.
+// From every discontinuity of every member: what is removed is what hangs on it, and the run that
+// goes on ends in the same graph, and in the same history.
 TEST(Groups, figure_4_with_forced_rollbacks_at_each_stage_ends_in_the_same_state_graph) {
   Figure4 expected;
   KernelTest reference(expected.world);
@@ -161,8 +161,8 @@ TEST(Groups, figure_4_with_forced_rollbacks_at_each_stage_ends_in_the_same_state
   }
 }
 
-// A rollback of one member takes the states of its group from all members, and leaves a group on the
-// same floor alone.
+// A rollback of one member takes the states of its group from all members, and leaves a group on
+// the same floor alone.
 TEST(Groups, rollback_of_one_member_removes_the_states_of_its_group_from_all) {
   Figure4 scene;
   KernelTest kernel(scene.world);
@@ -191,7 +191,8 @@ TEST(Groups, groups_are_freed_by_rollback_and_by_gvt) {
   kernel.run_uncommitted(0.6);
   std::vector<std::weak_ptr<Group>> groups;
   for (const State* s : kernel.states(scene.a))
-    if (s->group && (groups.empty() || groups.back().lock() != s->group)) groups.push_back(s->group);
+    if (s->group && (groups.empty() || groups.back().lock() != s->group))
+      groups.push_back(s->group);
   ASSERT_GT(groups.size(), 4u);
   kernel.roll_back(scene.a, kernel.tail(scene.a).key);
   EXPECT_TRUE(groups.back().expired());
@@ -280,8 +281,8 @@ TEST(Groups, hard_impact_on_a_member_leaves_the_group_living) {
   EXPECT_LT(world.state(ball).velocity.x(), 0);
 }
 
-// A tilted box falls over one edge onto another that the group knew nothing of: however rare the checks,
-// the edge is met where it comes down.
+// A tilted box falls over one edge onto another that the group knew nothing of: however rare the
+// checks, the edge is met where it comes down.
 TEST(Groups, feature_that_comes_down_between_checks_is_met) {
   World world;
   world.set_group_check_rate(8);
@@ -306,8 +307,9 @@ TEST(Groups, feature_that_comes_down_between_checks_is_met) {
   EXPECT_NEAR(world.state(box).position.z(), 0.1, 1e-3) << "the box lies flat";
 }
 
-// A member that slowly nears a block is linked to it by the group check before they touch: the boxes of
-// members reach far enough.  Coming through a collision check instead would make it a fusion.
+// A member that slowly nears a block is linked to it by the group check before they touch: the
+// boxes of members reach far enough.  Coming through a collision check instead would make it a
+// fusion.
 TEST(Groups, slow_neighbour_is_linked_before_it_touches) {
   World world;
   set_contact_for_all(world, 0.2, 0);
@@ -316,7 +318,10 @@ TEST(Groups, slow_neighbour_is_linked_before_it_touches) {
   const BodyId box = add_box(world, {0.4, 0.4, 0.4}, {0.2, 0, 0.2}, {0.05, 0, 0});
   std::vector<std::pair<BodyId, BodyId>> fusions;
   world.add_collision_observer(
-      [&](const Collision& c) { fusions.push_back({c.body1, c.body2}); }, CollisionKind::fusion);
+      [&](const Collision& c) {
+        fusions.push_back({c.body1, c.body2});
+      },
+      CollisionKind::fusion);
   world.advance(0.199);
   EXPECT_EQ(fusions, (std::vector<std::pair<BodyId, BodyId>>{{floor, box}}));
   EXPECT_LT(world.state(box).position.x(), 0.21);
@@ -347,7 +352,8 @@ TEST(Groups, fusions_and_fissions_are_told_one_row_a_contact) {
     EXPECT_NEAR(c.normal.norm(), 1, 1e-9);
     EXPECT_EQ(c.impulse, 0);
   }
-  EXPECT_EQ(count_of(scene.world.statistics(), "fusions"), static_cast<std::int64_t>(fusions.size()));
+  EXPECT_EQ(count_of(scene.world.statistics(), "fusions"),
+            static_cast<std::int64_t>(fusions.size()));
 }
 
 }  // namespace

@@ -28,9 +28,7 @@ inline std::set<StateName> names_in(const StateGraph& graph) {
   return names;
 }
 
-inline Key impact_at(double time) {
-  return {time, 1, KeyKind::impact, 0};
-}
+inline Key impact_at(double time) { return {time, 1, KeyKind::impact, 0}; }
 
 // Appends the states of one discontinuity to the queues of `processes`, and closes the ring.
 inline std::vector<State*> append_ring(StateGraph& graph,

@@ -15,7 +15,8 @@ struct Stack {
     apply(world, schedule);
     set_contact_for_all(world, 0.2, 0.5);
     floor = add_block(world, {10, 10, 1}, {0, 0, -0.5});
-    for (int i = 0; i < 3; ++i) boxes.push_back(add_box(world, {0.4, 0.4, 0.2}, {0.01 * i, 0, 0.1 + 0.2 * i}));
+    for (int i = 0; i < 3; ++i)
+      boxes.push_back(add_box(world, {0.4, 0.4, 0.2}, {0.01 * i, 0, 0.1 + 0.2 * i}));
   }
   World world;
   BodyId floor = 0;
@@ -42,7 +43,8 @@ TEST(Remove, what_lay_on_a_body_falls_on_what_is_below) {
 TEST(Remove, what_lay_on_the_floor_falls_for_ever) {
   for (const bool half_space : {false, true}) {
     World world;
-    const BodyId floor = half_space ? add_wall(world, Vec3::UnitZ(), 0) : add_block(world, {4, 4, 1}, {0, 0, -0.5});
+    const BodyId floor =
+        half_space ? add_wall(world, Vec3::UnitZ(), 0) : add_block(world, {4, 4, 1}, {0, 0, -0.5});
     const BodyId box = add_box(world, {0.4, 0.4, 0.2}, {0, 0, 0.1});
     world.advance(2);
     ASSERT_NEAR(height(world, box), 0.1, 1e-3);
@@ -71,8 +73,9 @@ TEST(Remove, no_schedule_changes_what_follows) {
 TEST(Remove, callbacks_on_it_end_and_its_name_is_free) {
   Stack scene;
   int calls = 0;
-  add_callback(scene.world, {scene.boxes[2], scene.boxes[0]}, 0.1, 0.1,
-               [&](double, std::span<StateView* const>) { return ++calls, std::optional<double>(); });
+  add_callback(
+      scene.world, {scene.boxes[2], scene.boxes[0]}, 0.1, 0.1,
+      [&](double, std::span<StateView* const>) { return ++calls, std::optional<double>(); });
   scene.world.advance(0.35);
   EXPECT_EQ(calls, 3);
   const std::string name = scene.world.body(scene.boxes[2]).name;

@@ -23,9 +23,7 @@ class Counter : public Slots {
   long count_;
 };
 
-inline SlotsPtr make_counter(long count = 0) {
-  return std::make_shared<Counter>(count);
-}
+inline SlotsPtr make_counter(long count = 0) { return std::make_shared<Counter>(count); }
 
 inline long counter_of(const SlotsPtr& slots) {
   return slots ? static_cast<const Counter&>(*slots).count() : 0;
@@ -86,8 +84,6 @@ inline void add_collision_callback(World& world, FunctionCollisionCallback::Func
 }
 
 // Cyclic permutation of the components: keeps the speed, and exact times where they were exact.
-inline Vec3 permuted(const Vec3& v) {
-  return {v.y(), v.z(), v.x()};
-}
+inline Vec3 permuted(const Vec3& v) { return {v.y(), v.z(), v.x()}; }
 
 }  // namespace tw::test

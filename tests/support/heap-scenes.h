@@ -1,5 +1,5 @@
-// Scenes in which contact groups form, break and come to rest: a heap in a pit, a tower hit by a ball,
-// a moving platform, tiles with seams.
+// Scenes in which contact groups form, break and come to rest: a heap in a pit, a tower hit by a
+// ball, a moving platform, tiles with seams.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -90,9 +90,10 @@ inline Scene tiles_scene(double duration) {
       for (int j = -2; j <= 2; ++j) add_block(world, {0.5, 0.5, 0.5}, {0.5 * i, 0.5 * j, -0.25});
     Random random(31);
     for (int k = 0; k < 8; ++k) {
-      BodyDef def = body_of(k % 2 ? rock_shape(static_cast<std::uint64_t>(k)) : make_box({0.4, 0.3, 0.2}),
-                            {-1.2 + 0.6 * (k % 4), -0.4 + 0.8 * (k / 4), 0.5},
-                            Vec3(1.5, 0, 0) + random_vector(random, 0.2));
+      BodyDef def =
+          body_of(k % 2 ? rock_shape(static_cast<std::uint64_t>(k)) : make_box({0.4, 0.3, 0.2}),
+                  {-1.2 + 0.6 * (k % 4), -0.4 + 0.8 * (k / 4), 0.5},
+                  Vec3(1.5, 0, 0) + random_vector(random, 0.2));
       if (k % 4 == 0) def.orientation = random_attitude(random);
       world.add_body(def);
     }

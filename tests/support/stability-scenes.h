@@ -1,5 +1,5 @@
-// Scenes that break rigid-body simulators: unequal masses, tall stacks, thin, tiny and huge bodies, fast
-// spin, stiff and soft springs, heaps.
+// Scenes that break rigid-body simulators: unequal masses, tall stacks, thin, tiny and huge bodies,
+// fast spin, stiff and soft springs, heaps.
 //
 // The floor is z = 0 unless a scene says otherwise.  SI units.
 //
@@ -30,7 +30,8 @@ inline BodyId add_floor(World& world) {
 
 // ---- columns ----
 
-// `count` cubes of 0.2 m on top of each other; the top one weighs `ratio` times as much as the others.
+// `count` cubes of 0.2 m on top of each other; the top one weighs `ratio` times as much as the
+// others.
 inline void add_column(World& world, int count, double ratio) {
   constexpr double edge = 0.2;
   for (int i = 0; i < count; ++i) {
@@ -108,8 +109,10 @@ inline StabilityScene arch_scene(int stones, double thickness, double duration) 
       world.add_body(named(stone, "stone-" + std::to_string(i)));
     }
   };
-  return {"arch-" + std::to_string(stones), "semicircular arch of " + std::to_string(stones) +
-          " stones, thickness " + show(thickness) + " of the inner radius", duration, true, fill};
+  return {"arch-" + std::to_string(stones),
+          "semicircular arch of " + std::to_string(stones) + " stones, thickness " +
+              show(thickness) + " of the inner radius",
+          duration, true, fill};
 }
 
 // Two cards that lean on each other, `lean` from the vertical, with the feet on z = base.
@@ -143,12 +146,14 @@ inline StabilityScene card_house_scene(double thickness, double friction, double
     // wide enough for both ridges and the feet above
     const Vec3 roof(4 * half_base, 0.063, thickness);
     const double level = height + 4e-6;
-    world.add_body(named(body_of(make_box(roof), {0, 0, level + 0.5 * thickness}, Vec3::Zero()),
-                         "roof"));
+    world.add_body(
+        named(body_of(make_box(roof), {0, 0, level + 0.5 * thickness}, Vec3::Zero()), "roof"));
     add_tent(world, card, lean, {0, 0, level + thickness}, "upper");
   };
-  return {"cards-" + show(1e3 * thickness) + "mm", "card house of 7 cards " +
-          show(1e3 * thickness) + " mm thick, friction " + show(friction), duration, true, fill};
+  return {
+      "cards-" + show(1e3 * thickness) + "mm",
+      "card house of 7 cards " + show(1e3 * thickness) + " mm thick, friction " + show(friction),
+      duration, true, fill};
 }
 
 // ---- extremes of size and shape ----
@@ -166,15 +171,19 @@ inline StabilityScene scale_scene(double scale) {
       world.add_body(named(def, name));
     };
     for (int i = 0; i < 3; ++i)
-      add("cube-" + std::to_string(i), make_box(Vec3::Constant(scale)),
-          {0.05 * i, 0, 0.5 + i}, Vec3::Zero());
+      add("cube-" + std::to_string(i), make_box(Vec3::Constant(scale)), {0.05 * i, 0, 0.5 + i},
+          Vec3::Zero());
     add("ball", make_sphere(0.5 * scale), {0.3, 0.2, 4.1}, Vec3::Zero());
     add("tumbler", make_box(scale * Vec3(1, 0.7, 0.5)), {1.7, 0.1, 2}, {0.4, 0.5, 0.6});
     add("drum", make_cylinder(0.4 * scale, 0.8 * scale), {-1.5, 0.2, 2}, {0.7, 0.2, 0});
   };
   // the ball may roll for ever
-  return {"size-" + show(scale) + "m", "six bodies of " + show(scale) + " m: three cubes, ball, box, drum",
-          10 * second, false, fill, 500 / second};
+  return {"size-" + show(scale) + "m",
+          "six bodies of " + show(scale) + " m: three cubes, ball, box, drum",
+          10 * second,
+          false,
+          fill,
+          500 / second};
 }
 
 // A cube of 1 mm between floor and a cube of 1 m: beside it, and on top of it.
@@ -185,8 +194,7 @@ inline StabilityScene unequal_sizes_scene(double duration) {
     world.add_body(named(body_of(make_box(Vec3::Constant(1)), {0, 0, 0.5}, Vec3::Zero()), "large"));
     world.add_body(
         named(body_of(make_box(Vec3::Constant(1e-3)), {0.1, 0.2, 1.01}, Vec3::Zero()), "small"));
-    world.add_body(
-        named(body_of(make_sphere(0.5e-3), {0.3, 0, 1.0005}, {0.05, 0, 0}), "bead"));
+    world.add_body(named(body_of(make_sphere(0.5e-3), {0.3, 0, 1.0005}, {0.05, 0, 0}), "bead"));
   };
   return {"size-1:1000", "a cube and a bead of 1 mm on a cube of 1 m", duration, false, fill};
 }
@@ -205,26 +213,32 @@ inline StabilityScene rod_scene(double ratio, double duration) {
                            x < 0 ? "left" : "right"));
     world.add_body(named(body_of(rod, {0, 2, 0.05 + 0.5 / ratio + 1e-3}, Vec3::Zero()), "across"));
   };
-  return {"rod-1:" + show(ratio), "rods 1 m long, 1/" + show(ratio) +
-          " m thick: one thrown, one across two blocks", duration, true, fill};
+  return {"rod-1:" + show(ratio),
+          "rods 1 m long, 1/" + show(ratio) + " m thick: one thrown, one across two blocks",
+          duration, true, fill};
 }
 
-// A coin of 24 mm, spun on its rim about the vertical.  Fast it stands, slow it wobbles (Euler's disc):
-// without rolling resistance it loses little but what the law's damping takes.
+// A coin of 24 mm, spun on its rim about the vertical.  Fast it stands, slow it wobbles (Euler's
+// disc): without rolling resistance it loses little but what the law's damping takes.
 inline StabilityScene coin_scene(double spin, double tilt, double duration) {
   const auto fill = [=](World& world) {
     set_contact_for_all(world, 0.3, 0.4);
     add_floor(world);
     constexpr double radius = 0.012, thickness = 0.002;
-    BodyDef coin = body_of(make_cylinder(radius, thickness), Vec3::Zero(), Vec3::Zero(),
-                           {0, 0, spin});
+    BodyDef coin =
+        body_of(make_cylinder(radius, thickness), Vec3::Zero(), Vec3::Zero(), {0, 0, spin});
     coin.density = 8000;
     coin.orientation = rotation_by(Vec3(pi / 2 - tilt, 0, 0));
     coin.position.z() = radius * std::cos(tilt) + 0.5 * thickness * std::sin(tilt) + 1e-6;
     world.add_body(named(coin, "coin"));
   };
-  return {"coin-" + show(spin), "a coin of 24 mm spun at " + show(spin) + " rad/s, " + show(tilt) +
-          " rad off the vertical", duration, false, fill, 2000};
+  return {
+      "coin-" + show(spin),
+      "a coin of 24 mm spun at " + show(spin) + " rad/s, " + show(tilt) + " rad off the vertical",
+      duration,
+      false,
+      fill,
+      2000};
 }
 
 // ---- friction ----
@@ -243,8 +257,9 @@ inline StabilityScene slope_scene(double off, double duration) {
     world.add_body(named(box, "box"));
   };
   const std::string sign = off > 0 ? "+" : "";
-  return {"slope" + sign + show(off), "a box on a slope, friction angle " + sign + show(off) + " degrees",
-          duration, off < 0, fill};
+  return {"slope" + sign + show(off),
+          "a box on a slope, friction angle " + sign + show(off) + " degrees", duration, off < 0,
+          fill};
 }
 
 // A body that spins at `spin` while it rests on the floor.
@@ -255,8 +270,9 @@ inline StabilityScene spin_scene(const std::string& name, const ShapePtr& shape,
     add_floor(world);
     world.add_body(named(body_of(shape, {0, 0, height}, Vec3::Zero(), spin), name));
   };
-  return {"spin-" + name, name + " spinning at " + show(spin.norm()) + " rad/s on the floor", duration,
-          rests, fill, 2000};
+  return {"spin-" + name, name + " spinning at " + show(spin.norm()) + " rad/s on the floor",
+          duration,       rests,
+          fill,           2000};
 }
 
 // ---- heaps ----
@@ -304,8 +320,8 @@ inline void add_pit(World& world) {
     }
 }
 
-// Stones and boxes and, where `round`, balls and drums, 0.3 to 0.45 m, dropped into the pit in layers of
-// nine.  What is round may go on rolling: Coulomb's law has no rolling resistance.
+// Stones and boxes and, where `round`, balls and drums, 0.3 to 0.45 m, dropped into the pit in
+// layers of nine.  What is round may go on rolling: Coulomb's law has no rolling resistance.
 inline StabilityScene heap_scene(int count, std::uint64_t seed, bool round, double restitution,
                                  double duration) {
   const auto fill = [=](World& world) {
@@ -327,7 +343,10 @@ inline StabilityScene heap_scene(int count, std::uint64_t seed, bool round, doub
   return {name + std::to_string(seed) + (restitution == 0.2 ? "" : "-e" + show(restitution)),
           std::to_string(count) + (round ? " stones, boxes, balls, drums" : " stones and boxes") +
               " in a pit, restitution " + show(restitution),
-          duration, !round && restitution < 1, fill, 200};
+          duration,
+          !round && restitution < 1,
+          fill,
+          200};
 }
 
 }  // namespace tw::test

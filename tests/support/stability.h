@@ -18,30 +18,30 @@ namespace tw::test {
 
 struct StabilityScene {
   std::string name, what;
-  double duration = 1;      // s
-  bool rests = true;        // whether it ought to come to rest in that time
+  double duration = 1;  // s
+  bool rests = true;    // whether it ought to come to rest in that time
   std::function<void(World&)> fill;
-  double sample_rate = 500; // Hz
+  double sample_rate = 500;  // Hz
 };
 
 struct StabilityOutcome {
-  std::string error;        // empty: none
-  bool stalled = false;     // the budget was spent before the end
-  double reached = 0;       // s
-  double cpu = 0;           // s
-  double worst_second = 0;  // s of CPU per simulated second, in the dearest tenth of the duration
-  double rest_time = never; // s: nothing moves from here on
-  double deepest = 0;       // m, overlap of two bodies at the end
-  double deepest_share = 0; // overlap over the least width of the smaller body, at the end
+  std::string error;         // empty: none
+  bool stalled = false;      // the budget was spent before the end
+  double reached = 0;        // s
+  double cpu = 0;            // s
+  double worst_second = 0;   // s of CPU per simulated second, in the dearest tenth of the duration
+  double rest_time = never;  // s: nothing moves from here on
+  double deepest = 0;        // m, overlap of two bodies at the end
+  double deepest_share = 0;  // overlap over the least width of the smaller body, at the end
   std::string deepest_pair;
   double energy_start = 0, energy_end = 0;  // J
-  double rise = 0;          // J, largest rise of the energy above a level it had fallen to
-  double rise_time = 0;     // s
-  double travel = 0;        // m, largest displacement of a body
-  double fastest = 0;       // m/s, at the end
+  double rise = 0;       // J, largest rise of the energy above a level it had fallen to
+  double rise_time = 0;  // s
+  double travel = 0;     // m, largest displacement of a body
+  double fastest = 0;    // m/s, at the end
   std::string fastest_body;
   std::int64_t collisions = 0, groups = 0;
-  bool sunk = false;        // a body's origin lies below the floor, z = 0
+  bool sunk = false;  // a body's origin lies below the floor, z = 0
 
   double rise_share() const { return rise / energy_start; }
   bool at_rest() const { return rest_time < never; }
@@ -88,8 +88,7 @@ class StabilityRun {
   StabilityRun(const StabilityScene& scene, double budget) : scene_(scene), budget_(budget) {
     scene.fill(world_);
     outcome_.energy_start = lowest_ = world_.total_energy();
-    for (BodyId id = 0; id < world_.body_count(); ++id)
-      start_.push_back(world_.state(id).position);
+    for (BodyId id = 0; id < world_.body_count(); ++id) start_.push_back(world_.state(id).position);
   }
 
   World& world() { return world_; }

@@ -1,4 +1,5 @@
-// Moving and standing boxes against all pairs, while the moving ones creep within their zones and leave them.
+// Moving and standing boxes against all pairs, while the moving ones creep within their zones and
+// leave them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/broad-phase.h"
 
@@ -17,7 +18,9 @@ Vec3 random_point(Random& random, double size) {
   return point;
 }
 
-Aabb around(const Vec3& center, const Vec3& half) { return {center - half.cwiseAbs(), center + half.cwiseAbs()}; }
+Aabb around(const Vec3& center, const Vec3& half) {
+  return {center - half.cwiseAbs(), center + half.cwiseAbs()};
+}
 
 struct Boxes {
   BroadPhase phase;
@@ -55,11 +58,13 @@ TEST(BroadPhase, finds_exactly_the_overlapping_boxes_while_some_move) {
     all.place(id, around(random_point(random, 5), random_point(random, 0.5)), false);
   for (int round = 0; round < 40; ++round) {
     for (std::uint32_t id = 0; id < moving; ++id) {
-      const Vec3 half = 0.5 * all.boxes[id].size(), step = random_point(random, round % 8 == 0 ? 2 : 0.1);
+      const Vec3 half = 0.5 * all.boxes[id].size(),
+                 step = random_point(random, round % 8 == 0 ? 2 : 0.1);
       all.place(id, around(all.boxes[id].center() + step, half), false);
     }
     // the ground is changed between runs
-    if (round % 10 == 9) all.place(moving + 7, around(random_point(random, 5), random_point(random, 2)), true);
+    if (round % 10 == 9)
+      all.place(moving + 7, around(random_point(random, 5), random_point(random, 2)), true);
     all.expect_all_pairs(moving);
     ASSERT_TRUE(all.phase.consistent());
   }

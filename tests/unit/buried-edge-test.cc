@@ -101,9 +101,9 @@ TEST(Seams, cylinders_on_a_tiled_floor_feel_one_plane) {
   for (double x : crossing_places())
     for (double depth : {1e-6, 1e-4}) {
       // rolling over the seams, lying along the floor, standing with the rim at the place
-      for (const Frame& frame : {Frame(across, Vec3(x, 0.1, 0.15 - depth)),
-                                 Frame(along, Vec3(x, 0.1, 0.15 - depth)),
-                                 Frame(Mat3::Identity(), Vec3(x + 0.15, 0.1, 0.15 - depth))}) {
+      for (const Frame& frame :
+           {Frame(across, Vec3(x, 0.1, 0.15 - depth)), Frame(along, Vec3(x, 0.1, 0.15 - depth)),
+            Frame(Mat3::Identity(), Vec3(x + 0.15, 0.1, 0.15 - depth))}) {
         const Points points = floor.meets(can, frame, 0.005, false);
         ASSERT_FALSE(points.empty()) << x;
         ASSERT_NEAR(least_gap(points), -depth, 1e-8) << x;
@@ -159,9 +159,8 @@ TEST(Seams, both_slopes_of_a_valley_carry) {
   ASSERT_EQ(ball_points.size(), 2u);
   EXPECT_LT(ball_points[0].normal.x() * ball_points[1].normal.x(), -0.2);
   const ShapePtr box = make_box({0.4, 0.4, 0.4});
-  const Points edge_points =
-      valley.meets(box, turned({0, pi / 4, 0}, {0, 0, groove + 0.2 * std::sqrt(2.0) - 1e-4}),
-                   1e-3, true);
+  const Points edge_points = valley.meets(
+      box, turned({0, pi / 4, 0}, {0, 0, groove + 0.2 * std::sqrt(2.0) - 1e-4}), 1e-3, true);
   bool left = false;
   bool right = false;
   for (const ManifoldPoint& p : edge_points) {

@@ -11,15 +11,9 @@
 namespace tw::test {
 namespace {
 
-ContactSide all() {
-  return {};
-}
-ContactSide material(const std::string& name) {
-  return {ContactSide::Kind::material, name, 0};
-}
-ContactSide body(std::uint32_t id) {
-  return {ContactSide::Kind::body, "", id};
-}
+ContactSide all() { return {}; }
+ContactSide material(const std::string& name) { return {ContactSide::Kind::material, name, 0}; }
+ContactSide body(std::uint32_t id) { return {ContactSide::Kind::body, "", id}; }
 
 ContactSettings restitution(double e) {
   ContactSettings s;

@@ -151,8 +151,7 @@ inline double brute_axis(const WorldFeatures& a, const WorldFeatures& b) {
   for (const auto& ea : a.edges)
     for (const auto& eb : b.edges) {
       const Vec3 n = (ea.second - ea.first).cross(eb.second - eb.first);
-      if (n.norm() < 1e-7 * (ea.second - ea.first).norm() * (eb.second - eb.first).norm())
-        continue;
+      if (n.norm() < 1e-7 * (ea.second - ea.first).norm() * (eb.second - eb.first).norm()) continue;
       best = std::max(best, gap_along(a, b, n.normalized()));
       best = std::max(best, gap_along(a, b, -n.normalized()));
     }

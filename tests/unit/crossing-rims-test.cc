@@ -1,4 +1,5 @@
-// Fixed plates that cross at their rims, as those of a hopper: what touches two of them is carried by both.
+// Fixed plates that cross at their rims, as those of a hopper: what touches two of them is carried
+// by both.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -12,8 +13,8 @@ namespace {
 constexpr double hole = 0.35, lip_height = 1.2, steep = 0.96;
 const ShapePtr grain = make_box({0.15, 0.15, 0.15});
 
-// Two plates, 55 degrees steep, with level lips along y and x that cross at (-hole, -hole, lip_height): the
-// lip of each ends inside the other.
+// Two plates, 55 degrees steep, with level lips along y and x that cross at (-hole, -hole,
+// lip_height): the lip of each ends inside the other.
 Ground rims() {
   Ground ground;
   for (const double quarter : {2.0, 3.0}) {
@@ -41,7 +42,8 @@ Nearest nearest(const Ground& ground, const Frame& frame) {
 }
 
 // Moves on until something is 1e-7 m away; false where nothing is within the length.
-bool touches(const Ground& ground, const Vec3& direction, double length, Frame& frame, Nearest& touch) {
+bool touches(const Ground& ground, const Vec3& direction, double length, Frame& frame,
+             Nearest& touch) {
   while (length > 0) {
     touch = nearest(ground, frame);
     if (touch.distance < 1e-7) return touch.distance > 0;
@@ -53,10 +55,11 @@ bool touches(const Ground& ground, const Vec3& direction, double length, Frame& 
 }
 
 // Whether the plate presses against the grain.
-bool presses(const Ground& ground, std::size_t plate, const Frame& frame, const Vec3& normal, double depth) {
+bool presses(const Ground& ground, std::size_t plate, const Frame& frame, const Vec3& normal,
+             double depth) {
   Points points;
-  manifold_at_seams(*ground.shapes[plate], ground.frames[plate], ground.around(plate), *grain, frame, {},
-                    0, grain->least_width(), points, ReferenceChoice::of_a);
+  manifold_at_seams(*ground.shapes[plate], ground.frames[plate], ground.around(plate), *grain,
+                    frame, {}, 0, grain->least_width(), points, ReferenceChoice::of_a);
   for (const ManifoldPoint& p : points) {
     const Vec3 up = p.reference_is_a ? p.normal : Vec3(-p.normal);
     if (p.gap < -0.2 * depth && up.dot(normal) > 0.5) return true;

@@ -13,8 +13,8 @@ namespace {
 
 using Points = std::vector<ManifoldPoint>;
 
-Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
-                   const Frame& frame_b, double reach) {
+Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Frame& frame_b,
+                   double reach) {
   Points points;
   manifold(*a, frame_a, *b, frame_b, reach, points);
   return points;
@@ -83,8 +83,8 @@ TEST(CylinderManifold, lying_it_has_the_ends_of_its_axis_and_rolling_leaves_them
                           rotation_by({0, 0, roll}).toRotationMatrix(),
                       {0, 0, 0.2 - 1e-4});
     const Frame below(Mat3::Identity(), {0, 0, -0.5});
-    for (const Points& points :
-         {manifold_of(ground, Frame(), log, lying, 0.01), manifold_of(table, below, log, lying, 0.01)}) {
+    for (const Points& points : {manifold_of(ground, Frame(), log, lying, 0.01),
+                                 manifold_of(table, below, log, lying, 0.01)}) {
       ASSERT_EQ(points.size(), 2u);
       for (const ManifoldPoint& p : points) {
         EXPECT_EQ(p.kind, ReferenceFeature::plane);
@@ -125,7 +125,8 @@ TEST(CylinderManifold, tilted_its_gaps_are_exact_and_stay_while_it_spins) {
 
 TEST(CylinderManifold, standing_it_has_eight_points_fixed_in_it) {
   const ShapePtr can = make_cylinder(0.3, 0.8);
-  const Points flat = manifold_of(ground, Frame(), can, turned({0, 0, 0.3}, {0, 0, 0.4 - 1e-4}), 0.01);
+  const Points flat =
+      manifold_of(ground, Frame(), can, turned({0, 0, 0.3}, {0, 0, 0.4 - 1e-4}), 0.01);
   ASSERT_EQ(flat.size(), 8u);
   for (const ManifoldPoint& p : flat) {
     EXPECT_EQ(p.radius, 0);

@@ -95,8 +95,8 @@ TEST(Cylinder, distance_to_a_ball_and_a_half_space_is_the_closed_form) {
               -(std::cos(0.3) + 0.5 * std::sin(0.3)), 1e-15);
 }
 
-// Distances above zero are proven: two points of the bodies are so far apart, and a slab of that width
-// separates them.
+// Distances above zero are proven: two points of the bodies are so far apart, and a slab of that
+// width separates them.
 TEST(Cylinder, distance_is_proven_by_a_slab_and_two_points) {
   Random random(2);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
@@ -142,8 +142,8 @@ TEST(Cylinder, depth_is_the_least_of_many_axes_and_that_of_its_own) {
         frame_b.p = frame_a.p + 4 * random_direction(random);
         const Separation far = parts(a, frame_a, b, frame_b);
         const bool shallow = random() % 3 != 0;
-        frame_b.p -= (far.distance + std::pow(10, uniform(random, -9, shallow ? -3 : -1))) *
-                     far.normal;
+        frame_b.p -=
+            (far.distance + std::pow(10, uniform(random, -9, shallow ? -3 : -1))) * far.normal;
         const Separation s = parts(a, frame_a, b, frame_b);
         const SupportCore core_a = placed(a, frame_a);
         const SupportCore core_b = placed(b, frame_b);
@@ -200,7 +200,8 @@ TEST(Cylinder, symmetric_overlaps_have_the_depth_of_the_nearest_way_out) {
   const ShapePtr box = make_box({2, 2, 2});
   const auto depth = [](const ShapePtr& a, const ShapePtr& b, const Frame& frame_b) {
     const Separation s = parts(a, Frame(), b, frame_b);
-    EXPECT_NEAR(distance_along(placed(a, Frame()), placed(b, frame_b), s.normal), s.distance, 1e-14);
+    EXPECT_NEAR(distance_along(placed(a, Frame()), placed(b, frame_b), s.normal), s.distance,
+                1e-14);
     return -s.distance;
   };
   const auto at = [](double x, double y, double z) { return Frame(Mat3::Identity(), {x, y, z}); };

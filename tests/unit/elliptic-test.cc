@@ -15,9 +15,7 @@ namespace {
 // The standard library forms 1 - k^2 itself: nearer to 1 its own digits go.
 const double moduli[] = {0.0, 1e-8, 0.1, 0.5, 0.7, 0.9, 0.99};
 
-double complement(double k) {
-  return std::sqrt((1 - k) * (1 + k));
-}
+double complement(double k) { return std::sqrt((1 - k) * (1 + k)); }
 
 TEST(Elliptic, rf_gives_the_incomplete_first_integral) {
   for (const double k : moduli)

@@ -69,8 +69,8 @@ TEST(GroupArc, step_end_lies_after_the_time_whoever_asked_before) {
   EXPECT_GT(half.step_end(half.reached()), half.reached());
 }
 
-// What another group meets at its border is a copy: were it the arc itself, each group would keep those at its border,
-// with the borders that they had, and so on to the first.
+// What another group meets at its border is a copy: were it the arc itself, each group would keep
+// those at its border, with the borders that they had, and so on to the first.
 TEST(GroupArc, motion_of_a_member_has_the_bits_of_the_arc_and_outlives_it) {
   const GroupStart start = falling_stack(3);
   GroupArc whole(start);

@@ -21,9 +21,7 @@ std::vector<Keyframe> random_keyframes(Random& random) {
   return frames;
 }
 
-double angle_between(const Quat& a, const Quat& b) {
-  return 2 * (a * b.conjugate()).vec().norm();
-}
+double angle_between(const Quat& a, const Quat& b) { return 2 * (a * b.conjugate()).vec().norm(); }
 
 TEST(Keyframes, pose_passes_through_every_keyframe_and_rests_outside) {
   Random random(1);

@@ -15,9 +15,8 @@ namespace {
 
 using Points = std::vector<ManifoldPoint>;
 
-Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
-                   const Frame& frame_b, double reach,
-                   ReferenceChoice choice = ReferenceChoice::larger) {
+Points manifold_of(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Frame& frame_b,
+                   double reach, ReferenceChoice choice = ReferenceChoice::larger) {
   Points points;
   manifold(*a, frame_a, *b, frame_b, reach, points, choice);
   return points;
@@ -195,9 +194,8 @@ TEST(Manifold, names_of_points_outlive_small_motions) {
     const Vec3 turn(0, 0, uniform(random, 0, 6));
     const Points before = manifold_of(cube(), Frame(), box, turned(turn, place), 0.01);
     const Vec3 rattle = 1e-5 * random_direction(random);
-    const Points after =
-        manifold_of(cube(), Frame(), box,
-                    turned(turn + 1e-5 * random_direction(random), place + rattle), 0.01);
+    const Points after = manifold_of(
+        cube(), Frame(), box, turned(turn + 1e-5 * random_direction(random), place + rattle), 0.01);
     std::set<std::uint64_t> names;
     for (const ManifoldPoint& p : after) names.insert(p.feature);
     ASSERT_EQ(names.size(), after.size());
@@ -251,8 +249,7 @@ TEST(Manifold, a_box_over_an_edge_is_not_carried_beyond_it) {
   // coplanar faces, slightly deep: the points end at the edge of the lower cube
   const ShapePtr box = make_box({1, 1, 0.2});
   for (double overhang : {0.3, 0.49, 0.499, 0.7}) {
-    const Points points =
-        manifold_of(cube(), Frame(), box, at(overhang, 0, 0.6 - 1e-4), 0.05);
+    const Points points = manifold_of(cube(), Frame(), box, at(overhang, 0, 0.6 - 1e-4), 0.05);
     ASSERT_EQ(points.size(), 4u);
     for (const ManifoldPoint& p : points) EXPECT_LE(p.core_point.x(), 0.5 + 1e-12) << overhang;
   }
@@ -294,8 +291,7 @@ TEST(Manifold, the_fixed_face_is_the_reference_where_asked) {
   const Frame over = turned({1e-3, 0, 0}, {0, 0, 0.6});
   for (const ManifoldPoint& p : manifold_of(cube(), Frame(), large, over, 0.01))
     EXPECT_FALSE(p.reference_is_a);
-  const Points of_a =
-      manifold_of(cube(), Frame(), large, over, 0.01, ReferenceChoice::of_a);
+  const Points of_a = manifold_of(cube(), Frame(), large, over, 0.01, ReferenceChoice::of_a);
   ASSERT_EQ(of_a.size(), 4u);
   for (const ManifoldPoint& p : of_a) {
     EXPECT_TRUE(p.reference_is_a);
@@ -303,8 +299,9 @@ TEST(Manifold, the_fixed_face_is_the_reference_where_asked) {
   }
 }
 
-// A face over a ridge of the ground, a little tilted along it: as the body slides on along the ridge, its
-// lowest point goes with it, so that point is the body's and the normal stands on the ridge.
+// A face over a ridge of the ground, a little tilted along it: as the body slides on along the
+// ridge, its lowest point goes with it, so that point is the body's and the normal stands on the
+// ridge.
 TEST(Manifold, a_face_that_slides_along_a_ridge_does_not_part_from_it) {
   const ShapePtr ridge =
       make_hull({{-5, 0, 0}, {5, 0, 0}, {-5, 2, -2}, {5, 2, -2}, {-5, -2, -2}, {5, -2, -2}});
@@ -334,9 +331,9 @@ TEST(Manifold, a_face_that_slides_along_a_ridge_does_not_part_from_it) {
   }
 }
 
-// The corner of one cube's lower face sticks out over the border of another's upper face: its edge crosses
-// that border, at an angle small enough to count as a contact of faces.  Whatever way the two slide, the
-// deepest point nears as fast as the distance says.
+// The corner of one cube's lower face sticks out over the border of another's upper face: its edge
+// crosses that border, at an angle small enough to count as a contact of faces.  Whatever way the
+// two slide, the deepest point nears as fast as the distance says.
 TEST(Manifold, the_crossing_of_an_edge_and_a_border_nears_as_fast_as_the_bodies) {
   const double depth = 1e-3, step = 1e-6;
   for (const double tilt : {0.005, 0.015, 0.03}) {
@@ -349,14 +346,15 @@ TEST(Manifold, the_crossing_of_an_edge_and_a_border_nears_as_fast_as_the_bodies)
     ASSERT_NEAR(now.distance, -depth, 1e-5);
 
     const Points points = manifold_of(cube(), Frame(), cube(), over, 0.01);
-    const auto deepest = std::min_element(points.begin(), points.end(),
-                                          [](const auto& p, const auto& q) { return p.gap < q.gap; });
+    const auto deepest = std::min_element(
+        points.begin(), points.end(), [](const auto& p, const auto& q) { return p.gap < q.gap; });
     ASSERT_NE(deepest, points.end());
     EXPECT_NEAR(deepest->gap, now.distance, 1e-6);
     for (const Vec3& slide : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, -2, 0.1)}) {
       Frame later = over;
       later.p += step * slide;
-      const double rate = (separation(*cube(), Frame(), *cube(), later).distance - now.distance) / step;
+      const double rate =
+          (separation(*cube(), Frame(), *cube(), later).distance - now.distance) / step;
       const double predicted = slide.dot(deepest->normal) * (deepest->reference_is_a ? 1 : -1);
       EXPECT_NEAR(predicted, rate, 1e-4) << "tilt " << tilt;
     }

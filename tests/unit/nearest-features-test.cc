@@ -23,8 +23,9 @@ Separation part_zero(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
   return part_separation(a->parts()[0], frame_a, b->parts()[0], frame_b, nullptr);
 }
 
-// b thrown at a along a straight line until it is `depth` deep: faces, edges and vertices meet as they
-// do in free flight.  `aligned`: a face of b is first turned against one of a, up to 1e-16 .. 1e-2 rad.
+// b thrown at a along a straight line until it is `depth` deep: faces, edges and vertices meet as
+// they do in free flight.  `aligned`: a face of b is first turned against one of a, up to 1e-16 ..
+// 1e-2 rad.
 struct Throw {
   Frame frame_a, frame_b;
 

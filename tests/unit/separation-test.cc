@@ -175,8 +175,8 @@ TEST(Separation, a_warm_start_returns_what_a_cold_start_returns) {
       const Vec3 spin = random_vector(random, 0.05);
       const Vec3 drift = random_vector(random, 0.005);
       for (int step = 0; step < 40; ++step) {
-        const Separation warm = part_separation(a->parts()[0], pose.frame_a, b->parts()[0],
-                                                pose.frame_b, &cache);
+        const Separation warm =
+            part_separation(a->parts()[0], pose.frame_a, b->parts()[0], pose.frame_b, &cache);
         const Separation cold = parts(a, pose.frame_a, b, pose.frame_b);
         ASSERT_NEAR(warm.distance, cold.distance, 1e-15 * size_of_zoo);
         if (cold.distance < 1e-9) {
@@ -273,7 +273,8 @@ TEST(Separation, degenerate_poses_never_give_nan) {
     for (const auto& e : core.edges()) sphere_at(0.5 * (core.vertex(e.tail) + core.vertex(e.head)));
     for (const auto& f : core.faces())
       sphere_at((core.vertex(core.corner(f.first)) + core.vertex(core.corner(f.first + 1)) +
-                 core.vertex(core.corner(f.first + 2))) / 3);
+                 core.vertex(core.corner(f.first + 2))) /
+                3);
   }
 }
 
@@ -338,8 +339,8 @@ TEST(Separation, half_space_measures_the_lowest_point) {
         truth = std::min(truth, normal.dot(frame_g.to_local(v)) - 0.3);
       SimplexCache cache;
       for (int repeat = 0; repeat < 2; ++repeat) {
-        const Separation s = part_separation(ground->parts()[0], frame_g, shape->parts()[0],
-                                             frame, &cache);
+        const Separation s =
+            part_separation(ground->parts()[0], frame_g, shape->parts()[0], frame, &cache);
         ASSERT_NEAR(s.distance, truth, 4e-15);
         ASSERT_NEAR((s.normal - frame_g.R * normal).norm(), 0, 1e-15);
       }
@@ -372,8 +373,8 @@ TEST(Separation, of_unions_is_the_least_over_parts_and_skips_distant_ones) {
     truth.distance = 1e300;
     for (std::size_t p = 0; p < 6; ++p)
       for (std::size_t q = 0; q < 6; ++q) {
-        Separation s = part_separation(shape->parts()[p], frame_a, shape->parts()[q], frame_b,
-                                       nullptr);
+        Separation s =
+            part_separation(shape->parts()[p], frame_a, shape->parts()[q], frame_b, nullptr);
         s.part_a = static_cast<int>(p);
         s.part_b = static_cast<int>(q);
         if (s.distance < truth.distance) truth = s;

@@ -42,8 +42,8 @@ TEST(Shape, bounds_of_turned_polyhedra_are_exact) {
 }
 
 TEST(Shape, bounds_of_a_union_hold_all_parts) {
-  const ShapePtr pair = make_union({place_shape(make_sphere(1), {{2, 0, 0}, Quat::Identity()}),
-                                    make_box({1, 1, 4})});
+  const ShapePtr pair =
+      make_union({place_shape(make_sphere(1), {{2, 0, 0}, Quat::Identity()}), make_box({1, 1, 4})});
   const Aabb box = pair->bounds(Frame());
   EXPECT_EQ(box.lo, Vec3(-0.5, -1, -2));
   EXPECT_EQ(box.hi, Vec3(3, 1, 2));
@@ -107,11 +107,17 @@ TEST(Shape, refuses_bad_values_by_name) {
             "the radius of a sphere is NaN; expected a positive number of metres");
   EXPECT_EQ(error_of([] { return make_sphere(infinity); }),
             "the radius of a sphere is infinity; expected a positive number of metres");
-  EXPECT_EQ(error_of([] { return make_box({1, 0, 1}); }),
+  EXPECT_EQ(error_of([] {
+              return make_box({1, 0, 1});
+            }),
             "the y edge of a box is 0; expected a positive number of metres");
-  EXPECT_EQ(error_of([] { return make_half_space({0, 0, 0}, 0); }),
+  EXPECT_EQ(error_of([] {
+              return make_half_space({0, 0, 0}, 0);
+            }),
             "the normal of a half-space is (0 0 0); expected a finite vector that isn't zero");
-  EXPECT_EQ(error_of([] { return make_half_space({0, 0, 1}, infinity); }),
+  EXPECT_EQ(error_of([] {
+              return make_half_space({0, 0, 1}, infinity);
+            }),
             "the offset of a half-space is infinity; expected a finite number");
   EXPECT_EQ(error_of([] { return make_union({}); }),
             "a union has no parts; expected at least one shape");
@@ -119,7 +125,9 @@ TEST(Shape, refuses_bad_values_by_name) {
               return place_shape(make_sphere(1), {{0, std::nan(""), 0}, Quat::Identity()});
             }),
             "a shape is placed at (0 NaN 0); expected finite numbers");
-  EXPECT_EQ(error_of([] { return place_shape(make_sphere(1), {{0, 0, 0}, Quat(0, 0, 0, 0)}); }),
+  EXPECT_EQ(error_of([] {
+              return place_shape(make_sphere(1), {{0, 0, 0}, Quat(0, 0, 0, 0)});
+            }),
             "a shape is placed with a quaternion that is zero or not finite");
 }
 

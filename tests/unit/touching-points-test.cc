@@ -50,8 +50,7 @@ TEST(TouchingPoints, a_shifted_cube_touches_on_the_overlap_of_the_faces) {
 }
 
 TEST(TouchingPoints, a_cube_turned_by_an_eighth_touches_at_eight_points) {
-  const auto points =
-      touching(cube(), Frame(), cube(), turned({0, 0, pi / 4}, {0, 0, 1}));
+  const auto points = touching(cube(), Frame(), cube(), turned({0, 0, pi / 4}, {0, 0, 1}));
   ASSERT_EQ(points.size(), 8u);
   for (const ContactPoint& p : points) {
     EXPECT_NEAR((p.normal - Vec3::UnitZ()).norm(), 0, 1e-15);
@@ -150,9 +149,8 @@ TEST(TouchingPoints, a_polyhedron_touches_a_half_space_at_its_low_vertices) {
 
 TEST(TouchingPoints, manifolds_have_at_most_eight_points_spread_over_the_face) {
   const ShapePtr drum = prism(40, 0.5, 0.2);
-  for (const auto& points :
-       {touching(make_half_space({0, 0, 1}, 0), Frame(), drum, at(0, 0, 0.2)),
-        touching(drum, Frame(), drum, turned({0, 0, 0.03}, {0.05, 0, 0.4}))}) {
+  for (const auto& points : {touching(make_half_space({0, 0, 1}, 0), Frame(), drum, at(0, 0, 0.2)),
+                             touching(drum, Frame(), drum, turned({0, 0, 0.03}, {0.05, 0, 0.4}))}) {
     ASSERT_EQ(points.size(), 8u);
     Aabb box;
     for (const ContactPoint& p : points) box.add(p.point);
