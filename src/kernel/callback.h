@@ -13,37 +13,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "kernel/key.h"
-#include "kernel/slots.h"
-#include "math/vec.h"
+#include "dynamics/body.h"
+#include "timeline/collision.h"
+#include "timeline/slots.h"
 
 namespace tw {
-
-using BodyId = std::uint32_t;
-
-// What a body does at one instant.  Position and orientation are the *body frame's*, velocity the
-// centre of mass's; all in the world frame, SI.
-struct BodyState {
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 angular_velocity = Vec3::Zero();
-};
-
-enum class CollisionKind : unsigned char { collision, fusion, fission };
-
-// A committed or just computed collision, as callbacks and observers see it; observers also see the
-// fusions of two processes at a contact and the fissions, one for each contact that broke.
-struct Collision {
-  CollisionKind kind = CollisionKind::collision;
-  Key key;
-  BodyId body1 = 0, body2 = 0;  // body1 < body2
-  double time = 0;
-  Vec3 point = Vec3::Zero();    // world, m: of the largest impulse
-  Vec3 normal = Vec3::UnitZ();  // unit, world, from body1 to body2
-  double speed = 0;             // approach speed there before the impulse, m/s, positive
-  double impulse = 0;           // sum of the normal impulses, N s
-};
 
 // What a callback is handed for each target: reads at the event's time, writes into the state that
 // follows.  Lives only during the call.
@@ -93,9 +67,6 @@ class CollisionCallback {
 };
 
 using CollisionObserver = std::function<void(const Collision&)>;
-
-// What one discontinuity tells observers.
-using Told = std::vector<Collision>;
 
 // One moving body in a frame.
 struct BodyPose {

@@ -44,7 +44,7 @@ void Kernel::rewind_callback(std::uint32_t number, const Key& key) {
     } else {
       // the last record that is left says when
       double next = callback.committed_next;
-      for (const State* s = graph.tail(callback.def.targets.front()); s; s = s->prev)
+      for (const State* s = graph.tail(process_of(callback.def.targets.front())); s; s = s->prev)
         if (s->key.kind == KeyKind::callback && s->key.id == number) {
           next = s->next_callback;
           break;
@@ -53,7 +53,8 @@ void Kernel::rewind_callback(std::uint32_t number, const Key& key) {
     }
   }
   // a call that stands is not made twice
-  const State* tail = graph.last_at_or_before(callback.def.targets.front(), callback.next);
+  const State* tail =
+      graph.last_at_or_before(process_of(callback.def.targets.front()), callback.next);
   if (tail && tail->key == callback.next && callback.def.period)
     callback.next = first_tick(callback, {callback.next.time, 0, KeyKind::callback, number + 1ull});
   schedule_callback(number);
@@ -65,34 +66,36 @@ void Kernel::process_callback(std::uint32_t number) {
 
   // only after the targets' claims have reached its time; a stopped target parks it
   for (const BodyId id : callback.def.targets)
-    if (graph.tail(id)->error && graph.tail(id)->key < key) {
+    if (graph.tail(process_of(id))->error && graph.tail(process_of(id))->key < key) {
       callback.parked = true;
       schedule_callback(number);
       return;
     }
-  std::vector<BodyId> hit;
+  std::vector<BodyId> struck;
   for (const BodyId id : callback.def.targets) {
     if (!await(id, key)) return;
-    if (bodies[id]->dynamic()) hit.push_back(id);
+    if (bodies[id]->dynamic()) struck.push_back(id);
   }
-  std::sort(hit.begin(), hit.end());
-  hit.erase(std::unique(hit.begin(), hit.end()), hit.end());
-  if (!await(region_of(key, hit, false), key)) return;
+  std::sort(struck.begin(), struck.end());
+  struck.erase(std::unique(struck.begin(), struck.end()), struck.end());
+  if (!await(region_of(key, struck, false), key)) return;
   if (!(callback.next == key)) return;
 
   // drafts that carry the old arcs, and views of them
-  std::vector<Draft> drafts;
-  for (const BodyId id : callback.def.targets) drafts.push_back(draft_for(*bodies[id], key, false));
+  std::vector<Successor> successors;
+  for (const BodyId id : callback.def.targets)
+    successors.push_back(make_successor(*bodies[id], key, false));
   std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
-  for (Draft& draft : drafts) {
-    draft.enters = true;
-    before.push_back({draft.data.slots, draft.data.random});
+  for (Successor& successor : successors) {
+    successor.role = Role::record;
+    before.push_back({successor.data.slots, successor.data.random});
   }
-  std::vector<DraftView> views;
-  views.reserve(drafts.size());
-  for (Draft& draft : drafts) views.emplace_back(draft, key, false, options.gravity);
+  std::vector<SuccessorView> views;
+  views.reserve(successors.size());
+  for (Successor& successor : successors)
+    views.emplace_back(successor, key, false, options.gravity);
   std::vector<StateView*> pointers;
-  for (DraftView& view : views) pointers.push_back(&view);
+  for (SuccessorView& view : views) pointers.push_back(&view);
 
   // the call; its error stops the targets, speculatively
   double next = never;
@@ -111,20 +114,20 @@ void Kernel::process_callback(std::uint32_t number) {
   } catch (const Interrupted&) {
     throw;
   } catch (...) {
-    for (Draft& draft : drafts) draft.data.error = std::current_exception();
+    for (Successor& successor : successors) successor.data.error = std::current_exception();
   }
 
   bool any_changed = false;
-  for (std::size_t i = 0; i < drafts.size(); ++i) {
-    StateData& data = drafts[i].data;
-    any_changed = any_changed || data.arc_key == key || data.slots != before[i].first ||
+  for (std::size_t i = 0; i < successors.size(); ++i) {
+    StateData& data = successors[i].data;
+    any_changed = any_changed || successors[i].starts_arc() || data.slots != before[i].first ||
                   data.random != before[i].second;
     data.next_callback = next;
   }
-  for (Draft& draft : drafts) draft.data.changed = any_changed;
-  if (drafts.front().data.error)
-    stop_fellows(key, drafts);
-  else if (touches_groups(key, drafts) && !regroup(key, drafts, {}))
+  for (Successor& successor : successors) successor.data.changed = any_changed;
+  if (successors.front().data.error)
+    stop_group_mates(key, successors);
+  else if (touches_groups(successors) && !regroup(key, successors, Cause::callback))
     return;
 
   // the next call, then the states (a rollback through them rewinds it again)
@@ -132,7 +135,7 @@ void Kernel::process_callback(std::uint32_t number) {
                       ? first_tick(callback, {key.time, 0, KeyKind::callback, number + 1ull})
                       : Key{next, 0, KeyKind::callback, number};
   schedule_callback(number);
-  enter_discontinuity(key, drafts);
+  enter_discontinuity(key, successors);
 }
 
 }  // namespace tw

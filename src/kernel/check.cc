@@ -47,7 +47,7 @@ bool moves_in_group(const State& state) {
 Key key_or_last(const State* state) { return state ? state->key : last_key; }
 
 // A bound on how fast any point of the body moves, m/s.
-double point_speed(const Body& body, const ArcPoint& p) {
+double point_speed(const Body& body, const PoseTwist& p) {
   const double turn = p.w.norm();
   return p.v.norm() + (turn > 0 ? turn * body.radius : 0);
 }
@@ -96,7 +96,7 @@ std::uint32_t Kernel::make_pair(Body& a, Body& b, const Key& from) {
   pair.a = first.id();
   pair.b = second.id();
   pair.from = from;
-  pair.head_start = std::max(first.head_start, second.head_start);
+  pair.head_start = std::max(process(first).head_start, process(second).head_start);
   pair.place_a = static_cast<std::uint32_t>(first.pairs.size());
   pair.place_b = static_cast<std::uint32_t>(second.pairs.size());
   first.pairs.push_back(index);
@@ -148,8 +148,8 @@ void Kernel::reset_pair(std::uint32_t index, const Key& key) {
   }
   pair.pending = false;
   pair.parked = false;
-  const State& tail_a = *graph.tail(pair.a);
-  const State& tail_b = *graph.tail(pair.b);
+  const State& tail_a = *graph.tail(process_of(pair.a));
+  const State& tail_b = *graph.tail(process_of(pair.b));
   const bool stopped = tail_a.error || tail_b.error;
   if (!stopped && (moves_in_group(tail_a) || moves_in_group(tail_b))) {
     // the next claim asks again
@@ -164,10 +164,12 @@ void Kernel::reset_pair(std::uint32_t index, const Key& key) {
 
 Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   Piece piece;
-  piece.a = graph.last_at_or_before(a, from);
-  piece.b = graph.last_at_or_before(b, from);
-  if (!piece.a) piece.a = graph.head(a);
-  if (!piece.b) piece.b = graph.head(b);
+  piece.body_a = bodies[a].get();
+  piece.body_b = bodies[b].get();
+  piece.a = graph.last_at_or_before(process_of(a), from);
+  piece.b = graph.last_at_or_before(process_of(b), from);
+  if (!piece.a) piece.a = graph.head(process_of(a));
+  if (!piece.b) piece.b = graph.head(process_of(b));
   piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
   piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
   const double natural = std::min(natural_end(*piece.a), natural_end(*piece.b));
@@ -178,16 +180,16 @@ Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   return piece;
 }
 
-bool Kernel::linked(const Piece& piece) const {
-  const Group* judge = governing(*piece.a, *piece.b);
-  return judge && judge->link(pair_id(piece.a->process, piece.b->process));
+bool Kernel::in_contact(const Piece& piece) const {
+  const Group* owner = owner_of(*piece.a, *piece.b);
+  return owner && owner->find(pair_id(piece.body_a->id(), piece.body_b->id()));
 }
 
 // Whether the two are in contact from `from` on as far as is known.
-bool Kernel::linked_from(BodyId a, BodyId b, const Key& from) const {
+bool Kernel::in_contact_from(BodyId a, BodyId b, const Key& from) const {
   for (Key at = from;;) {
     const Piece piece = piece_at(a, b, at);
-    if (!linked(piece)) return false;
+    if (!in_contact(piece)) return false;
     if (piece.ends_naturally || piece.end == last_key) return true;
     at = piece.end;
   }
@@ -208,21 +210,21 @@ Key Kernel::impact_key(const Piece& piece, double impact_time) const {
   // the last states at or before the impact, records and slot changes included
   std::uint32_t microstep = 0;
   for (const State* state : {piece.a, piece.b}) {
-    if (!bodies[state->process]->dynamic()) continue;
+    if (!body_of(state->process).dynamic()) continue;
     if (state->arc_key.time == impact_time)
       microstep = std::max(microstep, state->arc_key.microstep);
     for (const State* s = state; s && s->key < piece.end && s->key.time <= impact_time; s = s->next)
       if (s->key.time == impact_time && s->key.kind == KeyKind::edit)
         microstep = std::max(microstep, s->key.microstep);
   }
-  return {impact_time, microstep + 1, KeyKind::impact, pair_id(piece.a->process, piece.b->process)};
+  return {impact_time, microstep + 1, KeyKind::impact, pair_id(piece.body_a->id(), piece.body_b->id())};
 }
 
 // How fast the nearest points close, m/s; 0 where that is rounding.
 double Kernel::closing_at(const Piece& piece, double when, const Separation& s) const {
-  const Body& a = *bodies[piece.a->process];
-  const Body& b = *bodies[piece.b->process];
-  const ArcPoint pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
+  const PoseTwist pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
   const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
   const double closing = -(ub - ua).dot(s.normal);
   return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
@@ -236,14 +238,14 @@ bool Kernel::approaching_at(const Piece& piece, double when) const {
 // none.
 bool Kernel::pressed_at(const Piece& piece, const Vec3& normal) const {
   const auto pull = [&](const State& s) {
-    return bodies[s.process]->dynamic() && !s.group ? s.acceleration : Vec3(Vec3::Zero());
+    return body_of(s.process).dynamic() && !s.group ? s.acceleration : Vec3(Vec3::Zero());
   };
   return (pull(*piece.b) - pull(*piece.a)).dot(normal) < 0;
 }
 
 Separation Kernel::separation_at(const Piece& piece, double when) const {
-  const Body& a = *bodies[piece.a->process];
-  const Body& b = *bodies[piece.b->process];
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
   return separation(*a.shape_P, frame_at(a, *piece.a, when), *b.shape_P,
                     frame_at(b, *piece.b, when));
 }
@@ -422,14 +424,14 @@ void Kernel::pursue(std::uint32_t index) {
       queue.withdraw(pair.event);
       return;
     }
-    if (linked(piece)) {
+    if (in_contact(piece)) {
       if (!next_piece(pair, piece)) return;
       continue;
     }
     // arcs of moving groups are known as far as both have claimed
     double until = now;
     if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
-      until = std::min(bodies[pair.a]->claim.time, bodies[pair.b]->claim.time);
+      until = std::min(process(*bodies[pair.a]).claim.time, process(*bodies[pair.b]).claim.time);
       if (!(pair.from.time < until)) {
         queue.withdraw(pair.event);
         return;

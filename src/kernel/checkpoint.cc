@@ -32,7 +32,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   result->gravity = options.gravity;
   for (const auto& body : bodies) {
     const Key present = present_key();
-    const State* state = graph.last_before(body->id(), present);
+    const State* state = graph.last_before(body->process, present);
     while (state->prev && !state->committed) state = state->prev;
     auto& kept = result->states.emplace_back();
     for (; state && state->key < present; state = state->next)
@@ -63,9 +63,9 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
     if (pairs[i].live) drop_pair(i);
   for (const auto& body : bodies) {
-    queue.withdraw(body->advance);
-    queue.withdraw(body->group_check);
-    graph.clear(body->id());
+    queue.withdraw(process(*body).advance);
+    queue.withdraw(process(*body).group_check);
+    graph.clear(body->process);
   }
   undelivered_.clear();
   next_observer_ = 0;
@@ -85,13 +85,13 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   newborn_.clear();
   for (const auto& body : bodies) {
     for (const Checkpoint::Kept& kept : checkpoint.states[body->id()]) {
-      State* state = graph.append(body->id(), kept.key);
+      State* state = graph.append(body->process, kept.key);
       static_cast<StateData&>(*state) = kept.data;
       state->committed = kept.committed;
     }
-    const Key first = graph.head(body->id())->key;
-    body->claim = body->fixed() && begun ? last_key : begun ? present : first;
-    body->lonely_claims = 0;
+    const Key first = graph.head(body->process)->key;
+    process(*body).claim = body->fixed() && begun ? last_key : begun ? present : first;
+    process(*body).lonely_claims = 0;
     // boxes are those of another time until the first claim
     if (!body->fixed()) body->placed = false;
     if (begun) {

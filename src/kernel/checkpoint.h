@@ -7,8 +7,8 @@
 
 #include "kernel/counters.h"
 #include "kernel/due.h"
-#include "kernel/key.h"
-#include "kernel/state.h"
+#include "timeline/key.h"
+#include "timeline/state.h"
 
 namespace tw {
 

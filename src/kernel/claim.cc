@@ -39,33 +39,34 @@ bool plane_overlaps(const Body& plane, const Aabb& box) {
 
 void Kernel::schedule_advance(Body& body) {
   // a member waits for the group check where its arc ends
-  if (body.fixed() || body.claim.time >= natural_end(*graph.tail(body.id()))) {
-    queue.withdraw(body.advance);
+  if (body.fixed() || process(body).claim.time >= natural_end(*graph.tail(body.process))) {
+    queue.withdraw(process(body).advance);
     return;
   }
   // after callbacks of that instant, which may start a new arc, and before its impacts
-  const Key key{body.claim.time, 0, KeyKind::group_check, body.id()};
-  queue.schedule(body.advance, make_event(key, EventKind::advance, body.id(), body.head_start));
+  const Key key{process(body).claim.time, 0, KeyKind::group_check, body.id()};
+  queue.schedule(process(body).advance,
+                 make_event(key, EventKind::advance, body.id(), process(body).head_start));
 }
 
 bool Kernel::ready(const Body& body, const Key& key) const {
-  return body.fixed() || key < body.claim;
+  return body.fixed() || key < process(body).claim;
 }
 
 // Claims windows until `key` lies before the claim.
 void Kernel::make_ready(Body& body, const Key& key) {
-  while (!ready(body, key) && !graph.tail(body.id())->error &&
-         body.claim.time < natural_end(*graph.tail(body.id())))
+  while (!ready(body, key) && !graph.tail(body.process)->error &&
+         process(body).claim.time < natural_end(*graph.tail(body.process)))
     claim_window(body);
 }
 
 double Kernel::window_end(const Body& body) const {
-  const State& tail = *graph.tail(body.id());
-  const double start = body.claim.time;
+  const State& tail = *graph.tail(body.process);
+  const double start = process(body).claim.time;
   if (tail.group) return natural_end(tail);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
-  const double growth = std::ldexp(1.0, std::max(0, body.lonely_claims - patience));
+  const double growth = std::ldexp(1.0, std::max(0, process(body).lonely_claims - patience));
   const double distance = options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
   if (body.dynamic()) {
@@ -78,7 +79,7 @@ double Kernel::window_end(const Body& body) const {
   double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
 
   // the next callback ends the arc as we know it
-  for (const std::uint32_t number : body.callbacks) {
+  for (const std::uint32_t number : process(body).callbacks) {
     const double next = callbacks[number].next.time;
     if (next > start) end = std::min(end, next);
   }
@@ -87,34 +88,35 @@ double Kernel::window_end(const Body& body) const {
 
 Aabb Kernel::claimed_box(const Body& body, double end) const {
   Aabb box;
-  const State* state = graph.last_at_or_before_time(body.id(), gvt);
-  if (!state) state = graph.head(body.id());
+  const State* state = graph.last_at_or_before_time(body.process, gvt);
+  if (!state) state = graph.head(body.process);
   for (; state; state = state->next) {
     const double from = std::max(state->key.time, gvt);
     const double to = state->next ? std::min(state->next->key.time, end) : end;
     if (to >= from) box.add(swept_bounds(body, *state, from, to));
   }
-  if (const State& tail = *graph.tail(body.id()); tail.group && !tail.group->at_rest)
-    box.grow(link_margin * body.least_width);
+  if (const State& tail = *graph.tail(body.process); tail.group && !tail.group->at_rest)
+    box.grow(contact_margin * body.least_width);
   box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
 }
 
 void Kernel::claim_window(Body& body) {
   ++counters.claims;
-  if (const auto& group = graph.tail(body.id())->group; group && !group->end_tested) {
+  if (const auto& group = graph.tail(body.process)->group; group && !group->end_tested) {
     test_group_end(*group);
     schedule_group_checks(*group);
   }
-  const Key before = body.claim;
-  if (graph.tail(body.id())->error || body.claim.time >= natural_end(*graph.tail(body.id()))) {
+  const Key before = process(body).claim;
+  if (graph.tail(body.process)->error ||
+      process(body).claim.time >= natural_end(*graph.tail(body.process))) {
     // a stopped process moves no further, a member of a group not past the next check
-    queue.withdraw(body.advance);
+    queue.withdraw(process(body).advance);
     return;
   }
 
   const double end = body.fixed() ? never : window_end(body);
-  body.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
+  process(body).claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
     if (!body.unbounded)
       grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end), body.fixed());
@@ -123,7 +125,8 @@ void Kernel::claim_window(Body& body) {
     const std::uint64_t candidates = counters.candidates;
     find_partners(body, before);
     const bool alone = counters.candidates == candidates;
-    body.lonely_claims = alone ? std::min(body.lonely_claims + 1, patience + most_doublings) : 0;
+    process(body).lonely_claims =
+        alone ? std::min(process(body).lonely_claims + 1, patience + most_doublings) : 0;
   }
   schedule_advance(body);
 }
@@ -179,8 +182,9 @@ void Kernel::meet(Body& body, Body& other, const Key& claimed_before) {
     if (waits && pair.from != last_key) pursue(known);
     return;
   }
-  const Key from = std::min(claimed_before, other.claim);
-  if (linked_from(std::min(body.id(), other.id()), std::max(body.id(), other.id()), from)) return;
+  const Key from = std::min(claimed_before, process(other).claim);
+  if (in_contact_from(std::min(body.id(), other.id()), std::max(body.id(), other.id()), from))
+    return;
 
   // an exact pair gets a record only when it will meet
   bool all_exact = true;

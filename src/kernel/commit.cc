@@ -14,7 +14,7 @@
 
 namespace tw {
 
-std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
+std::uint64_t state_hash(const Body& body, const Key& key, const PoseTwist& point,
                          const StateData& data) {
   const BodyState s = body_state(body, point);
   Hasher h;
@@ -71,7 +71,7 @@ void Kernel::commit(double limit, bool inclusive) {
 // ends where it stopped.
 std::exception_ptr Kernel::error_before(double& limit, bool& inclusive) const {
   const State* first = nullptr;
-  for (const std::uint32_t process : graph.busy()) {
+  for (const ProcessId process : graph.busy()) {
     const State* tail = graph.tail(process);
     if (!tail || !tail->error) continue;
     if (tail->key.time < limit || (inclusive && tail->key.time == limit))
@@ -88,7 +88,7 @@ void Kernel::commit_states(double limit, bool inclusive) {
     return s->key.time < limit || (inclusive && s->key.time == limit);
   };
   const std::size_t delivered_before = undelivered_.size();
-  for (const std::uint32_t process : graph.busy()) {
+  for (const ProcessId process : graph.busy()) {
     // back from the tail to the last committed one, then forward
     State* state = graph.tail(process);
     while (state && state->prev && !state->prev->committed) state = state->prev;
@@ -119,10 +119,10 @@ void Kernel::commit_state(State& state) {
   counters.collisions -= state.tally.fusions;  // their keys are those of impacts
   counters.fissions += state.tally.fissions;
   counters.contact_changes += state.tally.contact_changes;
-  if (state.told && !observers.empty())
-    for (const Collision& told : *state.told) undelivered_.emplace_back(state.told, &told);
+  if (state.report && !observers.empty())
+    for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
   if (options.hash && state.changed) {
-    const Body& body = *bodies[state.process];
+    const Body& body = body_of(state.process);
     hash_sum_ += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
     ++hash_count_;
   }
@@ -178,7 +178,7 @@ void Kernel::deliver_frame(SinkRecord& record) {
   std::vector<BodyPose> poses;
   for (const auto& body : bodies) {
     if (body->fixed()) continue;
-    const State* state = graph.last_at_or_before_time(body->id(), frame_time);
+    const State* state = graph.last_at_or_before_time(body->process, frame_time);
     if (!state) continue;
     poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
   }
@@ -190,7 +190,7 @@ void Kernel::deliver_frame(SinkRecord& record) {
 // Keeps the last state at or before the limit, and what frames that are still due will read.
 void Kernel::free_states(double limit) {
   for (const SinkRecord& sink : sinks) limit = std::min(limit, sink.next_time());
-  for (const std::uint32_t process : graph.busy()) {
+  for (const ProcessId process : graph.busy()) {
     State* keep = graph.last_at_or_before_time(process, limit);
     // ties: an edit at the limit may follow the first of several states there
     while (keep && !keep->committed) keep = keep->prev;

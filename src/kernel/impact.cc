@@ -95,7 +95,8 @@ bool resolve(Resolution& r, const std::vector<ContactPoint>& points, double thre
   return false;
 }
 
-ContactPoint sphere_contact(const Body& a, const ArcPoint& pa, const Body& b, const ArcPoint& pb) {
+ContactPoint sphere_contact(const Body& a, const PoseTwist& pa, const Body& b,
+                            const PoseTwist& pb) {
   ContactPoint c;
   if (a.is_fixed_plane) {
     c.normal = a.plane_normal;
@@ -132,7 +133,7 @@ bool Kernel::wants_collision(const Body& a, const Body& b) const {
 }
 
 // Where the two touch.
-void Kernel::find_impact_points(const Draft& a, const Draft& b) {
+void Kernel::find_impact_points(const Successor& a, const Successor& b) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   contact_points_.clear();
@@ -152,10 +153,10 @@ void Kernel::find_impact_points(const Draft& a, const Draft& b) {
 
 // At seams of the ground: points that neighbours of the fixed body bury give way to those that
 // support; true if there are none.
-bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
-  const Draft* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
+bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
+  const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
-  const Draft& mover = fixed == &a ? b : a;
+  const Successor& mover = fixed == &a ? b : a;
   find_fixed_around(*mover.body);
   const auto& parts = fixed->body->shape_P->parts();
   if (ground_.size() < 2 && parts.size() < 2) return false;
@@ -177,7 +178,7 @@ bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
 
   // another axis may support
   manifold_points_.clear();
-  const Side side_a = side_of(a), side_b = side_of(b);
+  const PlacedBody side_a = placed(a), side_b = placed(b);
   manifold_at_seams(*a.body->shape_P, side_a.frame, around(*a.body), *b.body->shape_P, side_b.frame,
                     around(*b.body), touch_per_accuracy * options.accuracy * size, size,
                     manifold_points_);
@@ -188,7 +189,7 @@ bool Kernel::drop_ghosts(const Draft& a, const Draft& b) {
 }
 
 // Slow and pressed together, or a quick run of impacts: counts this one.  `fastest`: approach, m/s.
-bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
+bool Kernel::is_soft(const Key& key, Successor& a, Successor& b, double fastest) const {
   const double gravity = gravity_magnitude();
   const double slow = fusion_speed(*a.body, *b.body);
   const double mass_a = a.body->dynamic() ? a.body->mass : b.body->mass;
@@ -199,7 +200,7 @@ bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
   if (key.microstep > most_repeated) return true;
 
   // what a group carries does not fall away from what comes to lie on it
-  const auto pull = [](const Draft& d) {
+  const auto pull = [](const Successor& d) {
     return d.body->dynamic() ? d.data.acceleration : Vec3(Vec3::Zero());
   };
   const bool pressed =
@@ -210,16 +211,16 @@ bool Kernel::is_soft(const Key& key, Draft& a, Draft& b, double fastest) const {
   const double tau =
       std::min(slow / gravity, pi * std::sqrt(d0 / gravity)) * (pressed ? 1 : free_run_share);
   bool quick = true;
-  for (Draft* draft : {&a, &b}) {
-    if (!draft->body->dynamic()) continue;
-    draft->data.impacts = continued(draft->data.impacts, key.time, tau);
-    quick = quick && draft->data.impacts.count >= soft_run;
+  for (Successor* successor : {&a, &b}) {
+    if (!successor->body->dynamic()) continue;
+    successor->data.impacts = continued(successor->data.impacts, key.time, tau);
+    quick = quick && successor->data.impacts.count >= soft_run;
   }
   return (pressed && fastest < slow) || quick;
 }
 
 // Fills the drafts with the motion after the impact; a soft one leaves it as it is.
-bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
+bool Kernel::compute_impact(const Key& key, Successor& a, Successor& b,
                             std::optional<Collision>& collision) {
   find_impact_points(a, b);
   // nothing to hit: the two are followed as a contact while they pass the seam
@@ -229,7 +230,7 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   double worst = 0;
   for (const ContactPoint& c : contact_points_) {
     worst = std::min(worst, r.approach(c));
-    (a.enters ? a : b).data.tally.note_gap(c.gap);
+    (a.enters() ? a : b).data.tally.note_gap(c.gap);
   }
   const ContactPoint first = contact_points_.front();
   const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
@@ -261,7 +262,7 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
   if (a.body->dynamic()) take_velocities(a, r.a);
   if (b.body->dynamic()) take_velocities(b, r.b);
   // what is told once stands on the first state that enters the graph
-  (a.enters ? a : b).data.tally.kinematic_work = r.kinematic_work;
+  (a.enters() ? a : b).data.tally.kinematic_work = r.kinematic_work;
   if (wants_collision(*a.body, *b.body))
     describe(CollisionKind::collision, r.point, r.normal, r.speed, r.normal_impulse);
   // what still approaches after so many impulses stays in contact
@@ -269,14 +270,14 @@ bool Kernel::compute_impact(const Key& key, Draft& a, Draft& b,
 }
 
 // Every callback that matches, in order of registration.
-void Kernel::run_collision_callbacks(const Collision& collision, Draft& a, Draft& b) {
+void Kernel::run_collision_callbacks(const Collision& collision, Successor& a, Successor& b) {
   for (const CollisionCallbackDef& def : collision_callbacks) {
     if (!match_specificity(def.a, def.b, a.body->contact, b.body->contact)) continue;
     // the sides in the order given; where both match either way, the body added first comes first
     const bool straight =
         side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
-    DraftView view_a(a, collision.key, false, options.gravity);
-    DraftView view_b(b, collision.key, false, options.gravity);
+    SuccessorView view_a(a, collision.key, false, options.gravity);
+    SuccessorView view_b(b, collision.key, false, options.gravity);
     ++counters.callbacks_run;
     if (straight)
       def.callback->run(collision, false, view_a, view_b);
@@ -291,39 +292,39 @@ void Kernel::process_impact(std::uint32_t index) {
   Body& body_b = *bodies[pairs[index].b];
 
   // only after the claims of the receivers, and of those they touch, have reached its time
-  std::vector<BodyId> hit;
+  std::vector<BodyId> struck;
   for (const BodyId id : {body_a.id(), body_b.id()})
-    if (bodies[id]->dynamic()) hit.push_back(id);
+    if (bodies[id]->dynamic()) struck.push_back(id);
   bool all_known = true;
   for (const BodyId id : {body_a.id(), body_b.id()}) all_known = await(id, key) && all_known;
-  if (!all_known || !await(region_of(key, hit, false), key)) return;
+  if (!all_known || !await(region_of(key, struck, false), key)) return;
 
-  std::vector<Draft> drafts;
-  drafts.push_back(draft_for(body_a, key, body_a.dynamic()));
-  drafts.push_back(draft_for(body_b, key, body_b.dynamic()));
+  std::vector<Successor> successors;
+  successors.push_back(make_successor(body_a, key, body_a.dynamic()));
+  successors.push_back(make_successor(body_b, key, body_b.dynamic()));
   std::optional<Collision> collision;
-  const bool soft = compute_impact(key, drafts[0], drafts[1], collision);
+  const bool soft = compute_impact(key, successors[0], successors[1], collision);
 
   // callbacks see the drafts; their errors stop the receivers, speculatively
-  if (collision && collision->kind == CollisionKind::collision && !drafts[0].data.error &&
+  if (collision && collision->kind == CollisionKind::collision && !successors[0].data.error &&
       !collision_callbacks.empty()) {
     try {
-      run_collision_callbacks(*collision, drafts[0], drafts[1]);
+      run_collision_callbacks(*collision, successors[0], successors[1]);
     } catch (const Interrupted&) {
       throw;
     } catch (...) {
-      drafts[0].data.error = drafts[1].data.error = std::current_exception();
+      successors[0].data.error = successors[1].data.error = std::current_exception();
     }
   }
   if (collision)
-    (drafts[0].enters ? drafts[0] : drafts[1]).data.told =
-        std::make_shared<const Told>(Told{*collision});
-  if (drafts[0].data.error)
-    stop_fellows(key, drafts);
-  else if ((soft || drafts[0].data.group || drafts[1].data.group) &&
-           !regroup(key, drafts, {.fusion = soft, .blow = !soft}))
+    (successors[0].enters() ? successors[0] : successors[1]).data.report =
+        std::make_shared<const Report>(Report{*collision});
+  if (successors[0].data.error)
+    stop_group_mates(key, successors);
+  else if ((soft || successors[0].data.group || successors[1].data.group) &&
+           !regroup(key, successors, soft ? Cause::fusion : Cause::impact))
     return;
-  enter_discontinuity(key, drafts);
+  enter_discontinuity(key, successors);
 }
 
 }  // namespace tw

@@ -47,7 +47,7 @@ Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, 
   return {priority, key, kind, subject};
 }
 
-void Kernel::process(Event event) {
+void Kernel::handle(Event event) {
   switch (event.kind) {
     case EventKind::advance: claim_window(*bodies[event.subject]); break;
     case EventKind::callback: process_callback(event.subject); break;
@@ -125,13 +125,14 @@ bool Kernel::step(double until) {
 
 const State* Kernel::state_at(BodyId id, double when) const {
   // between runs nothing but the past counts
-  const State* state = when == time && !running ? graph.last_before(id, present_key())
-                                                : graph.last_at_or_before_time(id, when);
+  const State* state = when == time && !running
+                           ? graph.last_before(process_of(id), present_key())
+                           : graph.last_at_or_before_time(process_of(id), when);
   while (state && state->error && state->prev) state = state->prev;
-  return state ? state : graph.head(id);
+  return state ? state : graph.head(process_of(id));
 }
 
-ArcPoint Kernel::point_at(BodyId id, double when) const {
+PoseTwist Kernel::point_at(BodyId id, double when) const {
   return evaluate(*bodies[id], *state_at(id, when), when);
 }
 
@@ -143,7 +144,7 @@ double Kernel::total_energy(double when) const {
   std::set<const Group*, decltype(by_key)> groups(by_key);
   for (const auto& body : bodies) {
     if (!body->dynamic()) continue;
-    const ArcPoint p = point_at(body->id(), when);
+    const PoseTwist p = point_at(body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
     const State* state = state_at(body->id(), when);
     if (state->group) groups.insert(state->group.get());
@@ -151,11 +152,11 @@ double Kernel::total_energy(double when) const {
   // the springs of a link in the group that has the say in it
   for (const Group* group : groups) {
     std::vector<bool> counted(group->tags.size(), false);
-    for (const GroupLink& link : group->links) {
-      const State* a = state_at(first_of(link.pair), when);
-      const State* b = state_at(second_of(link.pair), when);
-      if (governing(*a, *b) != group) continue;
-      std::fill_n(counted.begin() + link.first, link.count, true);
+    for (const ContactPair& pair : group->pairs) {
+      const State* a = state_at(first_of(pair.id), when);
+      const State* b = state_at(second_of(pair.id), when);
+      if (owner_of(*a, *b) != group) continue;
+      std::fill_n(counted.begin() + pair.first, pair.count, true);
     }
     energy += group->arc->elastic_energy(group->at_rest ? group->key.time : when, counted);
   }

@@ -29,20 +29,22 @@
 #include "base/random.h"
 #include "collision/broad-phase.h"
 #include "collision/manifold.h"
-#include "kernel/arc.h"
-#include "kernel/body.h"
+#include "detect/active-pair.h"
+#include "dynamics/body.h"
+#include "dynamics/placed-body.h"
+#include "groups/region.h"
+#include "groups/regrouping.h"
 #include "kernel/checkpoint.h"
 #include "kernel/counters.h"
-#include "kernel/draft.h"
 #include "kernel/due.h"
-#include "kernel/event-queue.h"
-#include "kernel/pair.h"
 #include "kernel/policy.h"
-#include "kernel/region.h"
-#include "kernel/regroup.h"
-#include "kernel/side.h"
-#include "kernel/state-graph.h"
+#include "kernel/state-view.h"
 #include "kernel/world.h"
+#include "timeline/arc.h"
+#include "timeline/event-queue.h"
+#include "timeline/process.h"
+#include "timeline/state-graph.h"
+#include "timeline/successor.h"
 
 namespace tw {
 
@@ -51,7 +53,7 @@ inline constexpr double check_grid = 0x1p-20;
 
 // Boxes of members of moving groups reach this share of their size farther: a group check finds in
 // them whom a member may touch before the next check.
-inline constexpr double link_margin = 0.1;
+inline constexpr double contact_margin = 0.1;
 
 inline constexpr std::uint32_t no_pair = 0xffffffffu;
 
@@ -102,11 +104,11 @@ class Kernel {
   // ---- kernel.cc ----
   RunStatus advance(double until, double slice);
   bool step(double until);
-  void process(Event event);  // for policies
+  void handle(Event event);  // for policies
 
   // ---- reading ----
   std::uint64_t removals() const { return removals_; }
-  ArcPoint point_at(BodyId id, double when) const;
+  PoseTwist point_at(BodyId id, double when) const;
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
   ContactSurvey survey_contacts(double when) const;  // contacts.cc
@@ -132,6 +134,7 @@ class Kernel {
   WorldOptions options;
   std::unique_ptr<Policy> policy = make_policy("timewarp");
   std::vector<std::unique_ptr<Body>> bodies;
+  std::vector<Process> processes;  // by number
   std::unordered_map<std::string, BodyId> names;
   StateGraph graph;
   EventQueue queue;
@@ -151,6 +154,13 @@ class Kernel {
   bool begun = false;  // the first run has begun
   bool running = false;
 
+  // ---- who owns whom ----
+  Process& process(const Body& body) { return processes[number(body.process)]; }
+  const Process& process(const Body& body) const { return processes[number(body.process)]; }
+  ProcessId process_of(BodyId id) const { return bodies[id]->process; }
+  // The body of a process that has one.
+  Body& body_of(ProcessId id) const { return *bodies[processes[number(id)].bodies.front()]; }
+
  private:
   friend class KernelTest;  // tests/rollback: looks and pokes inside
 
@@ -162,7 +172,7 @@ class Kernel {
   Key edit_key(const std::vector<BodyId>& concerned);
   Key present_key() const;
   void edit_together(const std::function<bool(BodyId)>& concerned,
-                     const std::function<void(Draft&)>& change);
+                     const std::function<void(Successor&)>& change);
   void resolve_shape(Body& body, const BodyDef& def);
   void make_birth(Body& body, const BodyDef& def);
   void validate_body_def(const BodyDef& def, const std::string& name) const;
@@ -210,8 +220,8 @@ class Kernel {
   void schedule_pair(std::uint32_t index, double when);
   void reset_pair(std::uint32_t index, const Key& key);
   // Whether the pair is in contact within one group on this piece.
-  bool linked(const Piece& piece) const;
-  bool linked_from(BodyId a, BodyId b, const Key& from) const;
+  bool in_contact(const Piece& piece) const;
+  bool in_contact_from(BodyId a, BodyId b, const Key& from) const;
   bool next_piece(Pair& pair, const Piece& piece);
   Separation separation_at(const Piece& piece, double when) const;
   double closing_at(const Piece& piece, double when, const Separation& s) const;
@@ -230,11 +240,12 @@ class Kernel {
   // ---- impact.cc ----
   void process_impact(std::uint32_t index);
   // True: the impact is soft, and the two stay in contact.
-  bool compute_impact(const Key& key, Draft& a, Draft& b, std::optional<Collision>& collision);
-  void find_impact_points(const Draft& a, const Draft& b);
-  bool drop_ghosts(const Draft& a, const Draft& b);
-  bool is_soft(const Key& key, Draft& a, Draft& b, double fastest) const;
-  void run_collision_callbacks(const Collision& collision, Draft& a, Draft& b);
+  bool compute_impact(const Key& key, Successor& a, Successor& b,
+                      std::optional<Collision>& collision);
+  void find_impact_points(const Successor& a, const Successor& b);
+  bool drop_ghosts(const Successor& a, const Successor& b);
+  bool is_soft(const Key& key, Successor& a, Successor& b, double fastest) const;
+  void run_collision_callbacks(const Collision& collision, Successor& a, Successor& b);
   bool wants_collision(const Body& a, const Body& b) const;
   bool observed(CollisionKind kind) const;
 
@@ -245,64 +256,68 @@ class Kernel {
   Key first_tick(const CallbackRecord& callback, const Key& key) const;
 
   // ---- regroup.cc ----
-  void collect_old(Regroup& work) const;
-  void carry(Regroup& work, const OldLink& old) const;
+  void collect_old(Regrouping& work) const;
+  void carry(Regrouping& work, const PairBefore& old) const;
   // Cuts the drafts into groups and isolated bodies.
-  void finish(Regroup& work);
-  std::shared_ptr<Group> make_group(Regroup& work, const std::vector<BodyId>& members);
-  MotionPtr outside_motion(const Regroup& work, BodyId id) const;
-  void start_arc_of(Group& group, Regroup& work) const;
-  void share_out(Regroup& work) const;
-  void share_ground(const std::vector<LooseContact*>& points, BodyId mover) const;
-  void tell(Regroup& work) const;
+  void finish(Regrouping& work);
+  std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<BodyId>& members);
+  MotionPtr outside_motion(const Regrouping& work, BodyId id) const;
+  void start_arc_of(Group& group, Regrouping& work) const;
+  void share_stiffness(Regrouping& work) const;
+  void share_ground_stiffness(const std::vector<NewContact*>& points, BodyId mover) const;
+  void add_report(Regrouping& work) const;
   void count_group(const Group& group);
-  std::size_t count_pieces(const Regroup& work, const std::vector<std::uint64_t>& linked) const;
-  void count_fissions(Regroup& work, const std::vector<bool>& held) const;
+  std::size_t count_pieces(const Regrouping& work,
+                           const std::vector<std::uint64_t>& in_contact) const;
+  void count_fissions(Regrouping& work, const std::vector<bool>& held) const;
 
   // ---- region.cc ----
-  const Group* governing(const State& a, const State& b) const;
+  const Group* owner_of(const State& a, const State& b) const;
   std::vector<BodyId> remaining(const Group& group, const Key& key) const;
   template <class Visit>
-  void visit_neighbours(const std::vector<BodyId>& inside, const Key& key, Visit visit) const;
-  Region region_of(const Key& key, const std::vector<BodyId>& hit, bool whole) const;
+  void visit_contacts(const std::vector<BodyId>& inside, const Key& key, Visit visit) const;
+  Region region_of(const Key& key, const std::vector<BodyId>& struck, bool whole) const;
   void add_neighbours(Region& region, const Key& key) const;
   void complete(Region& region, const Key& key, bool whole) const;
   template <class GoesOn>
   std::vector<BodyId> reached_from(const std::vector<BodyId>& ids, const Key& key,
                                    GoesOn goes_on) const;
-  std::vector<BodyId> all_provisional(const std::vector<BodyId>& ids, const Key& key) const;
+  std::vector<BodyId> all_asleep(const std::vector<BodyId>& ids, const Key& key) const;
   std::vector<BodyId> hanging_together(BodyId id, const Key& key) const;
-  bool disturbed(const Regroup& work, const std::vector<BodyId>& asleep,
+  bool disturbed(const Regrouping& work, const std::vector<BodyId>& asleep,
                  std::vector<BodyId>& movers) const;
   bool own_check_before(BodyId id, const Key& key) const;
   bool await(BodyId id, const Key& key);
   bool await(const Region& region, const Key& key);
   double deviation(const Group& group, BodyId id) const;
-  std::vector<BodyId> reached_beyond(const Regroup& work) const;
-  void discard(const Regroup& work);
-  std::vector<Draft> drafts_of(const Region& region, const Key& key,
-                               const std::vector<Draft>& given) const;
-  bool touches_groups(const Key& key, const std::vector<Draft>& drafts) const;
-  bool regroup(const Key& key, std::vector<Draft>& drafts, const Occasion& occasion);
-  void regroup_edited(const Key& key, std::vector<Draft>& drafts);
+  std::vector<BodyId> reached_beyond(const Regrouping& work) const;
+  void discard(const Regrouping& work);
+  std::vector<Successor> make_successors(const Region& region, const Key& key,
+                                         const std::vector<Successor>& given) const;
+  bool touches_groups(const std::vector<Successor>& successors) const;
+  bool regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
+  void regroup_edited(const Key& key, std::vector<Successor>& successors);
 
   // ---- linking.cc ----
   // Links the pair if it touches or may touch before the next check; `must`: in any case.
-  bool link(Regroup& work, const Side& a, const Side& b, double interval, bool must);
-  bool wants_link(const Side& a, const Side& b, bool linked_before, double interval,
-                  const ContactConstants& law) const;
+  bool connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b, double interval,
+               bool must);
+  bool comes_into_contact(const PlacedBody& a, const PlacedBody& b, bool linked_before,
+                          double interval, const ContactConstants& law) const;
   ContactConstants contact_law(const Body& a, const Body& b, double lightest,
                                double heaviest) const;
-  LooseContact loose_contact(const ManifoldPoint& point, const Side& a, const Side& b,
-                             const ContactConstants& law) const;
-  void match_stretches(Regroup& work, const LooseLink& link, const OldLink& was_linked) const;
-  bool ghosts(const Side& a, const Side& b, double distance) const;
-  void preload(Regroup& work, const LooseLink& link, const Side& a, const Side& b) const;
-  void refresh(Regroup& work, const std::vector<BodyId>& bodies_looked_at, double interval);
+  NewContact new_contact(const ManifoldPoint& point, const PlacedBody& a, const PlacedBody& b,
+                         const ContactConstants& law) const;
+  void match_stretches(Regrouping& work, const NewContactPair& pair,
+                       const PairBefore& before_it) const;
+  bool ghosts(const PlacedBody& a, const PlacedBody& b, double distance) const;
+  void preload(Regrouping& work, const NewContactPair& pair, const PlacedBody& a,
+               const PlacedBody& b) const;
+  void refresh(Regrouping& work, const std::vector<BodyId>& bodies_looked_at, double interval);
   void find_fixed_around(const Body& mover);
   std::vector<SeamNeighbour> around(const Body& body) const;
-  Side side_of(const Draft& draft) const;
-  Side outside_side(const Body& body, double when) const;
+  PlacedBody placed(const Successor& successor) const;
+  PlacedBody placed_outside(const Body& body, double when) const;
   double gravity_magnitude() const;
   double fusion_speed(const Body& a, const Body& b) const;
 
@@ -313,37 +328,37 @@ class Kernel {
   std::vector<BodyId> family(const std::shared_ptr<Group>& group, const Key& key) const;
   std::vector<BodyId> early_bodies(const Group& group, double when, const Key& key) const;
   void process_group_check(BodyId id);
-  double check_interval(const Regroup& work, const std::vector<BodyId>& members) const;
+  double check_interval(const Regrouping& work, const std::vector<BodyId>& members) const;
   double next_check_time(double birth, double now, double interval) const;
-  bool comes_to_rest(Regroup& work, Group& after, const Group& before) const;
-  void note_changes(Regroup& work) const;
+  bool comes_to_rest(Regrouping& work, Group& after, const Group& before) const;
+  void note_changes(Regrouping& work) const;
   std::string group_failure(const Group& group) const;
 
   // ---- calm.cc ----
-  Calm calm_of(const Draft& draft, const Key& key) const;
-  std::vector<bool> sleepers(const Regroup& work) const;
-  std::vector<BodyId> provisional_around(const Regroup& work) const;
+  Stillness stillness_of(const Successor& successor, const Key& key) const;
+  std::vector<bool> sleepers(const Regrouping& work) const;
+  std::vector<BodyId> asleep_around(const Regrouping& work) const;
 
   // ---- kinematic-work.cc ----
   double contact_work(const State& state, double until) const;
 
   // ---- end-test.cc ----
   void test_group_end(Group& group);
-  double early_end(Group& group, const GroupLink& link);
+  double early_end(Group& group, const ContactPair& pair);
 
   // ---- pass-on.cc ----
-  std::vector<BodyId> pass_on(Regroup& work) const;
+  std::vector<BodyId> propagate_impulses(Regrouping& work) const;
 
   // ---- rollback.cc ----
-  Draft draft_for(const Body& body, const Key& key, bool new_arc) const;
-  void enter_discontinuity(const Key& key, std::vector<Draft>& drafts);
-  void treat(const std::vector<Touched>& touched);
-  void stop_fellows(const Key& key, std::vector<Draft>& drafts) const;
-  void append_drafts(const Key& key, std::vector<Draft>& drafts);
-  void check_finite(Draft& draft) const;
+  Successor make_successor(const Body& body, const Key& key, bool new_arc) const;
+  void enter_discontinuity(const Key& key, std::vector<Successor>& successors);
+  void treat(const std::vector<Affected>& affected);
+  void stop_group_mates(const Key& key, std::vector<Successor>& successors) const;
+  void append_successors(const Key& key, std::vector<Successor>& successors);
+  void check_finite(Successor& successor) const;
   void note_removed(State& state);
-  StateGraph::Farewell removal();
-  StateGraph::Farewell release();
+  StateGraph::OnRelease removal();
+  StateGraph::OnRelease release();
   void undo_and_check(const Key& key, std::uint64_t checksum_before);
 
   // ---- commit.cc ----
@@ -384,7 +399,7 @@ class Kernel {
 };
 
 // Hash of a state at one instant, as it enters the history's hash.
-std::uint64_t state_hash(const Body& body, const Key& key, const ArcPoint& point,
+std::uint64_t state_hash(const Body& body, const Key& key, const PoseTwist& point,
                          const StateData& data);
 
 }  // namespace tw

@@ -11,7 +11,7 @@ namespace {
 class Timewarp : public Policy {
  public:
   const char* name() const override { return "timewarp"; }
-  void go_forward(Kernel& kernel) override { kernel.process(kernel.queue.top()); }
+  void go_forward(Kernel& kernel) override { kernel.handle(kernel.queue.top()); }
 };
 
 }  // namespace

@@ -22,15 +22,15 @@ void Kernel::remove_body(BodyId id) {
   // whoever touches it gets arcs without it
   edit_together(
       [&](BodyId other) {
-        const State& state = *graph.last_before(other, present_key());
+        const State& state = *graph.last_before(process_of(other), present_key());
         if (!state.group || state.error) return false;
-        const auto linked = state.group->links_of(state.member);
-        return std::any_of(linked.begin(), linked.end(), [&](std::uint32_t number) {
-          const std::uint64_t pair = state.group->links[number].pair;
+        const auto in_contact = state.group->pairs_of(state.member);
+        return std::any_of(in_contact.begin(), in_contact.end(), [&](std::uint32_t number) {
+          const std::uint64_t pair = state.group->pairs[number].id;
           return first_of(pair) == id || second_of(pair) == id;
         });
       },
-      [](Draft&) {});
+      [](Successor&) {});
 
   for (std::size_t number = 0; number < callbacks.size(); ++number) {
     CallbackRecord& callback = callbacks[number];
@@ -39,8 +39,8 @@ void Kernel::remove_body(BodyId id) {
     schedule_callback(static_cast<std::uint32_t>(number));
   }
   while (!body.pairs.empty()) drop_pair(body.pairs.back());
-  queue.withdraw(body.advance);
-  queue.withdraw(body.group_check);
+  queue.withdraw(process(body).advance);
+  queue.withdraw(process(body).group_check);
   if (grid.contains(id)) grid.remove(id);
   std::erase(unbounded, id);
   std::erase(kinematic, id);
@@ -49,12 +49,12 @@ void Kernel::remove_body(BodyId id) {
 
   // its last arc counts up to the present
   if (body.dynamic()) {
-    graph.free_before(graph.tail(id), release());
-    const State& tail = *graph.tail(id);
+    graph.free_before(graph.tail(process_of(id)), release());
+    const State& tail = *graph.tail(process_of(id));
     counters.kinematic_work += contact_work(tail, time);
     counters.integration_length += time - tail.arc_time;
   }
-  graph.clear(id);
+  graph.clear(process_of(id));
   body.info.kind = BodyKind::fixed;
   body.info.shape = nullptr;
   body.info.visible = false;
@@ -62,11 +62,11 @@ void Kernel::remove_body(BodyId id) {
   body.unbounded = body.is_fixed_plane = body.placed = false;
   body.X_BP = body.X_PB = Pose();
   body.motion = make_fixed_motion({last.position, last.orientation});
-  State* state = graph.append(id, {time, 0, KeyKind::birth, id});
+  State* state = graph.append(body.process, {time, 0, KeyKind::birth, id});
   state->arc_key = state->key;
   state->arc_time = time;
   state->committed = begun;
-  body.claim = begun ? last_key : state->key;
+  process(body).claim = begun ? last_key : state->key;
   ++removals_;
 }
 

@@ -3,21 +3,21 @@
 #pragma once
 
 #include "dynamics/impact-law.h"
-#include "kernel/arc.h"
-#include "kernel/draft.h"
+#include "timeline/arc.h"
+#include "timeline/successor.h"
 
 namespace tw {
 
 // One body during the resolution of an impact.
 struct Resolved {
   const Body& body;
-  const ArcPoint& point;
+  const PoseTwist& point;
   Vec3 v, w;
   Mat3 inverse_inertia = Mat3::Zero();
   double inverse_mass = 0;
   bool moves;
 
-  Resolved(const Body& b, const ArcPoint& p)
+  Resolved(const Body& b, const PoseTwist& p)
       : body(b), point(p), v(p.v), w(p.w), moves(b.dynamic()) {
     if (!moves) return;
     inverse_mass = 1 / b.mass;
@@ -42,11 +42,11 @@ struct Resolved {
 };
 
 // The draft's motion is now what impulses made of it.
-inline void take_velocities(Draft& draft, const Resolved& after) {
-  draft.data.v = draft.point.v = after.v;
-  draft.point.w = after.w;
-  draft.data.L = angular_momentum(*draft.body, draft.point.q, after.w);
-  draft.data.rotation_ready = false;
+inline void take_velocities(Successor& successor, const Resolved& after) {
+  successor.data.v = successor.point.v = after.v;
+  successor.point.w = after.w;
+  successor.data.L = angular_momentum(*successor.body, successor.point.q, after.w);
+  successor.data.rotation_ready = false;
 }
 
 }  // namespace tw

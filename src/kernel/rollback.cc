@@ -14,131 +14,135 @@
 namespace tw {
 
 // The state of `body` just below `key`, evaluated at its time: with a new arc or carrying the old.
-Draft Kernel::draft_for(const Body& body, const Key& key, bool new_arc) const {
-  const State* state = graph.last_before(body.id(), key);
+Successor Kernel::make_successor(const Body& body, const Key& key, bool new_arc) const {
+  const State* state = graph.last_before(body.process, key);
   TW_ASSERT(state, "no state of " + body.info.name + " before " + show(key));
-  Draft draft;
-  draft.body = &body;
-  draft.point = evaluate(body, *state, key.time);
-  draft.data = *state;
-  draft.data.changed = true;
-  draft.data.next_callback = never;
-  draft.data.told.reset();
-  draft.data.tally = {};
-  draft.data.error = nullptr;
-  draft.enters = body.dynamic() || draft.data.slots;
-  if (new_arc) start_new_arc(draft, key);
-  return draft;
+  Successor successor;
+  successor.body = &body;
+  successor.point = evaluate(body, *state, key.time);
+  successor.data = *state;
+  successor.data.changed = true;
+  successor.data.next_callback = never;
+  successor.data.report.reset();
+  successor.data.tally = {};
+  successor.data.error = nullptr;
+  successor.role = body.dynamic() || successor.data.slots ? Role::record : Role::no_state;
+  if (new_arc) start_new_arc(successor, key);
+  return successor;
 }
 
 // A motion that is not finite, or runs away, becomes a speculative error of its body.
-void Kernel::check_finite(Draft& draft) const {
-  const StateData& d = draft.data;
-  if (!draft.body->dynamic() || d.error) return;
+void Kernel::check_finite(Successor& successor) const {
+  const StateData& d = successor.data;
+  if (!successor.body->dynamic() || d.error) return;
   const bool finite = is_finite(d.x) && is_finite(d.q) && is_finite(d.v) && is_finite(d.L);
   if (finite && d.v.norm() <= speed_limit) return;
-  const std::string name = draft.body->info.name, when = show(d.arc_time);
+  const std::string name = successor.body->info.name, when = show(d.arc_time);
   const std::string message = finite ? "the speed of " + name + " at " + when + " s is " +
                                            show(d.v.norm()) + " m/s; expected at most " +
                                            show(speed_limit)
                                      : "the motion of " + name + " is no longer finite at " + when +
                                            " s; expected finite positions and velocities";
-  draft.data.error = std::make_exception_ptr(UserError(message, draft.body->info.place));
+  successor.data.error = std::make_exception_ptr(UserError(message, successor.body->info.place));
 }
 
 // An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
-void Kernel::stop_fellows(const Key& key, std::vector<Draft>& drafts) const {
-  const std::exception_ptr error = drafts.front().data.error;
+void Kernel::stop_group_mates(const Key& key, std::vector<Successor>& successors) const {
+  const std::exception_ptr error = successors.front().data.error;
   std::vector<BodyId> ids;
-  for (const Draft& draft : drafts)
-    if (draft.body->dynamic()) ids.push_back(draft.body->id());
+  for (const Successor& successor : successors)
+    if (successor.body->dynamic()) ids.push_back(successor.body->id());
   std::sort(ids.begin(), ids.end());
   const Region region = region_of(key, ids, true);
   for (const std::vector<BodyId>* side : {&region.inside, &region.border})
     for (const BodyId id : *side)
-      if (std::none_of(drafts.begin(), drafts.end(),
-                       [&](const Draft& d) { return d.body->id() == id; }))
-        drafts.push_back(draft_for(*bodies[id], key, false));
-  for (Draft& draft : drafts) draft.data.error = error;
+      if (std::none_of(successors.begin(), successors.end(),
+                       [&](const Successor& d) { return d.body->id() == id; }))
+        successors.push_back(make_successor(*bodies[id], key, false));
+  for (Successor& successor : successors) successor.data.error = error;
 }
 
 // The drafts give their slots, collisions and errors away.
-void Kernel::append_drafts(const Key& key, std::vector<Draft>& drafts) {
-  for (Draft& draft : drafts) check_finite(draft);
-  const auto stopped = std::find_if(drafts.begin(), drafts.end(),
-                                    [](const Draft& d) { return d.data.error != nullptr; });
-  if (stopped != drafts.end()) {
+void Kernel::append_successors(const Key& key, std::vector<Successor>& successors) {
+  for (Successor& successor : successors) check_finite(successor);
+  const auto stopped = std::find_if(successors.begin(), successors.end(),
+                                    [](const Successor& d) { return d.data.error != nullptr; });
+  if (stopped != successors.end()) {
     const std::exception_ptr error = stopped->data.error;
-    for (Draft& draft : drafts) draft.data.error = error;
+    for (Successor& successor : successors) successor.data.error = error;
   }
   std::vector<State*> ring;
-  for (Draft& draft : drafts) {
+  for (Successor& successor : successors) {
     // a fixed body without states does not stop: its partner in the impact does
-    if (!draft.enters) continue;
+    if (!successor.enters()) continue;
     // the process stops here: its arcs end
-    if (draft.data.error) draft.data.arc_key = key;
-    State* state = graph.append(draft.body->id(), key);
-    static_cast<StateData&>(*state) = std::move(draft.data);
+    if (successor.data.error) {
+      successor.data.arc_key = key;
+      successor.role = Role::new_arc;
+    }
+    State* state = graph.append(successor.process(), key);
+    static_cast<StateData&>(*state) = std::move(successor.data);
     ring.push_back(state);
-    if (!state->starts_arc() || !draft.body->dynamic()) continue;
+    if (!state->starts_arc() || !successor.body->dynamic()) continue;
     TW_ASSERT(!state->group || state->group->key == key || state->error,
-              "state of " + draft.body->info.name + " at " + show(key) + " in an older group");
+              "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
     // those of moving groups are counted by steps, when they are done with
     if (!state->group || state->group->at_rest) ++counters.integrations;
   }
-  graph.link_ring(ring);
+  graph.close_ring(ring);
 }
 
-void Kernel::enter_discontinuity(const Key& key, std::vector<Draft>& drafts) {
+void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& successors) {
   TW_ASSERT(key.time >= gvt, show(key) + " lies before GVT " + show(gvt));
   const std::uint64_t checksum = options.undo_redo ? graph_checksum() : 0;
 
   // queues: room for the new states, then the states
-  std::vector<Touched> touched;
+  std::vector<Affected> affected;
   std::size_t removed = 0;
-  for (const Draft& draft : drafts)
-    if (draft.enters) removed += graph.rollback(draft.body->id(), key, touched, removal());
+  for (const Successor& successor : successors)
+    if (successor.enters())
+      removed += graph.rollback(successor.body->process, key, affected, removal());
   if (removed > 0) {
     ++counters.rollbacks;
     counters.states_removed += removed;
-    counters.processes_rolled_back += touched.size();
-    counters.deepest_cascade = std::max<std::uint64_t>(counters.deepest_cascade, touched.size());
+    counters.processes_rolled_back += affected.size();
+    counters.deepest_cascade = std::max<std::uint64_t>(counters.deepest_cascade, affected.size());
   }
-  append_drafts(key, drafts);
+  append_successors(key, successors);
 
   // receivers are treated from `key` where their arc changed, others from the least key lost
-  for (const Draft& draft : drafts) {
-    const bool arc_changed = draft.enters && draft.data.arc_key == key;
-    const auto known = std::find_if(touched.begin(), touched.end(), [&](const Touched& t) {
-      return t.process == draft.body->id();
+  for (const Successor& successor : successors) {
+    const bool arc_changed = successor.role == Role::new_arc;
+    const auto known = std::find_if(affected.begin(), affected.end(), [&](const Affected& t) {
+      return t.process == successor.process();
     });
-    if (known != touched.end())
+    if (known != affected.end())
       known->least_removed = std::min(known->least_removed, key);
     else if (arc_changed)
-      touched.push_back({draft.body->id(), key});
+      affected.push_back({successor.process(), key});
   }
-  treat(touched);
+  treat(affected);
   if (options.undo_redo && removed == 0) undo_and_check(key, checksum);
 }
 
-void Kernel::treat(const std::vector<Touched>& touched) {
+void Kernel::treat(const std::vector<Affected>& affected) {
   // claims
-  for (const Touched& t : touched) {
-    Body& body = *bodies[t.process];
+  for (const Affected& t : affected) {
+    Body& body = body_of(t.process);
     if (body.fixed()) continue;
-    body.claim = std::min(body.claim, t.least_removed);
+    process(body).claim = std::min(process(body).claim, t.least_removed);
     schedule_advance(body);
     schedule_group_check(body);
   }
   // events: pairs and callbacks
-  for (const Touched& t : touched) {
-    Body& body = *bodies[t.process];
+  for (const Affected& t : affected) {
+    Body& body = body_of(t.process);
     for (const std::uint32_t index : body.pairs) reset_pair(index, t.least_removed);
-    for (const std::uint32_t number : body.callbacks) rewind_callback(number, t.least_removed);
+    for (const std::uint32_t number : process(body).callbacks) rewind_callback(number, t.least_removed);
   }
 }
 
-StateGraph::Farewell Kernel::removal() {
+StateGraph::OnRelease Kernel::removal() {
   return [this](State& state) { note_removed(state); };
 }
 
@@ -163,9 +167,9 @@ bool stepped(const State& state) { return state.group && !state.group->at_rest; 
 
 // A discarded arc counts up to its claimed time.
 void Kernel::note_removed(State& state) {
-  const Body& body = *bodies[state.process];
+  const Body& body = body_of(state.process);
   if (!body.dynamic() || !state.starts_arc()) return;
-  const double end = std::min(body.claim.time, state.next ? state.next->key.time : never);
+  const double end = std::min(process(body).claim.time, state.next ? state.next->key.time : never);
   double length = std::max(0.0, end - state.key.time);
   // a body at rest claims for ever
   if (!std::isfinite(length)) length = 0;
@@ -176,9 +180,9 @@ void Kernel::note_removed(State& state) {
 }
 
 // A state that GVT has passed: its arc was used up to the next one.
-StateGraph::Farewell Kernel::release() {
+StateGraph::OnRelease Kernel::release() {
   return [this](State& state) {
-    if (!bodies[state.process]->dynamic() || !state.starts_arc()) return;
+    if (!body_of(state.process).dynamic() || !state.starts_arc()) return;
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
     if (next) counters.kinematic_work += contact_work(state, next->key.time);
@@ -199,7 +203,7 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
   name.add(key.id);
   // redone is what follows the same states: another history may have an impact at the same time
   for (const auto& body : bodies)
-    if (const State* s = graph.tail(body->id()); s->key == key && s->prev)
+    if (const State* s = graph.tail(body->process); s->key == key && s->prev)
       name.add(state_checksum(*s->prev));
   const std::uint64_t now = ring_checksum(key);
   if (const auto known = undone_.find(name.value()); known != undone_.end()) {
@@ -208,15 +212,15 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
     return;
   }
 
-  std::vector<Touched> touched;
+  std::vector<Affected> affected;
   for (const auto& body : bodies)
-    if (graph.tail(body->id())->key == key) {
-      graph.rollback(body->id(), key, touched, removal());
+    if (graph.tail(body->process)->key == key) {
+      graph.rollback(body->process, key, affected, removal());
       break;
     }
   TW_ASSERT(graph_checksum() == checksum_before, "undoing " + show(key) + " left a trace");
   undone_[name.value()] = now;
-  treat(touched);
+  treat(affected);
 }
 
 }  // namespace tw

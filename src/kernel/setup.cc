@@ -91,7 +91,7 @@ void Kernel::resolve_shape(Body& body, const BodyDef& def) {
 
 void Kernel::make_birth(Body& body, const BodyDef& def) {
   const Key key{time, 0, KeyKind::birth, body.id()};
-  State* state = graph.append(body.id(), key);
+  State* state = graph.append(body.process, key);
   state->arc_key = key;
   state->arc_time = time;
   state->slots = def.slots;
@@ -106,7 +106,7 @@ void Kernel::make_birth(Body& body, const BodyDef& def) {
     state->acceleration = options.gravity;
     ++counters.integrations;
   }
-  body.claim = key;
+  process(body).claim = key;
 }
 
 BodyId Kernel::add_body(const BodyDef& def) {
@@ -136,7 +136,10 @@ BodyId Kernel::add_body(const BodyDef& def) {
   resolve_shape(*body, def);
 
   if (begun) restart_future();
-  graph.add_process();
+  processes.push_back({});
+  Process& process = processes.back();
+  process.id = body->process = graph.add_process();
+  process.bodies = {id};
   make_birth(*body, def);
   newborn_.push_back(id);
   names[name] = id;
@@ -252,7 +255,7 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   // ticks before the present are not made up for
   const KeyKind present = begun ? KeyKind::group_check : KeyKind::birth;
   if (def.period) callback.next = first_tick(callback, {time, 0, present, 0});
-  for (const BodyId id : def.targets) bodies[id]->callbacks.push_back(number);
+  for (const BodyId id : def.targets) process(*bodies[id]).callbacks.push_back(number);
   schedule_callback(number);
   return number;
 }
@@ -298,7 +301,7 @@ Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
   if (!due_.inclusive) return {time, 0, KeyKind::early_edit, edits_++};
   std::uint32_t microstep = 1;
   for (const BodyId member : concerned)
-    for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
+    for (const State* s = graph.tail(process_of(member)); s && s->key.time >= time; s = s->prev)
       if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
   return {time, microstep, KeyKind::edit, edits_++};
 }
@@ -310,15 +313,16 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   std::vector<BodyId> concerned = region.inside;
   concerned.insert(concerned.end(), region.border.begin(), region.border.end());
   const Key key = edit_key(concerned);
-  std::vector<Draft> drafts{draft_for(body, key, false)};
-  drafts[0].enters = true;
-  const Vec3 x_before = drafts[0].point.x;
-  const Quat q_before = drafts[0].point.q;
-  DraftView view(drafts[0], key, true, options.gravity);
+  std::vector<Successor> successors{make_successor(body, key, false)};
+  successors[0].role = Role::record;
+  const Vec3 x_before = successors[0].point.x;
+  const Quat q_before = successors[0].point.q;
+  SuccessorView view(successors[0], key, true, options.gravity);
   change(view);
-  regroup_edited(key, drafts);
-  enter_discontinuity(key, drafts);
-  if (begun && (drafts[0].point.x != x_before || drafts[0].point.q.coeffs() != q_before.coeffs()))
+  regroup_edited(key, successors);
+  enter_discontinuity(key, successors);
+  if (begun &&
+      (successors[0].point.x != x_before || successors[0].point.q.coeffs() != q_before.coeffs()))
     check_overlaps(body);
 }
 
@@ -327,15 +331,16 @@ void Kernel::set_gravity(const Vec3& gravity) {
   TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
   options.gravity = gravity;
   // a body that is still at its birth needs no discontinuity
-  const auto newborn = [&](BodyId id) { return !begun && !graph.tail(id)->prev; };
+  const auto newborn = [&](BodyId id) { return !begun && !graph.tail(process_of(id))->prev; };
   for (const auto& body : bodies)
     if (body->dynamic() && newborn(body->id())) {
-      State* tail = graph.tail(body->id());
+      State* tail = graph.tail(body->process);
       tail->acceleration = gravity + tail->force / body->mass;
     }
   edit_together([&](BodyId id) { return !newborn(id); },
-                [&](Draft& draft) {
-                  draft.data.acceleration = gravity + draft.data.force / draft.body->mass;
+                [&](Successor& successor) {
+                  successor.data.acceleration =
+                      gravity + successor.data.force / successor.body->mass;
                 });
 }
 
@@ -343,21 +348,21 @@ void Kernel::set_gravity(const Vec3& gravity) {
 // hang together with them: one edit for all that hang together, so that no group is made in between
 // whose members are half changed.
 void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
-                           const std::function<void(Draft&)>& change) {
+                           const std::function<void(Successor&)>& change) {
   std::vector<bool> done(bodies.size(), false);
   for (const auto& body : bodies) {
     if (!body->dynamic() || done[body->id()] || !concerned(body->id())) continue;
     const std::vector<BodyId> together = hanging_together(body->id(), present_key());
     const Key key = edit_key(together);
-    std::vector<Draft> drafts;
-    drafts.reserve(together.size());
+    std::vector<Successor> successors;
+    successors.reserve(together.size());
     for (const BodyId id : together) {
       done[id] = true;
-      drafts.push_back(draft_for(*bodies[id], key, true));
-      change(drafts.back());
+      successors.push_back(make_successor(*bodies[id], key, true));
+      change(successors.back());
     }
-    regroup_edited(key, drafts);
-    enter_discontinuity(key, drafts);
+    regroup_edited(key, successors);
+    enter_discontinuity(key, successors);
   }
 }
 
@@ -372,22 +377,22 @@ Key Kernel::present_key() const {
 void Kernel::restart_future() {
   undone_.clear();
   const Key present = present_key();
-  std::vector<Touched> touched;
-  for (const auto& body : bodies) graph.rollback(body->id(), present, touched, removal());
+  std::vector<Affected> affected;
+  for (const auto& body : bodies) graph.rollback(body->process, present, affected, removal());
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
     if (pairs[i].live) drop_pair(i);
-  std::vector<Touched> all;
-  for (const auto& body : bodies) all.push_back({body->id(), present});
+  std::vector<Affected> all;
+  for (const auto& body : bodies) all.push_back({body->process, present});
   treat(all);
 }
 
 void Kernel::renew_groups() {
   edit_together(
       [&](BodyId id) {
-        const State* tail = graph.tail(id);
+        const State* tail = graph.tail(process_of(id));
         return tail->group && !tail->error;
       },
-      [](Draft&) {});
+      [](Successor&) {});
 }
 
 // ---- the beginning of a run ----
@@ -411,12 +416,12 @@ void Kernel::update_cell() {
 
 // What stopped a process may have been mended since: try again.
 void Kernel::retry_errors() {
-  std::vector<Touched> touched;
+  std::vector<Affected> affected;
   for (const auto& body : bodies) {
-    const State* tail = graph.tail(body->id());
-    if (tail->error) graph.rollback(body->id(), tail->key, touched, removal());
+    const State* tail = graph.tail(body->process);
+    if (tail->error) graph.rollback(body->process, tail->key, affected, removal());
   }
-  treat(touched);
+  treat(affected);
 }
 
 void Kernel::begin_run() {
@@ -428,10 +433,10 @@ void Kernel::begin_run() {
       adversary_ = Random(mix64(options.adversary->seed + 1));
       for (const auto& body : bodies)
         if (options.adversary->some_bodies && adversary_.real() < options.adversary->body_share)
-          body->head_start = options.adversary->head_start * adversary_.real();
+          process(*body).head_start = options.adversary->head_start * adversary_.real();
       for (CallbackRecord& callback : callbacks)
         for (const BodyId id : callback.def.targets)
-          callback.head_start = std::max(callback.head_start, bodies[id]->head_start);
+          callback.head_start = std::max(callback.head_start, process(*bodies[id]).head_start);
     }
     begun = true;
     for (const BodyId id : newborn_) claim_window(*bodies[id]);

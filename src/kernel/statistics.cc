@@ -36,7 +36,7 @@ StatisticsTable Kernel::statistics() const {
       ++kinematic_arcs;
     }
     if (!body->dynamic()) continue;
-    for (const State* s = graph.head(body->id()); s; s = s->next) {
+    for (const State* s = graph.head(body->process); s; s = s->next) {
       if (!s->starts_arc() || s->key.time > time) continue;
       const State* next = s->next;
       while (next && !next->starts_arc()) next = next->next;

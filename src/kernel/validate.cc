@@ -11,7 +11,7 @@ namespace tw {
 std::string Kernel::validate_state_graph() const {
   if (std::string broken = graph.validate(); !broken.empty()) return broken;
   for (const auto& body : bodies) {
-    for (const State* s = graph.head(body->id()); s; s = s->next) {
+    for (const State* s = graph.head(body->process); s; s = s->next) {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
       if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
@@ -29,11 +29,11 @@ std::string Kernel::validate_event_queue() const {
     const Event& event = queue.event(handle);
     switch (event.kind) {
       case EventKind::advance:
-        if (bodies[event.subject]->advance != handle) return "advance event of nobody";
+        if (process(*bodies[event.subject]).advance != handle) return "advance event of nobody";
         break;
       case EventKind::group_check: {
-        const State* tail = graph.tail(event.subject);
-        if (bodies[event.subject]->group_check != handle) return "group check of nobody";
+        const State* tail = graph.tail(process_of(event.subject));
+        if (process(*bodies[event.subject]).group_check != handle) return "group check of nobody";
         if (!tail->group || tail->group->at_rest) return "group check of a dead group";
         break;
       }
@@ -63,7 +63,7 @@ std::string Kernel::validate_pairs() const {
     if (pair.pending) {
       // an impact is valid only below the next keys of both processes
       for (const BodyId id : {pair.a, pair.b}) {
-        const State* s = graph.last_before(id, pair.impact);
+        const State* s = graph.last_before(process_of(id), pair.impact);
         const State* next = s ? s->next : nullptr;
         while (next && !next->starts_arc()) next = next->next;
         if (next && next->key <= pair.impact) return "pending impact past an arc's end: " + where;
@@ -79,7 +79,7 @@ std::string Kernel::validate_pairs() const {
 // them.
 std::string Kernel::validate_residences() const {
   for (const auto& body : bodies) {
-    for (const State* s = graph.head(body->id()); s; s = s->next) {
+    for (const State* s = graph.head(body->process); s; s = s->next) {
       if (!s->group || s->error) continue;
       const std::string where = body->info.name + ", " + show(s->key);
       const Group& group = *s->group;
@@ -89,20 +89,20 @@ std::string Kernel::validate_residences() const {
       if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
       // once a group: this runs after every event
       if (s->starts_arc() && s->member == 0)
-        for (const GroupLink& link : group.links)
-          for (const BodyId id : {first_of(link.pair), second_of(link.pair)})
+        for (const ContactPair& pair : group.pairs)
+          for (const BodyId id : {first_of(pair.id), second_of(pair.id)})
             if (!group.contains(id) &&
                 std::find(group.outside.begin(), group.outside.end(), id) == group.outside.end())
               return "linked to a group and neither in it nor outside: " + bodies[id]->info.name;
       if (s->committed || s->key != group.key) continue;
       for (const BodyId other : group.members) {
-        const State* t = graph.last_at_or_before(other, s->key);
+        const State* t = graph.last_at_or_before(process_of(other), s->key);
         if (!t || t->group != s->group) return "a member is elsewhere: " + where;
       }
     }
-    const State* tail = graph.tail(body->id());
+    const State* tail = graph.tail(body->process);
     const bool waits = tail->group && !tail->error && !tail->group->at_rest;
-    if (waits && body->group_check == EventQueue::none)
+    if (waits && process(*body).group_check == EventQueue::none)
       return "a group without a check: " + body->info.name;
   }
   return "";
@@ -112,13 +112,13 @@ std::string Kernel::validate_residences() const {
 std::string Kernel::validate_claims() const {
   for (const auto& body : bodies) {
     if (body->fixed() || !body->placed || body->unbounded) continue;
-    const State* tail = graph.tail(body->id());
-    if (tail->starts_arc() && tail->key.time > body->claim.time && body->dynamic())
+    const State* tail = graph.tail(body->process);
+    if (tail->starts_arc() && tail->key.time > process(*body).claim.time && body->dynamic())
       return "state past the claim: " + body->info.name;
     for (int i = 0; i <= 4; ++i) {
-      const double t = gvt + (body->claim.time - gvt) * (0.25 * i);
+      const double t = gvt + (process(*body).claim.time - gvt) * (0.25 * i);
       if (!std::isfinite(t) || t < gvt) continue;
-      const State* s = graph.last_at_or_before_time(body->id(), t);
+      const State* s = graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
       const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
       const Aabb& box = grid.box(body->id());
@@ -146,14 +146,14 @@ void add_group(Hasher& h, const Group& group) {
   for (const double time : {group.birth, group.next_check, group.quiet_since, group.quiet_speed,
                             group.first_step, group.lightest, group.heaviest})
     h.add(time);
-  h.add(std::uint64_t{group.at_rest} << 2 | std::uint64_t{group.provisional} << 1 |
+  h.add(std::uint64_t{group.at_rest} << 2 | std::uint64_t{group.asleep} << 1 |
         std::uint64_t{group.has_border});
   for (const auto& ids : {group.members, group.outside})
     for (const BodyId id : ids) h.add(std::uint64_t{id});
-  for (const GroupLink& link : group.links) {
-    h.add(link.pair);
-    h.add(std::uint64_t{link.first} << 33 | std::uint64_t{link.count} << 1 |
-          std::uint64_t{link.touched});
+  for (const ContactPair& pair : group.pairs) {
+    h.add(pair.id);
+    h.add(std::uint64_t{pair.first} << 33 | std::uint64_t{pair.count} << 1 |
+          std::uint64_t{pair.has_borne_load});
   }
   for (const ContactTag& tag : group.tags) {
     h.add(pair_id(tag.reference, tag.other));
@@ -162,10 +162,11 @@ void add_group(Hasher& h, const Group& group) {
   }
   for (const double gap : group.gaps) h.add(gap);
   for (const double end : group.ends) h.add(end);
-  for (const Calm& calm : group.calm) {
-    for (const double number : {calm.since, calm.early_peak, calm.peak}) h.add(number);
-    add(h, calm.x);
-    for (int i = 0; i < 4; ++i) h.add(calm.q.coeffs()[i]);
+  for (const Stillness& stillness : group.stillness) {
+    for (const double number : {stillness.since, stillness.early_peak, stillness.peak})
+      h.add(number);
+    add(h, stillness.x);
+    for (int i = 0; i < 4; ++i) h.add(stillness.q.coeffs()[i]);
   }
   for (const GroupContact& c : group.arc->start().contacts) add(h, c.stretch);
 }
@@ -175,7 +176,7 @@ void add_group(Hasher& h, const Group& group) {
 // Every bit of a state that later motion depends on, and of its group, with its first member.
 std::uint64_t Kernel::state_checksum(const State& s) const {
   Hasher h;
-  h.add(state_hash(*bodies[s.process], s.key, {s.x, s.q, s.v, s.L}, s));
+  h.add(state_hash(body_of(s.process), s.key, {s.x, s.q, s.v, s.L}, s));
   h.add(s.arc_time);
   h.add(s.random);
   h.add(std::uint64_t{s.impacts.count});
@@ -190,7 +191,7 @@ std::uint64_t Kernel::state_checksum(const State& s) const {
 std::uint64_t Kernel::graph_checksum() const {
   Hasher h;
   for (const auto& body : bodies)
-    for (const State* s = graph.head(body->id()); s; s = s->next) h.add(state_checksum(*s));
+    for (const State* s = graph.head(body->process); s; s = s->next) h.add(state_checksum(*s));
   return h.value();
 }
 
@@ -198,13 +199,13 @@ std::uint64_t Kernel::graph_checksum() const {
 std::uint64_t Kernel::ring_checksum(const Key& key) const {
   Hasher h;
   for (const auto& body : bodies)
-    if (const State* s = graph.tail(body->id()); s->key == key) h.add(state_checksum(*s));
+    if (const State* s = graph.tail(body->process); s->key == key) h.add(state_checksum(*s));
   return h.value();
 }
 
 std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
   std::vector<QueuedState> result;
-  for (const State* s = graph.head(id); s; s = s->next)
+  for (const State* s = graph.head(process_of(id)); s; s = s->next)
     result.push_back(
         {s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
   return result;

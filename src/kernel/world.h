@@ -16,8 +16,8 @@
 #include "dynamics/motion.h"
 #include "geometry/shape.h"
 #include "kernel/callback.h"
-#include "kernel/key.h"
 #include "kernel/statistics.h"
+#include "timeline/key.h"
 
 namespace tw {
 
@@ -43,21 +43,6 @@ struct BodyDef {
   std::optional<Vec3> color;  // sRGB 0..1
   bool visible = true;
   Place place;  // of the form that made it
-};
-
-enum class BodyKind : unsigned char { dynamic, fixed, kinematic };
-
-// What one may ask about a body; stays valid while the world lives.
-struct BodyInfo {
-  BodyId id = 0;
-  std::string name, material;
-  BodyKind kind = BodyKind::dynamic;
-  ShapePtr shape;  // in the body frame; may be null
-  double mass = 0;
-  std::optional<Vec3> color;
-  bool visible = true;
-  Place place;
-  bool removed = false;  // World::remove_body; its number stays taken
 };
 
 // Test modes of the scheduler (kernel.md): the committed history must not depend on them.

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel/slots.h"
 #include "script/live.h"
+#include "timeline/slots.h"
 
 namespace tw {
 

@@ -49,7 +49,7 @@ TEST(ExactCases, ball_bounces_at_the_exact_times) {
   const Case c = read_case("bounce");
   fill(world, c);
   std::vector<double> times;
-  world.add_collision_observer([&](const Collision& hit) { times.push_back(hit.time); });
+  world.add_collision_observer([&](const Collision& struck) { times.push_back(struck.time); });
   world.advance(c.duration);
   const auto rows = read_rows("bounce.exact.txt");
   const auto& e = rows.at(0);

@@ -103,28 +103,28 @@ TEST(MaxPenetration, of_a_stack_is_the_depth_of_its_lowest_contact) {
   add_wall(world, Vec3::UnitZ(), 0);
   for (int i = 0; i < 10; ++i) add_box(world, {1, 1, 1}, {0, 0, 0.5 + i});
   look_at_frames(world);
-  Judge judge, at_rest;
+  Judge owner, at_rest;
   for (int i = 1; i <= 400; ++i) {
     world.advance(i / 200.0);
-    judge.look(world);
+    owner.look(world);
   }
   at_rest.look(world);
   EXPECT_NEAR(at_rest.deepest(), 7.6e-4, 1e-5);
-  EXPECT_GT(judge.deepest(), at_rest.deepest()) << "deeper while the weight came on";
-  EXPECT_NEAR(max_penetration(world), judge.deepest(), 1e-3 * judge.deepest());
+  EXPECT_GT(owner.deepest(), at_rest.deepest()) << "deeper while the weight came on";
+  EXPECT_NEAR(max_penetration(world), owner.deepest(), 1e-3 * owner.deepest());
 }
 
 TEST(MaxPenetration, of_a_heap_is_what_a_judge_sees) {
   World world;
   heap_scene(20, 0).fill(world);
   look_at_frames(world);
-  Judge judge;
+  Judge owner;
   for (int i = 1; i <= 150; ++i) {
     world.advance(0.01 * i);
-    judge.look(world);
+    owner.look(world);
   }
-  EXPECT_GE(max_penetration(world), 0.99 * judge.deepest());
-  EXPECT_LE(max_penetration(world), 1.5 * judge.deepest());
+  EXPECT_GE(max_penetration(world), 0.99 * owner.deepest());
+  EXPECT_LE(max_penetration(world), 1.5 * owner.deepest());
 }
 
 // It is that of the committed history: no schedule changes it.

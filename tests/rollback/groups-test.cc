@@ -49,7 +49,7 @@ std::vector<Members> residences(const KernelTest& kernel, BodyId id) {
 using Name = std::tuple<BodyId, double, std::uint32_t, int, std::uint64_t>;
 
 Name name_of(const State& s) {
-  return {s.process, s.key.time, s.key.microstep, static_cast<int>(s.key.kind), s.key.id};
+  return {number(s.process), s.key.time, s.key.microstep, static_cast<int>(s.key.kind), s.key.id};
 }
 
 std::set<Name> names_in(World& world) {
@@ -266,15 +266,15 @@ TEST(Groups, hard_impact_on_a_member_leaves_the_group_living) {
   kernel.begin();
   while (kernel.tail(ball).key.kind != KeyKind::impact && world.kernel().queue.top_priority() < 1)
     world.kernel().policy->go_forward(world.kernel());
-  const State& hit = kernel.tail(ball);
-  ASSERT_EQ(hit.key.kind, KeyKind::impact);
-  EXPECT_FALSE(hit.group);
+  const State& struck = kernel.tail(ball);
+  ASSERT_EQ(struck.key.kind, KeyKind::impact);
+  EXPECT_FALSE(struck.group);
   int ring = 1;
-  for (const State* s = hit.ring; s != &hit; s = s->ring) {
+  for (const State* s = struck.ring; s != &struck; s = s->ring) {
     ++ring;
     ASSERT_TRUE(s->group);
     EXPECT_EQ(s->group->members, (Members{lower, upper}));
-    EXPECT_EQ(s->group->key, hit.key);
+    EXPECT_EQ(s->group->key, struck.key);
   }
   EXPECT_EQ(ring, 3) << "the blow stands in the queues of ball and both members";
   world.advance(1);
@@ -325,7 +325,7 @@ TEST(Groups, slow_neighbour_is_linked_before_it_touches) {
   world.advance(0.199);
   EXPECT_EQ(fusions, (std::vector<std::pair<BodyId, BodyId>>{{floor, box}}));
   EXPECT_LT(world.state(box).position.x(), 0.21);
-  EXPECT_TRUE(KernelTest(world).tail(box).group->link(pair_id(block, box)));
+  EXPECT_TRUE(KernelTest(world).tail(box).group->find(pair_id(block, box)));
 }
 
 // A contact that breaks is told once, with its bodies, and so is each fusion.

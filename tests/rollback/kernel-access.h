@@ -15,7 +15,7 @@ class KernelTest {
   void begin() { kernel_.begin_run(); }
   // Claims the body's next window.
   void claim(BodyId id) { kernel_.claim_window(*kernel_.bodies[id]); }
-  double claimed_time(BodyId id) const { return kernel_.bodies[id]->claim.time; }
+  double claimed_time(BodyId id) const { return kernel_.process(*kernel_.bodies[id]).claim.time; }
   // Claims and events up to the body's claimed time being at least `time`.
   void claim_up_to(BodyId id, double time) {
     while (claimed_time(id) < time) claim(id);
@@ -37,18 +37,20 @@ class KernelTest {
   }
   // Removes the body's states from the key on, as a discontinuity found late would.
   std::size_t roll_back(BodyId id, const Key& key) {
-    std::vector<Touched> touched;
-    const std::size_t removed = kernel_.graph.rollback(id, key, touched, kernel_.removal());
-    kernel_.treat(touched);
+    std::vector<Affected> affected;
+    const std::size_t removed =
+        kernel_.graph.rollback(kernel_.process_of(id), key, affected, kernel_.removal());
+    kernel_.treat(affected);
     return removed;
   }
   // The body's states, earliest first.
   std::vector<const State*> states(BodyId id) const {
     std::vector<const State*> result;
-    for (const State* s = kernel_.graph.head(id); s; s = s->next) result.push_back(s);
+    for (const State* s = kernel_.graph.head(kernel_.process_of(id)); s; s = s->next)
+      result.push_back(s);
     return result;
   }
-  const State& tail(BodyId id) const { return *kernel_.graph.tail(id); }
+  const State& tail(BodyId id) const { return *kernel_.graph.tail(kernel_.process_of(id)); }
   std::size_t undelivered() const { return kernel_.undelivered_.size(); }
 
  private:

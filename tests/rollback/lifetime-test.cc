@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "kernel/group.h"
+#include "groups/group.h"
 #include "support/heap-scenes.h"
 #include "support/schedule.h"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/random.h"
-#include "kernel/state-graph.h"
+#include "timeline/state-graph.h"
 
 namespace tw::test {
 
@@ -24,7 +24,7 @@ using StateName = std::pair<std::uint32_t, double>;  // process, time
 inline std::set<StateName> names_in(const StateGraph& graph) {
   std::set<StateName> names;
   for (std::uint32_t p = 0; p < graph.process_count(); ++p)
-    for (const State* s = graph.head(p); s; s = s->next) names.insert({p, s->key.time});
+    for (const State* s = graph.head(ProcessId{p}); s; s = s->next) names.insert({p, s->key.time});
   return names;
 }
 
@@ -35,8 +35,8 @@ inline std::vector<State*> append_ring(StateGraph& graph,
                                        const std::vector<std::uint32_t>& processes,
                                        const Key& key) {
   std::vector<State*> ring;
-  for (const std::uint32_t p : processes) ring.push_back(graph.append(p, key));
-  graph.link_ring(ring);
+  for (const std::uint32_t p : processes) ring.push_back(graph.append(ProcessId{p}, key));
+  graph.close_ring(ring);
   return ring;
 }
 
@@ -45,7 +45,7 @@ inline void fill_randomly(StateGraph& graph, std::uint32_t processes, int discon
                           std::uint32_t widest, Random& random) {
   for (std::uint32_t p = 0; p < processes; ++p) {
     graph.add_process();
-    graph.append(p, {0, 0, KeyKind::birth, p});
+    graph.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
   }
   for (int i = 1; i <= discontinuities; ++i) {
     std::set<std::uint32_t> members;
@@ -61,7 +61,7 @@ inline std::set<StateName> reachable(const StateGraph& graph, std::uint32_t proc
                                      const Key& key) {
   std::set<StateName> found;
   std::vector<const State*> open;
-  for (const State* s = graph.head(process); s; s = s->next)
+  for (const State* s = graph.head(ProcessId{process}); s; s = s->next)
     if (s->key >= key) {
       open.push_back(s);
       break;
@@ -69,18 +69,20 @@ inline std::set<StateName> reachable(const StateGraph& graph, std::uint32_t proc
   while (!open.empty()) {
     const State* s = open.back();
     open.pop_back();
-    if (!s || !found.insert({s->process, s->key.time}).second) continue;
+    if (!s || !found.insert({number(s->process), s->key.time}).second) continue;
     open.push_back(s->next);
     for (const State* r = s->ring; r != s; r = r->ring) open.push_back(r);
   }
   return found;
 }
 
-// Rolls back and returns the names of the states that said farewell.
+// Rolls back and returns the names of the states that went.
 inline std::set<StateName> removed_by_rollback(StateGraph& graph, std::uint32_t process,
-                                               const Key& key, std::vector<Touched>& touched) {
+                                               const Key& key, std::vector<Affected>& affected) {
   std::set<StateName> removed;
-  graph.rollback(process, key, touched, [&](State& s) { removed.insert({s.process, s.key.time}); });
+  graph.rollback(ProcessId{process}, key, affected, [&](State& s) {
+    removed.insert({number(s.process), s.key.time});
+  });
   return removed;
 }
 

@@ -21,8 +21,8 @@ std::set<StateName> difference(const std::set<StateName>& a, const std::set<Stat
 void check_one_rollback(StateGraph& graph, std::uint32_t process, const Key& key) {
   const std::set<StateName> before = names_in(graph);
   const std::set<StateName> expected = reachable(graph, process, key);
-  std::vector<Touched> touched;
-  const std::set<StateName> removed = removed_by_rollback(graph, process, key, touched);
+  std::vector<Affected> affected;
+  const std::set<StateName> removed = removed_by_rollback(graph, process, key, affected);
   ASSERT_EQ(removed, expected);
   ASSERT_EQ(names_in(graph), difference(before, expected));
   ASSERT_EQ(graph.validate(), "");
@@ -30,8 +30,8 @@ void check_one_rollback(StateGraph& graph, std::uint32_t process, const Key& key
   std::map<std::uint32_t, double> least;
   for (const auto& [p, time] : expected)
     least[p] = least.contains(p) ? std::min(least[p], time) : time;
-  ASSERT_EQ(touched.size(), least.size());
-  for (const Touched& t : touched) ASSERT_EQ(t.least_removed.time, least[t.process]);
+  ASSERT_EQ(affected.size(), least.size());
+  for (const Affected& t : affected) ASSERT_EQ(t.least_removed.time, least[number(t.process)]);
 }
 
 TEST(StateGraph, rollback_removes_exactly_the_reachable_states) {
@@ -80,10 +80,10 @@ TEST(StateGraph, rollback_of_nothing_touches_nobody) {
   Random random(3);
   StateGraph graph;
   fill_randomly(graph, 10, 20, 2, random);
-  std::vector<Touched> touched;
+  std::vector<Affected> affected;
   const std::set<StateName> before = names_in(graph);
-  EXPECT_TRUE(removed_by_rollback(graph, 4, impact_at(1000), touched).empty());
-  EXPECT_TRUE(touched.empty());
+  EXPECT_TRUE(removed_by_rollback(graph, 4, impact_at(1000), affected).empty());
+  EXPECT_TRUE(affected.empty());
   EXPECT_EQ(names_in(graph), before);
 }
 
@@ -93,17 +93,17 @@ TEST(StateGraph, rollback_follows_very_long_chains) {
   const std::uint32_t processes = 20000;
   for (std::uint32_t p = 0; p < processes; ++p) {
     graph.add_process();
-    graph.append(p, {0, 0, KeyKind::birth, p});
+    graph.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
   }
   for (std::uint32_t p = 0; p + 1 < processes; ++p)
     append_ring(graph, {p, p + 1}, impact_at(1 + p));
-  std::vector<Touched> touched;
+  std::vector<Affected> affected;
   // process 1 has the impacts at 1 (with 0) and 2 (with 2): all later ones follow
   std::size_t removed = 0;
-  removed = graph.rollback(1, impact_at(2), touched, [](State&) {});
+  removed = graph.rollback(ProcessId{1}, impact_at(2), affected, [](State&) {});
   EXPECT_EQ(removed, 2u * (processes - 2));
-  EXPECT_EQ(graph.tail(0)->key, impact_at(1));
-  EXPECT_EQ(graph.tail(1)->key, impact_at(1));
+  EXPECT_EQ(graph.tail(ProcessId{0})->key, impact_at(1));
+  EXPECT_EQ(graph.tail(ProcessId{1})->key, impact_at(1));
 }
 
 // Keys decide, not times: of two impacts at one instant the later key goes alone.
@@ -111,17 +111,17 @@ TEST(StateGraph, rollback_is_to_a_key_within_one_instant) {
   StateGraph graph;
   for (std::uint32_t p = 0; p < 3; ++p) {
     graph.add_process();
-    graph.append(p, {0, 0, KeyKind::birth, p});
+    graph.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
   }
   const Key first{1, 1, KeyKind::impact, pair_id(0, 1)},
       second{1, 2, KeyKind::impact, pair_id(1, 2)};
   append_ring(graph, {0, 1}, first);
   append_ring(graph, {1, 2}, second);
-  std::vector<Touched> touched;
-  EXPECT_EQ(graph.rollback(1, second, touched, [](State&) {}), 2u);
-  EXPECT_EQ(graph.tail(1)->key, first);
-  EXPECT_EQ(graph.tail(0)->key, first);
-  EXPECT_EQ(graph.tail(2)->key.time, 0);
+  std::vector<Affected> affected;
+  EXPECT_EQ(graph.rollback(ProcessId{1}, second, affected, [](State&) {}), 2u);
+  EXPECT_EQ(graph.tail(ProcessId{1})->key, first);
+  EXPECT_EQ(graph.tail(ProcessId{0})->key, first);
+  EXPECT_EQ(graph.tail(ProcessId{2})->key.time, 0);
 }
 
 // Figure 3 of the paper: five bodies, the states of each collision tied together, and a collision
@@ -142,7 +142,7 @@ class Figure3 : public testing::Test {
   void SetUp() override {
     for (std::uint32_t p = a; p <= e; ++p) {
       graph_.add_process();
-      graph_.append(p, {0, 0, KeyKind::birth, p});
+      graph_.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
     }
     append_ring(graph_, {a, b}, impact_at(1));
     append_ring(graph_, {d, e}, impact_at(2));
@@ -152,8 +152,8 @@ class Figure3 : public testing::Test {
     append_ring(graph_, {b, c}, impact_at(6));
   }
   Names removed(std::uint32_t process, double time) {
-    std::vector<Touched> touched;
-    const Names names = removed_by_rollback(graph_, process, impact_at(time), touched);
+    std::vector<Affected> affected;
+    const Names names = removed_by_rollback(graph_, process, impact_at(time), affected);
     EXPECT_EQ(graph_.validate(), "");
     return names;
   }
@@ -192,18 +192,18 @@ TEST_F(Figure3, rollback_that_starts_at_the_other_end_follows_the_rings_back) {
 TEST(StateGraph, look_up_by_key_and_time_takes_the_last_state) {
   StateGraph graph;
   graph.add_process();
-  graph.append(0, {0, 0, KeyKind::birth, 0});
+  graph.append(ProcessId{0}, {0, 0, KeyKind::birth, 0});
   const Key first{1, 1, KeyKind::impact, 1}, second{1, 2, KeyKind::impact, 2};
-  graph.append(0, first);
-  graph.append(0, second);
-  graph.append(0, impact_at(2));
-  EXPECT_EQ(graph.last_at_or_before(0, first)->key, first);
-  EXPECT_EQ(graph.last_before(0, first)->key.time, 0);
-  EXPECT_EQ(graph.last_before(0, second)->key, first);
+  graph.append(ProcessId{0}, first);
+  graph.append(ProcessId{0}, second);
+  graph.append(ProcessId{0}, impact_at(2));
+  EXPECT_EQ(graph.last_at_or_before(ProcessId{0}, first)->key, first);
+  EXPECT_EQ(graph.last_before(ProcessId{0}, first)->key.time, 0);
+  EXPECT_EQ(graph.last_before(ProcessId{0}, second)->key, first);
   // at the time of a discontinuity: what follows it
-  EXPECT_EQ(graph.last_at_or_before_time(0, 1)->key, second);
-  EXPECT_EQ(graph.last_at_or_before_time(0, std::nextafter(1.0, 0.0))->key.time, 0);
-  EXPECT_EQ(graph.last_before(0, {0, 0, KeyKind::birth, 0}), nullptr);
+  EXPECT_EQ(graph.last_at_or_before_time(ProcessId{0}, 1)->key, second);
+  EXPECT_EQ(graph.last_at_or_before_time(ProcessId{0}, std::nextafter(1.0, 0.0))->key.time, 0);
+  EXPECT_EQ(graph.last_before(ProcessId{0}, {0, 0, KeyKind::birth, 0}), nullptr);
 }
 
 TEST(StateGraph, freeing_the_past_leaves_the_rest_valid) {
@@ -212,10 +212,10 @@ TEST(StateGraph, freeing_the_past_leaves_the_rest_valid) {
   const std::uint32_t processes = 40;
   fill_randomly(graph, processes, 400, 3, random);
   for (std::uint32_t p = 0; p < processes; ++p) {
-    State* keep = graph.last_at_or_before_time(p, 200);
-    for (State* s = graph.head(p); s; s = s->next) s->committed = s->key.time <= 200;
+    State* keep = graph.last_at_or_before_time(ProcessId{p}, 200);
+    for (State* s = graph.head(ProcessId{p}); s; s = s->next) s->committed = s->key.time <= 200;
     graph.free_before(keep, [](State&) {});
-    EXPECT_EQ(graph.head(p), keep);
+    EXPECT_EQ(graph.head(ProcessId{p}), keep);
   }
   EXPECT_EQ(graph.validate(), "");
   check_one_rollback(graph, 7, impact_at(201));
@@ -226,21 +226,21 @@ TEST(StateGraphDeathTest, rollback_never_reaches_a_committed_state) {
   StateGraph graph;
   for (std::uint32_t p = 0; p < 2; ++p) {
     graph.add_process();
-    graph.append(p, {0, 0, KeyKind::birth, p});
+    graph.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
   }
   for (State* s : append_ring(graph, {0, 1}, impact_at(1))) s->committed = true;
   append_ring(graph, {0, 1}, impact_at(2));
-  std::vector<Touched> touched;
-  EXPECT_DEATH(graph.rollback(0, impact_at(0.5), touched, [](State&) {}),
+  std::vector<Affected> affected;
+  EXPECT_DEATH(graph.rollback(ProcessId{0}, impact_at(0.5), affected, [](State&) {}),
                "rollback of body 0 .* reached the committed");
 }
 
 TEST(StateGraphDeathTest, keys_in_a_queue_increase) {
   StateGraph graph;
   graph.add_process();
-  graph.append(0, impact_at(2));
-  EXPECT_DEATH(graph.append(0, impact_at(1)), "must increase");
-  EXPECT_DEATH(graph.append(0, impact_at(2)), "must increase");
+  graph.append(ProcessId{0}, impact_at(2));
+  EXPECT_DEATH(graph.append(ProcessId{0}, impact_at(1)), "must increase");
+  EXPECT_DEATH(graph.append(ProcessId{0}, impact_at(2)), "must increase");
 }
 
 // The validator finds what it is there for.
@@ -248,12 +248,12 @@ TEST(StateGraph, validator_names_a_broken_ring) {
   StateGraph graph;
   for (std::uint32_t p = 0; p < 2; ++p) {
     graph.add_process();
-    graph.append(p, {0, 0, KeyKind::birth, p});
+    graph.append(ProcessId{p}, {0, 0, KeyKind::birth, p});
   }
-  State* one = graph.append(0, impact_at(1));
-  State* two = graph.append(1, impact_at(2));
+  State* one = graph.append(ProcessId{0}, impact_at(1));
+  State* two = graph.append(ProcessId{1}, impact_at(2));
   State* ring[] = {one, two};
-  graph.link_ring(ring);
+  graph.close_ring(ring);
   EXPECT_NE(graph.validate().find("ring of two keys"), std::string::npos);
 }
 

@@ -1,6 +1,6 @@
 // The event queue against a sorted set.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/event-queue.h"
+#include "timeline/event-queue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,58 @@
+// Active pairs: the record of a pair of bodies whose swept boxes overlap.
+//
+// Exactly predicted pairs have a record only while an impact is pending; pairs checked on the grid
+// have one as long as their boxes overlap.  A pair with a member of a moving group has no events of
+// its own but pending impacts: it is followed to the lesser claim whenever one of the two claims a
+// window. A pair in contact within a group needs no record at all.  `from` is a key: everything
+// before it is known to be free of impacts on the arcs that stand; its time is the pair's safe
+// time.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collision/separation.h"
+#include "dynamics/body.h"
+#include "timeline/event-queue.h"
+#include "timeline/key.h"
+#include "timeline/state.h"
+
+namespace tw {
+
+struct Pair {
+  std::uint32_t a = 0, b = 0;              // body ids, a < b
+  std::uint32_t place_a = 0, place_b = 0;  // index in each body's list
+  Key from;                                // safe time, as a key
+  Key checked_start;                       // start of the piece whose common start has been checked
+  double next_check = 0;                   // grid time of the next query on this piece
+  bool started = false;  // checked_start and next_check hold for the present piece
+  bool pending = false;  // an impact is known:
+  Key impact;
+  bool parked = false;  // one of the processes has stopped
+  EventQueue::Handle event = EventQueue::none;
+  double head_start = 0;             // adversary scheduler
+  bool live = false;                 // the record is in use
+  std::vector<SimplexCache> caches;  // per pair of parts, where polyhedra are concerned
+
+  // known to be at least this far apart from `clear_from` to `clear_at`, m and s: decides only
+  // whether to look, never the answer
+  double clearance = 0, clear_from = 0, clear_at = -never;
+
+  double safe_time() const { return pending ? impact.time : from.time; }
+};
+
+// A stretch over which both arcs stand: [start, end) in keys.
+struct Piece {
+  const State* a = nullptr;
+  const State* b = nullptr;
+  const Body* body_a = nullptr;
+  const Body* body_b = nullptr;
+  Key start;  // the later of the two arcs' starts: the common start
+  Key end;    // the earlier of the next arcs' starts, or of the arcs' natural ends
+  bool ends_naturally = false;  // what follows is not known yet
+  double start_time() const { return start.time; }
+};
+
+}  // namespace tw

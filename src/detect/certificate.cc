@@ -1,0 +1,199 @@
+// Certificates: until when two bodies are surely apart.
+//
+// For each pair of convex parts a plane is put midway between them, across the witness direction n,
+// and moves with the mean of the witness points' velocity and the bodies' acceleration along n.  As
+// long as every point of a part's core stays on its side, the parts are apart.  A core point r of a
+// body in free flight has the height along n
+//   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
+// with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
+// torque-free rotation.  So the time until the plane may be reached is the least root of
+// quadratics: close to the true impact time, and never after it.  Kinematic bodies are bounded by
+// their speed, over a horizon.  Members of groups are bounded by the derivatives of their dense
+// output, over one step.
+//
+// With an allowance the plane gives way by half of it to either side: bodies that slide past each
+// other at touch are then apart for as long as they do.
+//
+// The certificate decides only where the next query is made, never the answer: warm simplices are
+// allowed here.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "detect/turning-plane.h"
+#include "geometry/polyhedron.h"
+#include "kernel/kernel.h"
+
+namespace tw {
+namespace {
+
+// Bounding balls this many radii apart need no distance query.
+constexpr double far_in_radii = 0.25;
+
+// A certificate shorter than this is worth a second look, s.
+constexpr double soon = 1e-4;
+
+// The plane: at height c along n, moving with u and alpha.
+struct Plane {
+  Vec3 n;
+  double c = 0, u = 0, alpha = 0;
+  double allowance = 0;  // points may stand this far on the wrong side
+};
+
+// When a core point (offset r from the centre, world) with a radius may reach the plane, n towards
+// it.
+double reach(const MovingBody& side, const Vec3& n, double c, double u, double alpha, const Vec3& r,
+             double radius) {
+  const double gap = c - n.dot(side.point.x + r) - radius;
+  if (!(gap > 0)) return 0;
+  const double arm = r.norm();
+  if (!side.body->dynamic()) {
+    const double bound = side.speed_bound + side.turn_bound * arm;
+    return first_zero(gap, u - bound, alpha);
+  }
+  const double speed = n.dot(side.point.v + side.point.w.cross(r));
+  const double push = n.dot(side.acceleration) + n.cwiseAbs().dot(side.spread) + side.bend * arm;
+  return first_zero(gap, u - speed, alpha - push);
+}
+
+// The least over the points of a part of a kinematic body: by its bounds.
+double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec3& n, double c,
+                       double u, double alpha) {
+  if (part.kind == PartKind::cylinder)
+    return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
+  double least = never;
+  for (const Vec3& vertex : part.core->vertices())
+    least =
+        std::min(least, reach(side, n, c, u, alpha, side.frame.R * (part.placement * vertex), 0));
+  return least;
+}
+
+// The least over the core points of a part; `sign` +1: the part lies below the plane, -1 above.
+double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& plane, double sign,
+                  bool as_ball) {
+  const Vec3 n = sign * plane.n;
+  const double c = sign * plane.c + plane.allowance;
+  const double u = sign * plane.u, alpha = sign * plane.alpha;
+  if (part.kind == PartKind::half_space) {
+    // stands, or moves without turning
+    const double gap = c - n.dot(side.frame * (part.normal * part.offset));
+    return gap > 0 ? first_zero(gap, u - side.speed_bound, alpha) : 0;
+  }
+  if (as_ball || part.kind == PartKind::sphere)
+    return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
+  if (!side.body->dynamic() && !side.body->fixed())
+    return kinematic_reach(side, part, n, c, u, alpha);
+
+  // heights and speeds of points are linear in them: in the part's frame,
+  // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w
+  const Frame frame(side.frame.R * part.placement.R, side.frame.R * part.placement.p);
+  const Vec3 m = n.cross(side.point.w);
+  const Vec3 n_P = frame.R.transpose() * n, m_P = frame.R.transpose() * m;
+  const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
+  const double pull = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) -
+                      side.bend * side.body->radius;
+  if (part.kind == PartKind::cylinder) {
+    // the highest point and the fastest, which need not be the same one
+    const auto most = [&](const Vec3& along) {
+      return part.half_length * std::abs(along.z()) +
+             part.radius * std::hypot(along.x(), along.y());
+    };
+    const double gap = c - height - most(n_P);
+    return gap > 0 ? first_zero(gap, u - speed - most(m_P), pull) : 0;
+  }
+  double least = never;
+  for (const Vec3& vertex : part.core->vertices()) {
+    const double gap = c - height - n_P.dot(vertex);
+    if (!(gap > 0)) return 0;
+    const double rate = u - speed - m_P.dot(vertex);
+    // a concave height that is positive at both ends is so between
+    if (pull <= 0 && gap + least * (rate + 0.5 * pull * least) > 0) continue;
+    least = std::min(least, first_zero(gap, rate, pull));
+  }
+  return least;
+}
+
+// Seconds until the two parts may meet, given n from a to b and the witness points.
+double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
+                  const ConvexPart& part_b, const Vec3& n, const Vec3& point_a, const Vec3& point_b,
+                  double allowance, bool as_balls) {
+  Plane plane;
+  plane.allowance = 0.5 * allowance;
+  plane.n = n;
+  plane.c = 0.5 * n.dot(point_a + point_b);
+  plane.u = 0.5 * n.dot(a.velocity_at(point_a) + b.velocity_at(point_b));
+  plane.alpha = 0.5 * n.dot(a.acceleration + b.acceleration);
+  const double below = part_reach(a, part_a, plane, 1, as_balls);
+  if (!(below > 0)) return 0;
+  return std::min(below, part_reach(b, part_b, plane, -1, as_balls));
+}
+
+}  // namespace
+
+double Kernel::certificate(Pair& pair, const Piece& piece, double when, double allowance) {
+  const MovingBody a(*bodies[pair.a], *piece.a, when), b(*bodies[pair.b], *piece.b, when);
+  const auto& parts_a = a.body->shape_P->parts();
+  const auto& parts_b = b.body->shape_P->parts();
+  double least = never;
+  if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
+    least = kinematic_horizon;
+  // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
+  // needed
+  const bool in_steps = a.step_end != never || b.step_end != never;
+  std::optional<MovingBody> step_a, step_b;
+  const auto by_step = [&](const auto& bound) {
+    if (!in_steps) return bound(a, b);
+    if (!step_a) {
+      step_a.emplace(a.within_step(*piece.a, when));
+      step_b.emplace(b.within_step(*piece.b, when));
+    }
+    return std::min(std::min(step_a->horizon, step_b->horizon) - when, bound(*step_a, *step_b));
+  };
+  const auto longest = [&](const auto& bound) {
+    const double left = bound(a, b);
+    return in_steps && left < piece.end.time - when ? std::max(left, by_step(bound)) : left;
+  };
+
+  for (std::size_t i = 0; i < parts_a.size(); ++i)
+    for (std::size_t j = 0; j < parts_b.size(); ++j) {
+      const ConvexPart& pa = parts_a[i];
+      const ConvexPart& pb = parts_b[j];
+      const bool balls = std::isfinite(pa.bound_radius) && std::isfinite(pb.bound_radius);
+
+      // far apart: the bounding balls will do
+      if (balls) {
+        const Vec3 ca = a.frame * pa.bound_center, cb = b.frame * pb.bound_center;
+        const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
+        const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
+        if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
+        if (spheres || centers - radii > far_in_radii * radii) {
+          const Vec3 n = (cb - ca) / centers;
+          least = std::min(least, longest([&](const MovingBody& x, const MovingBody& y) {
+                             return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n,
+                                               cb - pb.bound_radius * n, allowance, true);
+                           }));
+          continue;
+        }
+      }
+
+      if (pair.caches.empty()) pair.caches.resize(parts_a.size() * parts_b.size());
+      SimplexCache& cache = pair.caches[i * parts_b.size() + j];
+      const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
+      if (!(s.distance > -allowance)) return -never;
+      double apart = longest([&](const MovingBody& x, const MovingBody& y) {
+        return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
+      });
+      // where edges and faces turn past each other, a plane that turns with them lasts longer
+      if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
+        apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
+                           return turning_time_apart(x, pa, y, pb, s, allowance);
+                         }));
+      least = std::min(least, apart);
+    }
+  ++counters.certificates;
+  return when + least;
+}
+
+}  // namespace tw

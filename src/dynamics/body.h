@@ -1,0 +1,74 @@
+// A rigid body: its constants, and what it does at one instant.
+//
+// Frames: B the user's body frame, P the principal frame at the centre of mass.  The kernel
+// computes in P (X_WP is the state's x and q); fixed and kinematic bodies have P = B.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "dynamics/contact-parameters.h"
+#include "dynamics/ids.h"
+#include "dynamics/motion.h"
+#include "dynamics/rigid-body.h"
+#include "geometry/shape.h"
+
+namespace tw {
+
+// What a body does at one instant.  Position and orientation are the *body frame's*, velocity the
+// centre of mass's; all in the world frame, SI.
+struct BodyState {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+};
+
+enum class BodyKind : unsigned char { dynamic, fixed, kinematic };
+
+// What one may ask about a body; stays valid while the world lives.
+struct BodyInfo {
+  BodyId id = 0;
+  std::string name, material;
+  BodyKind kind = BodyKind::dynamic;
+  ShapePtr shape;  // in the body frame; may be null
+  double mass = 0;
+  std::optional<Vec3> color;
+  bool visible = true;
+  Place place;
+  bool removed = false;  // World::remove_body; its number stays taken
+};
+
+struct Body {
+  BodyInfo info;
+  ProcessId process{};  // that its motion belongs to
+  ContactBody contact;
+  double mass = 0;              // kg; 0 for fixed and kinematic
+  Vec3 moments = Vec3::Zero();  // kg m^2
+  Pose X_BP, X_PB;
+  ShapePtr shape_P;           // the shape in P; null: touches nothing
+  double radius = 0;          // of the ball about the origin of P that holds the shape, m
+  double least_width = 0;     // the `size` of contact parameters, m
+  double sphere_radius = -1;  // >= 0: a single sphere centred on P
+  double turn_excess = 0;     // max |Ii - Ij| / Ik: bounds the angular acceleration
+  MotionPtr motion;           // fixed and kinematic
+  bool unbounded = false;
+  Vec3 plane_normal = Vec3::Zero();  // a fixed half-space, world
+  double plane_offset = 0;
+  bool is_fixed_plane = false;
+
+  // ---- where collision detection stands ----
+  std::vector<std::uint32_t> pairs;  // active pair records
+  bool placed = false;               // has claimed: has a box in the hash unless it is unbounded
+
+  bool dynamic() const { return info.kind == BodyKind::dynamic; }
+  bool fixed() const { return info.kind == BodyKind::fixed; }
+  bool kinematic() const { return info.kind == BodyKind::kinematic; }
+  BodyId id() const { return info.id; }
+};
+
+}  // namespace tw

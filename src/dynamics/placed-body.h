@@ -1,0 +1,46 @@
+// One body at one instant: its constants, where it is and how fast.
+//
+// Frames: of the body's principal frame P at the centre of mass, in the world.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "dynamics/body.h"
+
+namespace tw {
+
+// Pose and twist of a principal frame: m, unit quaternion, m/s, rad/s.
+struct PoseTwist {
+  Vec3 x = Vec3::Zero();
+  Quat q = Quat::Identity();
+  Vec3 v = Vec3::Zero();
+  Vec3 w = Vec3::Zero();
+
+  Frame frame() const { return Frame(q.toRotationMatrix(), x); }
+  Vec3 velocity_at(const Vec3& where) const { return v + w.cross(where - x); }
+};
+
+struct PlacedBody {
+  const Body* body = nullptr;
+  PoseTwist point;
+  Frame frame;
+
+  PlacedBody(const Body& b, const PoseTwist& p) : body(&b), point(p), frame(p.frame()) {}
+  Vec3 velocity_at(const Vec3& where) const { return point.velocity_at(where); }
+  // A bound on how fast any point of the surface moves now, m/s; a ball's rolls in its place.
+  double surface_speed() const {
+    const double turn = body->sphere_radius >= 0 ? 0 : point.w.norm() * body->radius;
+    return point.v.norm() + (turn > 0 ? turn : 0);
+  }
+  // The same with what rolls in its place, as rest asks: a ball that spins does not rest.
+  double fastest_point() const { return point.v.norm() + point.w.norm() * body->radius; }
+};
+
+// What users see: the body frame's pose.
+BodyState body_state(const Body& body, const PoseTwist& point);
+// World inverse inertia R I^-1 R^T.
+Mat3 inverse_inertia_world(const Body& body, const Quat& q);
+Vec3 angular_momentum(const Body& body, const Quat& q, const Vec3& w);
+double kinetic_energy(const Body& body, const PoseTwist& point);
+
+}  // namespace tw

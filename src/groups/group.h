@@ -1,0 +1,105 @@
+// Contact groups: a set of bodies in persistent contact, from one discontinuity to the next.
+//
+// A Group is made by the discontinuity that gives its members new arcs (fusion, group check, impact
+// on a member, a callback that changed one); its members' states share it.  Its arc is integrated
+// when it is first looked at, which is a function of the group alone; then the end test says where
+// its members' arcs really end (next_check, ends), once.  Nothing else of it changes.
+//
+// Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs
+// are constant until something touches one of them.
+//
+// Not all members of a group need leave it at once: what a blow does to a heap dies away within a
+// few bodies, so only these get new arcs, in a group of their own.  It meets the others at its
+// border, where they follow the arcs that they have, and joins them again at the check that was due
+// (region.cc).
+//
+// Source: the paper, section 4.4; doc/architecture.md, "Contact groups".
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/counted.h"
+#include "groups/stillness.h"
+#include "integrate/group-arc.h"
+#include "timeline/key.h"
+
+namespace tw {
+
+// A pair of bodies in contact, one of them a member: it has no collision checks.  Its contacts
+// stand in a row; it may have none (a ghost at a seam).
+struct ContactPair {
+  std::uint64_t id = 0;  // pair_id of the bodies
+  std::uint32_t first = 0, count = 0;
+  bool has_borne_load = false;  // has carried a load since the two came together
+};
+
+// Which features of which bodies meet at a contact: how it is found again after a refresh.
+struct ContactTag {
+  std::uint32_t reference = 0, other = 0;  // bodies: a and b of the contact
+  int parts = 0;                           // pair of parts
+  std::uint64_t feature = 0;
+};
+
+struct Group : Counted<Group> {
+  Key key;           // of the discontinuity that made it
+  double birth = 0;  // when this set of members came together, s
+  double next_check = never;
+  bool end_tested = false;  // next_check and ends are as end-test.cc found them
+  bool at_rest = false;
+  bool asleep = false;                    // at rest for the time being (stillness.cc)
+  double quiet_since = never;             // s: slow, and nothing slips; `never`: not so
+  double quiet_speed = 0;                 // m/s, at that time
+  double first_step = 0;                  // of the arc, s; 0: chosen
+  double lightest = never, heaviest = 0;  // kg, of all that hung together when it was made
+  std::vector<std::uint32_t> members;     // body ids, ascending
+  std::vector<std::uint32_t>
+      outside;              // body ids of arc->start().outside: all in contact that are no members
+  bool has_border = false;  // some of them are dynamic
+  std::vector<ContactPair> pairs;  // ascending pairs
+  std::vector<std::uint32_t> pair_starts,
+      pairs_by_member;               // numbers of each member's pairs, in rows
+  std::vector<ContactTag> tags;      // of arc->start().contacts
+  std::vector<double> gaps;          // m, of arc->start().contacts, at the start
+  std::vector<Stillness> stillness;  // of each member
+  std::vector<double> ends;          // of each member's arc, s; empty: all at next_check
+  std::unique_ptr<GroupArc> arc;
+
+  // Its place among the members; -1: it is none.
+  int member_of(std::uint32_t body) const {
+    const auto at = std::lower_bound(members.begin(), members.end(), body);
+    return at != members.end() && *at == body ? static_cast<int>(at - members.begin()) : -1;
+  }
+  bool contains(std::uint32_t body) const { return member_of(body) >= 0; }
+  const ContactPair* find(std::uint64_t pair) const {
+    const auto at =
+        std::lower_bound(pairs.begin(), pairs.end(), pair,
+                         [](const ContactPair& l, std::uint64_t p) { return l.id < p; });
+    return at != pairs.end() && at->id == pair ? &*at : nullptr;
+  }
+  // The numbers of a member's contact pairs.
+  std::span<const std::uint32_t> pairs_of(std::uint32_t member) const {
+    const std::uint32_t first = pair_starts[member];
+    return {pairs_by_member.data() + first, pair_starts[member + 1] - first};
+  }
+  // Fills in what pairs_of reads.
+  void index_pairs();
+  // When its contacts are looked at for what holds at `when`: resting ones at their start alone.
+  double contact_time(double when) const { return at_rest ? arc->start().time : when; }
+  // Where the arc of a member ends by itself, s.
+  double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
+};
+
+using Groups = std::vector<std::shared_ptr<Group>>;
+
+inline void add_once(Groups& groups, const std::shared_ptr<Group>& group) {
+  if (group && std::find(groups.begin(), groups.end(), group) == groups.end())
+    groups.push_back(group);
+}
+
+}  // namespace tw

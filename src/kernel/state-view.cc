@@ -1,0 +1,100 @@
+// What callbacks and edits see of a draft, and change in it.
+//
+// Source: the paper, section 4.6.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/state-view.h"
+
+#include "base/limits.h"
+#include "base/random.h"
+
+namespace tw {
+
+void require_near(const Vec3& position, const std::string& name) {
+  TW_REQUIRE(position.cwiseAbs().maxCoeff() <= farthest,
+             "position of " + name + " has a coordinate of " +
+                 show(position.cwiseAbs().maxCoeff()) + " m; expected at most " + show(farthest) +
+                 " m");
+}
+
+void SuccessorView::require_dynamic(const char* what) const {
+  TW_REQUIRE(successor_.body->dynamic(),
+             std::string(what) + " of " + successor_.body->info.name +
+                 " cannot be changed; expected a dynamic body (this one is " +
+                 (successor_.body->fixed() ? "fixed)" : "kinematic)"));
+}
+
+double SuccessorView::kinetic_energy() const {
+  return tw::kinetic_energy(*successor_.body, successor_.point);
+}
+
+// The first change of the motion starts a new arc here.
+void SuccessorView::start_arc() {
+  if (!successor_.starts_arc()) start_new_arc(successor_, key_);
+}
+
+void SuccessorView::set_velocity(const Vec3& v) {
+  require_dynamic("velocity");
+  TW_REQUIRE(is_finite(v), "velocity of " + successor_.body->info.name + " is not finite");
+  TW_REQUIRE(v.norm() <= speed_limit, "the speed of " + successor_.body->info.name + " is " +
+                                          show(v.norm()) + " m/s; expected at most " +
+                                          show(speed_limit));
+  start_arc();
+  successor_.data.v = successor_.point.v = state_.velocity = v;
+}
+
+void SuccessorView::set_angular_velocity(const Vec3& w) {
+  require_dynamic("angular-velocity");
+  TW_REQUIRE(is_finite(w), "angular-velocity of " + successor_.body->info.name + " is not finite");
+  TW_REQUIRE(w.norm() <= greatest_angular_speed,
+             "the angular velocity of " + successor_.body->info.name + " is " + show(w.norm()) +
+                 " rad/s; expected at most " + show(greatest_angular_speed));
+  start_arc();
+  successor_.point.w = state_.angular_velocity = w;
+  successor_.data.L = angular_momentum(*successor_.body, successor_.data.q, w);
+}
+
+void SuccessorView::set_applied_force(const Vec3& force) {
+  require_dynamic("applied-force");
+  TW_REQUIRE(is_finite(force), "applied-force of " + successor_.body->info.name + " is not finite");
+  TW_REQUIRE(force.norm() / successor_.body->mass <= greatest_acceleration,
+             "applied-force of " + successor_.body->info.name + " is " + show(force.norm()) +
+                 " N on " + show(successor_.body->mass) +
+                 " kg; expected an acceleration of at most " + show(greatest_acceleration) +
+                 " m/s^2");
+  if (force == successor_.data.force) return;
+  start_arc();
+  successor_.data.force = force;
+  successor_.data.acceleration = gravity_ + force / successor_.body->mass;
+}
+
+void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }
+
+void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {
+  TW_ASSERT(may_place_, "set_pose is for edits");
+  require_dynamic("position");
+  TW_REQUIRE(is_finite(position), "position of " + successor_.body->info.name + " is not finite");
+  require_near(position, successor_.body->info.name);
+  TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,
+             "orientation of " + successor_.body->info.name + " is zero or not finite");
+  start_arc();
+  successor_.placed = true;
+  const Quat q = orientation.normalized();
+  const Vec3 w = successor_.point.w;
+  successor_.data.q = successor_.point.q = q * successor_.body->X_BP.q;
+  successor_.data.x = successor_.point.x = position + q * successor_.body->X_BP.p;
+  successor_.data.L = angular_momentum(*successor_.body, successor_.data.q, w);
+  state_ = body_state(*successor_.body, successor_.point);
+}
+
+double SuccessorView::draw_random() {
+  TW_REQUIRE(successor_.enters() || successor_.data.slots || successor_.body->dynamic(),
+             "random-real! of " + successor_.body->info.name +
+                 ": a fixed body without slots keeps no state; expected one with #:slots");
+  Random random(successor_.data.random);
+  const double x = random.real();
+  successor_.data.random += 0x9e3779b97f4a7c15ull;
+  return x;
+}
+
+}  // namespace tw

@@ -1,0 +1,51 @@
+// What callbacks and edits see of a successor, and change in it.
+//
+// Source: the paper, section 4.6.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "kernel/callback.h"
+#include "timeline/successor.h"
+
+namespace tw {
+
+// UserError if a body called `name` were placed too far away (base/limits.h).
+void require_near(const Vec3& position, const std::string& name);
+
+// Reads the successor's point, writes the successor.
+class SuccessorView : public StateView {
+ public:
+  SuccessorView(Successor& successor, const Key& key, bool may_place, const Vec3& gravity)
+      : successor_(successor),
+        key_(key),
+        may_place_(may_place),
+        gravity_(gravity),
+        state_(body_state(*successor.body, successor.point)) {}
+
+  BodyId body() const override { return successor_.body->id(); }
+  const BodyState& state() const override { return state_; }
+  double kinetic_energy() const override;
+  const Vec3& applied_force() const override { return successor_.data.force; }
+  const SlotsPtr& slots() const override { return successor_.data.slots; }
+  void set_velocity(const Vec3& v) override;
+  void set_angular_velocity(const Vec3& w) override;
+  void set_applied_force(const Vec3& force) override;
+  void set_slots(SlotsPtr slots) override;
+  void set_pose(const Vec3& position, const Quat& orientation) override;
+  double draw_random() override;
+
+ private:
+  void require_dynamic(const char* what) const;
+  void start_arc();
+
+  Successor& successor_;
+  Key key_;
+  bool may_place_;
+  Vec3 gravity_;
+  BodyState state_;
+};
+
+}  // namespace tw

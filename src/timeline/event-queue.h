@@ -1,0 +1,72 @@
+// The event queue: an indexed 4-ary heap, so that an event can be moved or withdrawn in place and
+// the top is never stale.  The heap holds the priorities themselves: only ties look at the events.
+//
+// Order: by priority (the time of the key; a head start earlier under the adversary scheduler),
+// then by key.  Invariant (validate): parents are not later than children; handles point back.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "timeline/key.h"
+
+namespace tw {
+
+// What an event is for; `subject` numbers a body (of a group check: a member), a pair record or a
+// callback.
+enum class EventKind : std::uint8_t { advance, pair, callback, group_check };
+
+struct Event {
+  double priority = 0;
+  Key key;
+  EventKind kind = EventKind::advance;
+  std::uint32_t subject = 0;
+};
+
+class EventQueue {
+ public:
+  using Handle = std::uint32_t;
+  static constexpr Handle none = 0xffffffffu;
+
+  bool empty() const { return heap_.empty(); }
+  std::size_t size() const { return heap_.size(); }
+  const Event& top() const { return events_[heap_[0].handle]; }
+  double top_priority() const { return heap_[0].priority; }
+  const Event& event(Handle handle) const { return events_[handle]; }
+  // The least time of all events' keys; never before the priority of the top.  `never` if empty.
+  double least_time() const;
+  // All that are scheduled, in no order: for validators.
+  std::vector<Handle> handles() const;
+
+  // Inserts the event, or moves the one that `handle` names; updates the handle.
+  void schedule(Handle& handle, const Event& event);
+  // Withdraws the event, if there is one; the handle becomes `none`.
+  void withdraw(Handle& handle);
+
+  bool validate() const;
+
+ private:
+  struct Slot {
+    double priority;
+    Handle handle;
+  };
+  bool before(const Slot& a, const Slot& b) const {
+    if (a.priority != b.priority) return a.priority < b.priority;
+    return events_[a.handle].key < events_[b.handle].key;
+  }
+  // Puts the slot where it belongs, from place `at` on, which is free.
+  void settle(std::size_t at, const Slot& slot);
+  void put(std::size_t at, const Slot& slot) {
+    heap_[at] = slot;
+    place_[slot.handle] = static_cast<std::uint32_t>(at);
+  }
+
+  std::vector<Event> events_;         // by handle
+  std::vector<std::uint32_t> place_;  // handle -> index in heap_
+  std::vector<Slot> heap_;
+  std::vector<Handle> unused_;
+};
+
+}  // namespace tw

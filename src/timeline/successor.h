@@ -1,0 +1,36 @@
+// Successors: the states that a discontinuity gives its processes, before they enter the graph.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "dynamics/placed-body.h"
+#include "timeline/state.h"
+
+namespace tw {
+
+// What a discontinuity does to one process.
+enum class Role : std::uint8_t {
+  new_arc,     // starts an arc here: a receiver, or whom the change reaches
+  record,      // was looked at, or only its slots changed: carries its arc along
+  border,      // a group member that keeps its arc and touches one that doesn't: a record
+  dependence,  // the others' rest depends on its arc, which it keeps: a record
+  no_state     // a fixed body without slots: takes part, but keeps no states
+};
+
+struct Successor {
+  const Body* body = nullptr;
+  Role role = Role::record;
+  bool placed = false;  // an edit put it elsewhere: its contacts are gone
+  StateData data;
+  PoseTwist point;  // at the discontinuity's time
+
+  ProcessId process() const { return body->process; }
+  bool enters() const { return role != Role::no_state; }
+  // Whether a dynamic body starts an arc here.
+  bool starts_arc() const { return role == Role::new_arc; }
+};
+
+// Starts a new arc at `key` from the successor's point; the group, if there is one, is still the
+// old one.
+void start_new_arc(Successor& successor, const Key& key);
+
+}  // namespace tw

@@ -1,0 +1,33 @@
+// How fast the surface of a body moves, as contacts and rest ask for it.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "dynamics/placed-body.h"
+
+namespace tw {
+namespace {
+
+PlacedBody turning(const Body& body) {
+  PoseTwist point;
+  point.v = Vec3(3, 4, 0);
+  point.w = Vec3(0, 0, 2);
+  return PlacedBody(body, point);
+}
+
+// Counted twice, the turning made the threshold of rest up to twice as strict as its text says.
+TEST(PlacedBody, fastest_point_counts_turning_once) {
+  Body box;
+  box.radius = 0.5;
+  EXPECT_DOUBLE_EQ(turning(box).fastest_point(), 5 + 2 * 0.5);
+  EXPECT_DOUBLE_EQ(turning(box).surface_speed(), 5 + 2 * 0.5);
+}
+
+TEST(PlacedBody, a_ball_that_spins_in_its_place_does_not_rest_but_sweeps_nothing) {
+  Body ball;
+  ball.radius = ball.sphere_radius = 0.5;
+  EXPECT_DOUBLE_EQ(turning(ball).fastest_point(), 5 + 2 * 0.5);
+  EXPECT_DOUBLE_EQ(turning(ball).surface_speed(), 5);
+}
+
+}  // namespace
+}  // namespace tw
