@@ -232,7 +232,7 @@ TEST(StateGraphDeathTest, rollback_never_reaches_a_committed_state) {
   append_ring(graph, {0, 1}, impact_at(2));
   std::vector<Affected> affected;
   EXPECT_DEATH(graph.rollback(ProcessId{0}, impact_at(0.5), affected, [](State&) {}),
-               "rollback of body 0 .* reached the committed");
+               "rollback of process 0 .* reached the committed");
 }
 
 TEST(StateGraphDeathTest, keys_in_a_queue_increase) {
