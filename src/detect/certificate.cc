@@ -1,4 +1,4 @@
-// Certificates: until when two bodies are surely apart.
+// Certificates: until when two scene.bodies are surely apart.
 //
 // For each pair of convex parts a plane is put midway between them, across the witness direction n,
 // and moves with the mean of the witness points' velocity and the bodies' acceleration along n.  As
@@ -7,12 +7,12 @@
 //   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
 // with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
 // torque-free rotation.  So the time until the plane may be reached is the least root of
-// quadratics: close to the true impact time, and never after it.  Kinematic bodies are bounded by
-// their speed, over a horizon.  Members of groups are bounded by the derivatives of their dense
-// output, over one step.
+// quadratics: close to the true impact time, and never after it.  Kinematic scene.bodies are
+// bounded by their speed, over a horizon.  Members of groups are bounded by the derivatives of
+// their dense output, over one step.
 //
-// With an allowance the plane gives way by half of it to either side: bodies that slide past each
-// other at touch are then apart for as long as they do.
+// With an allowance the plane gives way by half of it to either side: scene.bodies that slide past
+// each other at touch are then apart for as long as they do.
 //
 // The certificate decides only where the next query is made, never the answer: warm simplices are
 // allowed here.
@@ -133,7 +133,8 @@ double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBod
 }  // namespace
 
 double Kernel::certificate(Pair& pair, const Piece& piece, double when, double allowance) {
-  const MovingBody a(*bodies[pair.a], *piece.a, when), b(*bodies[pair.b], *piece.b, when);
+  const MovingBody a(*scene.bodies[pair.a], *piece.a, when),
+      b(*scene.bodies[pair.b], *piece.b, when);
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
   double least = never;

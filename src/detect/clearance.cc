@@ -1,5 +1,5 @@
 // Clearance: whether a pair is surely apart for a whole window, by how far it is apart and how far
-// its bodies can come towards each other.
+// its scene.bodies can come towards each other.
 //
 // In a heap most neighbours never touch and hardly move: a distance once measured, less what both
 // have travelled since, keeps answering for many windows without another query.  What is remembered
@@ -68,8 +68,8 @@ struct RelativeTravel {
 }  // namespace
 
 bool Kernel::apart_throughout(Pair& pair, const Piece& piece, double to) {
-  const Body& a = *bodies[pair.a];
-  const Body& b = *bodies[pair.b];
+  const Body& a = *scene.bodies[pair.a];
+  const Body& b = *scene.bodies[pair.b];
   if (a.unbounded || b.unbounded) return false;
   const double from = pair.from.time;
   const Travel ta = travel_of(a, *piece.a, from, to), tb = travel_of(b, *piece.b, from, to);

@@ -1,23 +1,16 @@
-// Linking: which pairs are in contact, at which points, and what becomes of their friction
-// stretches.
-//
-// Whether a pair is linked is a function of the poses and velocities at the discontinuity, of
-// whether it was linked before, and of the interval until the next check; candidates come from the
-// spatial hash, whose boxes are grown so that none is missed.
-//
+// The contact graph: finding contacts, carrying them along, matching stretches.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/contact-graph.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
-#include "kernel/kernel.h"
 
 namespace tw {
 namespace {
 
-// Where gravity is 0 this stands in for it, m/s^2.
-constexpr double standard_gravity = 9.81;
 // A contact after a refresh is one before it if they are not farther apart, share of the smaller
 // size.
 constexpr double same_point = 0.1;
@@ -64,34 +57,8 @@ void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) 
   }
 }
 
-}  // namespace
-
-double Kernel::gravity_magnitude() const {
-  const double g = options.gravity.norm();
-  return g > 0 ? g : standard_gravity;
-}
-
-double Kernel::fusion_speed(const Body& a, const Body& b) const {
-  const double size = std::min(a.least_width, b.least_width);
-  const double by_default = std::max(1e-4, 0.07 * std::sqrt(gravity_magnitude() * size));
-  return std::max(1e-9, contact_parameters(a.id(), b.id()).fusion_speed.value_or(by_default));
-}
-
-// The law of a pair in a group with these masses, kg.  The heaviest may lie on any of its contacts:
-// they are never softer than for a thousandth of it (the law hardens by no more), nor stiffer than
-// for a thousand times the lighter one: a bead on a lorry must not stop the clock.
-ContactConstants Kernel::contact_law(const Body& a, const Body& b, double lightest,
-                                     double heaviest) const {
-  constexpr double unequal_masses = 100, most_unequal = 1000;
-  const double size = std::min(a.least_width, b.least_width);
-  const double mass = !a.dynamic() ? b.mass : !b.dynamic() ? a.mass : std::min(a.mass, b.mass);
-  return contact_constants(contact_parameters(a.id(), b.id()),
-                           std::clamp(heaviest / most_unequal, mass, most_unequal * mass), size,
-                           gravity_magnitude(), heaviest > unequal_masses * lightest);
-}
-
-NewContact Kernel::new_contact(const ManifoldPoint& p, const PlacedBody& a, const PlacedBody& b,
-                               const ContactConstants& law) const {
+NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const PlacedBody& b,
+                       const ContactConstants& law) {
   const PlacedBody& reference = p.reference_is_a ? a : b;
   const PlacedBody& other = p.reference_is_a ? b : a;
   NewContact result;
@@ -111,13 +78,14 @@ NewContact Kernel::new_contact(const ManifoldPoint& p, const PlacedBody& a, cons
   return result;
 }
 
-// On the points just found, in manifold_points_.
-bool Kernel::comes_into_contact(const PlacedBody& a, const PlacedBody& b, bool linked_before,
-                                double interval, const ContactConstants& law) const {
-  const double slow = fusion_speed(*a.body, *b.body);
-  const double drop = gravity_magnitude() * interval * interval;
+// Whether the pair is in contact until the next check, by the points where it is or may be.
+bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBody& a,
+                        const PlacedBody& b, bool before, double interval,
+                        const ContactScales& scales) {
+  const double slow = scales.fusion_speed;
+  const double drop = scales.gravity * interval * interval;
   bool wanted = false, touches = false, fast = false;
-  for (const ManifoldPoint& p : manifold_points_) {
+  for (const ManifoldPoint& p : points) {
     const PlacedBody& reference = p.reference_is_a ? a : b;
     const PlacedBody& other = p.reference_is_a ? b : a;
     const Vec3 where = p.core_point - p.radius * p.normal;
@@ -125,24 +93,24 @@ bool Kernel::comes_into_contact(const PlacedBody& a, const PlacedBody& b, bool l
     const bool comes = p.gap + 2 * std::min(parting, 0.0) * interval - drop <= 0;
     touches = touches || p.gap <= 0;
     fast = fast || (parting < -slow && comes);
-    if (linked_before)
-      wanted = wanted || p.gap <= law.depth || comes;
+    if (before)
+      wanted = wanted || p.gap <= scales.depth() || comes;
     else
       wanted = wanted || (comes && std::abs(parting) < slow) || (p.gap <= 0 && parting > -slow);
   }
   // what comes fast is for an impact, unless the pair carries a load already
-  return wanted && (!fast || (linked_before && touches));
+  return wanted && (!fast || (before && touches));
 }
 
 // Each new contact takes the stretch of the nearest old one; equal features count as half as far.
-void Kernel::match_stretches(Regrouping& work, const NewContactPair& pair,
-                             const PairBefore& before_it) const {
+void match_stretches(Regrouping& work, const ContactPair& pair, const PairBefore& before_it) {
   const ContactPair* old = before_it.pair;
-  const Group& before = *before_it.group;
+  const Group& before = *before_it.owner;
   GroupArc& arc = *before.arc;
-  const double now = before.contact_time(work.key.time);
-  const auto size_of = [&](BodyId id) { return bodies[id]->least_width; };
-  const double size = std::min(size_of(first_of(pair.id)), size_of(second_of(pair.id)));
+  const double now = before.contact_time(work.now());
+  const Body& body_a = work.scene().body(pair.a());
+  const Body& body_b = work.scene().body(pair.b());
+  const double size = std::min(body_a.least_width, body_b.least_width);
   std::vector<bool> taken(old->count, false);
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
     NewContact& fresh = work.contacts[c];
@@ -161,22 +129,18 @@ void Kernel::match_stretches(Regrouping& work, const NewContactPair& pair,
     if (best == old->count) continue;
     taken[best] = true;
     const ContactTag& tag = before.tags[old->first + best];
-    const auto attitude = [&](BodyId id) {
-      const Successor* successor = work.successor_of(id);
-      return successor ? successor->point.q : bodies[id]->motion->pose(work.key.time).q;
-    };
-    Vec3 stretch = attitude(tag.reference) * arc.stretch(static_cast<int>(old->first + best), now);
+    Vec3 stretch =
+        work.attitude(tag.reference) * arc.stretch(static_cast<int>(old->first + best), now);
     if (tag.reference != fresh.tag.reference) stretch = -stretch;
     fresh.contact.stretch =
-        attitude(fresh.tag.reference).conjugate() * turned_into(stretch, fresh.normal);
+        work.attitude(fresh.tag.reference).conjugate() * turned_into(stretch, fresh.normal);
   }
 }
 
 // A spring that is born unloaded lets a body slide before it holds: so a new contact is given the
 // stretch that holds what pulls along it, or, where that exceeds the cone, far more, which slides
 // at once.
-void Kernel::preload(Regrouping& work, const NewContactPair& pair, const PlacedBody& a,
-                     const PlacedBody& b) const {
+void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, const PlacedBody& b) {
   if (pair.count == 0) return;
   const NewContact& first = work.contacts[pair.first];
   if (first.contact.law.law != FrictionLaw::anchored) return;
@@ -219,129 +183,168 @@ void Kernel::preload(Regrouping& work, const NewContactPair& pair, const PlacedB
   const Vec3 stretch = force / law.kt * (straight ? 1 : -1);
   for (std::uint32_t c = 0; c < pair.count; ++c) {
     NewContact& contact = work.contacts[pair.first + c];
-    const Successor* successor = work.successor_of(contact.tag.reference);
-    const Quat attitude = successor ? successor->point.q
-                                    : bodies[contact.tag.reference]->motion->pose(work.key.time).q;
+    const Quat attitude = work.attitude(contact.tag.reference);
     contact.contact.stretch = attitude.conjugate() * turned_into(stretch, contact.normal);
   }
 }
 
 // Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the
-// ground.  Such a pair is linked, with no contact that presses, or its collision checks would see
-// an overlap all the time.
-bool Kernel::ghosts(const PlacedBody& a, const PlacedBody& b, double distance) const {
+// ground.  Such a pair is in contact, with no contact that presses, or its collision checks would
+// see an overlap all the time.
+bool is_ghost(const std::vector<ManifoldPoint>& points, const PlacedBody& a, const PlacedBody& b,
+              double distance) {
   if (distance > 0 || (!a.body->fixed() && !b.body->fixed())) return false;
   const auto touches = [](const ManifoldPoint& p) { return p.gap <= 0; };
-  return std::none_of(manifold_points_.begin(), manifold_points_.end(), touches);
+  return std::none_of(points.begin(), points.end(), touches);
 }
 
-bool Kernel::connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b, double interval,
-                     bool must) {
+// Adds the pair if it touches or may touch before the next check; `must`: in any case.  `ground`:
+// the fixed bodies around the one that moves.
+void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
+             const std::vector<BodyId>& ground, double interval, bool must) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
-  const double size = std::min(body_a.least_width, body_b.least_width);
-  const ContactConstants law = contact_law(body_a, body_b, work.lightest, work.heaviest);
-  const double travel = 2 * (a.surface_speed() + b.surface_speed()) * interval +
-                        gravity_magnitude() * interval * interval;
-  const double reach = law.depth + std::min(travel, contact_margin * size - law.depth);
-  if (!must && far_apart(a, b, reach)) return false;
+  const ContactScales scales = contact_scales(work.scene(), body_a, body_b, work.masses);
+  const double size = scales.size, depth = scales.depth();
+  const double travel =
+      2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
+  const double search_distance = depth + std::min(travel, contact_margin * size - depth);
+  if (!must && far_apart(a, b, search_distance)) return;
 
-  manifold_points_.clear();
-  ++counters.manifolds;
+  thread_local std::vector<ManifoldPoint> points;
+  points.clear();
+  ++work.counters.manifolds;
   // faces of the ground are exact at seams
   const ReferenceChoice choice = !body_a.dynamic()   ? ReferenceChoice::of_a
                                  : !body_b.dynamic() ? ReferenceChoice::of_b
                                                      : ReferenceChoice::larger;
-  const double distance =
-      manifold_at_seams(*body_a.shape_P, a.frame, around(body_a), *body_b.shape_P, b.frame,
-                        around(body_b), reach, size, manifold_points_, choice);
-  for (ManifoldPoint& p : manifold_points_) flatten(p, p.reference_is_a ? a : b, body_b);
-  const std::uint64_t pair = pair_id(body_a.id(), body_b.id());
-  const PairBefore* before = work.pair_before(pair);
-  if (!must && !comes_into_contact(a, b, before, interval, law) && !ghosts(a, b, distance))
-    return false;
+  const Surroundings& near = work.surroundings;
+  const double distance = manifold_at_seams(
+      *body_a.shape_P, a.frame, near.seam_neighbours(body_a, ground), *body_b.shape_P, b.frame,
+      near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
+  for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
+  const std::uint64_t id = pair_id(body_a.id(), body_b.id());
+  const PairBefore* before = work.pair_before(id);
+  if (!must && !comes_into_contact(points, a, b, before, interval, scales) &&
+      !is_ghost(points, a, b, distance))
+    return;
 
-  NewContactPair fresh{pair, static_cast<std::uint32_t>(work.contacts.size()),
-                       static_cast<std::uint32_t>(manifold_points_.size()), false};
-  for (const ManifoldPoint& p : manifold_points_)
-    work.contacts.push_back(new_contact(p, a, b, law));
+  ContactPair fresh{id, static_cast<std::uint32_t>(work.contacts.size()),
+                    static_cast<std::uint32_t>(points.size()), false};
+  for (const ManifoldPoint& p : points) work.contacts.push_back(new_contact(p, a, b, scales.law));
   if (before) {
     fresh.has_borne_load = before->pair->has_borne_load;
     match_stretches(work, fresh, *before);
   }
   if (must) preload(work, fresh, a, b);
   work.pairs.push_back(fresh);
-  return true;
 }
 
-PlacedBody Kernel::placed(const Successor& successor) const {
-  return PlacedBody(*successor.body, successor.point);
-}
-
-PlacedBody Kernel::placed_outside(const Body& body, double when) const {
-  return PlacedBody(body, evaluate(body, *graph.head(body.process), when));
-}
-
-// The fixed bodies near a moving one: they bury each other's edges.
-void Kernel::find_fixed_around(const Body& mover) {
-  ground_.clear();
-  if (mover.unbounded) return;
-  grid.standing_around(mover.id(), [&](BodyId id) {
-    if (may_collide(mover, *bodies[id])) ground_.push_back(id);
+// Whom a body may have come into contact with; ascending.
+std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
+                                  const std::vector<ProcessId>& looked_at) {
+  const Scene& scene = work.scene();
+  const bool may_disable = scene.contacts.may_disable();
+  std::vector<BodyId> candidates;
+  work.surroundings.visit_near(body.id(), [&](BodyId other) {
+    const Body& partner = scene.body(other);
+    if (partner.dynamic()) {
+      // once, from the body that was added first
+      if (other < body.id() && holds(looked_at, partner.process)) return;
+      // with others new contacts are found by collision checks
+      const Successor* successor = work.successor_of(partner.process);
+      if (!successor || (!work.changes(successor) && !work.pair_before(pair_id(body.id(), other))))
+        return;
+    }
+    if (may_disable && !scene.may_collide(body, partner)) return;
+    candidates.push_back(other);
   });
-  std::sort(ground_.begin(), ground_.end());
+  std::sort(candidates.begin(), candidates.end());
+  return candidates;
 }
 
-// The parts of the fixed bodies around a fixed one; of ground_.
-std::vector<SeamNeighbour> Kernel::around(const Body& body) const {
-  std::vector<SeamNeighbour> result;
-  if (!body.fixed()) return result;
-  for (const BodyId id : ground_) {
-    if (id == body.id()) continue;
-    const Frame frame(bodies[id]->motion->pose(0));
-    for (const ConvexPart& part : bodies[id]->shape_P->parts()) result.push_back({&part, frame});
-  }
-  return result;
-}
+}  // namespace
 
-// All links of some of the bodies with new arcs, anew; those of the others as they stand.
-void Kernel::refresh(Regrouping& work, const std::vector<BodyId>& bodies_looked_at,
-                     double interval) {
-  const auto looked_at = [&](BodyId id) {
-    return std::binary_search(bodies_looked_at.begin(), bodies_looked_at.end(), id);
-  };
-  for (const BodyId id : bodies_looked_at) {
-    const Body& body = *bodies[id];
+void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
+  for (const ProcessId process : looked_at) {
+    const PlacedBody mine = placed(*work.successor_of(process));
+    const Body& body = *mine.body;
     if (!body.shape_P) continue;
-    candidates_.clear();
-    const auto consider = [&](BodyId other) {
-      const Body& partner = *bodies[other];
-      if (partner.dynamic()) {
-        if (other < id && looked_at(other)) return;
-        // with others new contacts are found by collision checks
-        const Successor* successor = work.successor_of(other);
-        if (!successor || (!work.changes(successor) && !work.pair_before(pair_id(id, other))))
-          return;
-      }
-      if (contacts_may_disable_ && !may_collide(body, partner)) return;
-      candidates_.push_back(other);
-    };
-    grid.overlapping(id, consider);
-    for (const BodyId other : unbounded) consider(other);
-    std::sort(candidates_.begin(), candidates_.end());
-
-    find_fixed_around(body);
-    const PlacedBody mine = placed(*work.successor_of(id));
-    for (const BodyId other : candidates_) {
-      const Successor* successor = work.successor_of(other);
-      const PlacedBody theirs =
-          successor ? placed(*successor) : placed_outside(*bodies[other], work.key.time);
-      const bool straight = id < other;
-      connect(work, straight ? mine : theirs, straight ? theirs : mine, interval, false);
+    const std::vector<BodyId> candidates = candidates_of(work, body, looked_at);
+    const std::vector<BodyId> ground = work.surroundings.ground_around(body);
+    for (const BodyId other : candidates) {
+      const PlacedBody theirs = work.placed(other);
+      const bool straight = body.id() < other;
+      connect(work, straight ? mine : theirs, straight ? theirs : mine, ground, interval, false);
     }
   }
-  for (const PairBefore& old : work.before)
-    if (!looked_at(first_of(old.id)) && !looked_at(second_of(old.id))) carry(work, old);
+  const auto was_looked_at = [&](BodyId id) {
+    return holds(looked_at, work.scene().process_of(id));
+  };
+  for (const PairBefore& old : work.pairs_before)
+    if (!was_looked_at(old.pair->a()) && !was_looked_at(old.pair->b())) carry(work, old);
+}
+
+void fuse(Regrouping& work, double interval) {
+  const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
+  const std::vector<BodyId> ground =
+      work.surroundings.ground_around(a.body->dynamic() ? *a.body : *b.body);
+  connect(work, a, b, ground, interval, true);
+  work.tally.fusions = 1;
+}
+
+void carry(Regrouping& work, const PairBefore& old) {
+  const ContactPair& pair = *old.pair;
+  const Group& group = *old.owner;
+  const double now = group.contact_time(work.now());
+  for (const BodyId side : {pair.a(), pair.b()})
+    if (const Successor* successor = work.successor_of(side); successor && successor->placed)
+      return;
+  // between runs somebody may have set them anew
+  const Scene& scene = work.scene();
+  if (is_edit(work.key()) && !scene.may_collide(scene.body(pair.a()), scene.body(pair.b()))) return;
+  work.pairs.push_back(
+      {pair.id, static_cast<std::uint32_t>(work.contacts.size()), pair.count, pair.has_borne_load});
+  each_contact(pair, [&](std::uint32_t c) {
+    const ContactForce f = group.arc->contact_force(static_cast<int>(c), now);
+    NewContact contact{group.arc->start().contacts[c], group.tags[c], f.gap, f.normal, f.point};
+    contact.contact.stretch = group.arc->stretch(static_cast<int>(c), now);
+    work.contacts.push_back(contact);
+  });
+}
+
+void collect_old(Regrouping& work) {
+  Groups all;
+  for (const auto& [process, i] : work.index()) {
+    const Successor& successor = work.successors[i];
+    if (!successor.body->dynamic() || successor.role == Role::dependence) continue;
+    add_once(all, successor.data.group);
+    if (!work.changes(&successor)) {
+      work.has_border = work.has_border || successor.data.group;
+      continue;
+    }
+    add_once(work.old, successor.data.group);
+    work.masses.add(successor.body->mass);
+  }
+  if (work.has_border)
+    for (const auto& group : all) work.masses.add(group->masses);
+
+  for (const auto& [process, i] : work.index()) {
+    const Successor& successor = work.successors[i];
+    if (!work.changes(&successor) || !successor.data.group) continue;
+    const Group& group = *successor.data.group;
+    for (const std::uint32_t number : group.pairs_of(successor.data.member)) {
+      const std::uint64_t id = group.pairs[number].id;
+      const Before::Owned owned = work.before.owned(id);
+      if (owned.pair) work.pairs_before.push_back({id, owned.owner, owned.pair});
+    }
+  }
+  std::sort(work.pairs_before.begin(), work.pairs_before.end(),
+            [](const PairBefore& x, const PairBefore& y) { return x.id < y.id; });
+  // from either side
+  const auto same = [](const PairBefore& x, const PairBefore& y) { return x.id == y.id; };
+  work.pairs_before.erase(std::unique(work.pairs_before.begin(), work.pairs_before.end(), same),
+                          work.pairs_before.end());
 }
 
 }  // namespace tw

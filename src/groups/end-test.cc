@@ -1,19 +1,13 @@
-// The end test: where the arcs of a group really end.
-//
-// A group is integrated with the contacts it had at the start.  Before anybody relies on its arcs,
-// each linked pair is looked at where they end: a feature that came down unrepresented, or a
-// contact that closes faster than its spring is meant for, ends the arcs where it touches, and the
-// group check that stands there takes it in.  So the end is a function of the group alone.
-//
-// Cost: one manifold a link, none for pairs that moved less than a fraction of their
-// contact's depth.
-// Source: doc/numerics.md, "Contact groups" (missed features gain energy).
-//
+// The end test.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/end-test.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/kernel.h"
+#include "collision/manifold.h"
+#include "detect/grid.h"
+#include "groups/region.h"
 #include "math/root.h"
 
 namespace tw {
@@ -22,23 +16,22 @@ namespace {
 // Depth that may stay unrepresented: half of the contact's own depth under the body's weight.
 constexpr double unseen_depth = 0.5;
 
-// A pair whose contacts do not tell the truth beyond this time, s.
+// A pair of bodies whose contacts do not tell the truth beyond this time, s.
 struct EarlyEnd {
   double time = 0;
   std::uint64_t pair = 0;
 };
 
 // A pair of bodies along the arc.
-struct Pairing {
+struct PairOnArc {
   Group& group;
   const ContactPair& pair;
   const Body& a;
   const Body& b;
   std::vector<SeamNeighbour> around_a, around_b;  // of the one that is ground
-  std::vector<ManifoldPoint>& points;
 
   Frame frame(const Body& body, double when) const {
-    const int member = group.member_of(body.id());
+    const int member = group.member_of(body.process);
     if (member < 0) return Frame(outside_motion(body).pose(when));
     Vec3 x;
     Quat q;
@@ -49,11 +42,12 @@ struct Pairing {
     if (!body.dynamic()) return *body.motion;
     const auto at = std::find(group.outside.begin(), group.outside.end(), body.id());
     TW_ASSERT(at != group.outside.end(),
-              body.info.name + " is linked and neither member nor outside");
+              body.info.name + " is in contact and neither member nor outside");
     return *group.arc->start().outside[static_cast<std::size_t>(at - group.outside.begin())];
   }
   // The depth of the deepest point, m, as a negative gap; 0: none.  `at_seams`: ghosts left out.
   double deepest(double when, bool at_seams) const {
+    thread_local std::vector<ManifoldPoint> points;
     points.clear();
     const double size = std::min(a.least_width, b.least_width);
     if (at_seams)
@@ -65,7 +59,7 @@ struct Pairing {
     for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
     return least;
   }
-  // the least gap that the link's contacts know of
+  // The least gap that its contacts know of
   double represented(double when) const {
     double least = never;
     for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c)
@@ -76,7 +70,7 @@ struct Pairing {
   double travel() const {
     double sum = 0;
     for (const Body* body : {&a, &b}) {
-      const int member = group.member_of(body->id());
+      const int member = group.member_of(body->process);
       const double from = group.arc->start().time, to = group.next_check;
       if (member < 0) {
         if (!body->dynamic()) continue;
@@ -93,7 +87,7 @@ struct Pairing {
 };
 
 // When the pair came to be deeper than its contacts know; `never` if it did not.
-double unseen_touch(const Pairing& pair, double allowed) {
+double unseen_touch(const PairOnArc& pair, double allowed) {
   const double from = pair.group.arc->start().time, to = pair.group.next_check;
   // where it came to be
   const auto excess = [&](double t) {
@@ -113,15 +107,41 @@ double fast_touch(GroupArc& arc, int contact, double first, double last, double 
   return -f.velocity.dot(f.normal) > slow ? when : never;
 }
 
+// When the contacts of a pair stop telling the truth; the next check if they do not.
+double early_end(const Scene& scene, const Surroundings& surroundings, Group& group,
+                 const ContactPair& pair) {
+  double end = group.next_check;
+  const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
+  PairOnArc along{group, pair, a, b, {}, {}};
+  const ContactScales scales = contact_scales(scene, a, b, group.masses);
+  const double allowed = unseen_depth * scales.depth();
+  if (along.travel() <= allowed) return end;
+  double known = never;
+  each_contact(pair, [&](std::uint32_t c) {
+    const int contact = static_cast<int>(c);
+    const double last = group.arc->contact_force(contact, group.next_check).gap;
+    known = std::min(known, last);
+    end = std::min(end, fast_touch(*group.arc, contact, group.gaps[c], last, scales.fusion_speed));
+  });
+  if (!(std::min(known, 0.0) - along.deepest(group.next_check, false) > allowed)) return end;
+  if (a.fixed() || b.fixed()) {
+    const std::vector<BodyId> ground = surroundings.ground_around(a.dynamic() ? a : b);
+    along.around_a = surroundings.seam_neighbours(a, ground);
+    along.around_b = surroundings.seam_neighbours(b, ground);
+  }
+  return std::min(end, unseen_touch(along, allowed));
+}
+
 }  // namespace
 
-void Kernel::test_group_end(Group& group) {
+void test_end(const Scene& scene, const Surroundings& surroundings, Group& group,
+              GroupCounters& counters) {
   if (group.end_tested || group.at_rest) return;
   group.end_tested = true;
   group.arc->extend(group.next_check);
   std::vector<EarlyEnd> early_ends;
   for (const ContactPair& pair : group.pairs) {
-    const double end = early_end(group, pair);
+    const double end = early_end(scene, surroundings, group, pair);
     if (end < group.next_check) early_ends.push_back({end, pair.id});
   }
   if (early_ends.empty()) return;
@@ -138,35 +158,11 @@ void Kernel::test_group_end(Group& group) {
   group.ends.assign(group.members.size(), group.next_check);
   for (const EarlyEnd& early : early_ends)
     for (const BodyId side : {first_of(early.pair), second_of(early.pair)}) {
-      const int member = group.member_of(side);
+      const int member = group.member_of(scene.process_of(side));
       if (member < 0) continue;
       double& end = group.ends[static_cast<std::size_t>(member)];
       end = std::min(end, early.time);
     }
-}
-
-// When the contacts of a link stop telling the truth; the next check if they do not.
-double Kernel::early_end(Group& group, const ContactPair& pair) {
-  double end = group.next_check;
-  const Body& a = *bodies[first_of(pair.id)];
-  const Body& b = *bodies[second_of(pair.id)];
-  Pairing along{group, pair, a, b, {}, {}, manifold_points_};
-  const double allowed = unseen_depth * contact_law(a, b, group.lightest, group.heaviest).depth;
-  if (along.travel() <= allowed) return end;
-  double known = never;
-  for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-    const double last = group.arc->contact_force(static_cast<int>(c), group.next_check).gap;
-    known = std::min(known, last);
-    end = std::min(end, fast_touch(*group.arc, static_cast<int>(c), group.gaps[c], last,
-                                   fusion_speed(along.a, along.b)));
-  }
-  if (!(std::min(known, 0.0) - along.deepest(group.next_check, false) > allowed)) return end;
-  if (a.fixed() || b.fixed()) {
-    find_fixed_around(a.dynamic() ? a : b);
-    along.around_a = around(a);
-    along.around_b = around(b);
-  }
-  return std::min(end, unseen_touch(along, allowed));
 }
 
 }  // namespace tw

@@ -1,9 +1,8 @@
-// Contact groups: a set of bodies in persistent contact, from one discontinuity to the next.
+// Contact groups: a set of processes in persistent contact, from one discontinuity to the next.
 //
-// A Group is made by the discontinuity that gives its members new arcs (fusion, group check, impact
-// on a member, a callback that changed one); its members' states share it.  Its arc is integrated
-// when it is first looked at, which is a function of the group alone; then the end test says where
-// its members' arcs really end (next_check, ends), once.  Nothing else of it changes.
+// A Group is made by the discontinuity that gives its members new arcs; their states share it.  Its
+// arc is integrated when it is first needed, which is a function of the group alone; then the end
+// test (end-test.h) says where its members' arcs really end, once.  Nothing else of it changes.
 //
 // Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs
 // are constant until something touches one of them.
@@ -11,7 +10,7 @@
 // Not all members of a group need leave it at once: what a blow does to a heap dies away within a
 // few bodies, so only these get new arcs, in a group of their own.  It meets the others at its
 // border, where they follow the arcs that they have, and joins them again at the check that was due
-// (region.cc).
+// (region.h).
 //
 // Source: the paper, section 4.4; doc/architecture.md, "Contact groups".
 //
@@ -25,24 +24,29 @@
 #include <vector>
 
 #include "base/counted.h"
+#include "dynamics/contact-scales.h"
 #include "groups/stillness.h"
 #include "integrate/group-arc.h"
 #include "timeline/key.h"
 
 namespace tw {
 
-// A pair of bodies in contact, one of them a member: it has no collision checks.  Its contacts
+// A pair of bodies in contact, one of them of a member: it has no collision checks.  Its contacts
 // stand in a row; it may have none (a ghost at a seam).
 struct ContactPair {
   std::uint64_t id = 0;  // pair_id of the bodies
   std::uint32_t first = 0, count = 0;
-  bool has_borne_load = false;  // has carried a load since the two came together
+  bool has_borne_load = false;  // since the two came together
+
+  BodyId a() const { return first_of(id); }
+  BodyId b() const { return second_of(id); }
+  BodyId other(BodyId body) const { return a() == body ? b() : a(); }
 };
 
 // Which features of which bodies meet at a contact: how it is found again after a refresh.
 struct ContactTag {
-  std::uint32_t reference = 0, other = 0;  // bodies: a and b of the contact
-  int parts = 0;                           // pair of parts
+  BodyId reference = 0, other = 0;  // a and b of the contact
+  int parts = 0;                    // pair of parts
   std::uint64_t feature = 0;
 };
 
@@ -50,36 +54,34 @@ struct Group : Counted<Group> {
   Key key;           // of the discontinuity that made it
   double birth = 0;  // when this set of members came together, s
   double next_check = never;
-  bool end_tested = false;  // next_check and ends are as end-test.cc found them
+  bool end_tested = false;  // next_check and ends are as the end test found them
   bool at_rest = false;
-  bool asleep = false;                    // at rest for the time being (stillness.cc)
-  double quiet_since = never;             // s: slow, and nothing slips; `never`: not so
-  double quiet_speed = 0;                 // m/s, at that time
-  double first_step = 0;                  // of the arc, s; 0: chosen
-  double lightest = never, heaviest = 0;  // kg, of all that hung together when it was made
-  std::vector<std::uint32_t> members;     // body ids, ascending
-  std::vector<std::uint32_t>
-      outside;              // body ids of arc->start().outside: all in contact that are no members
-  bool has_border = false;  // some of them are dynamic
-  std::vector<ContactPair> pairs;  // ascending pairs
-  std::vector<std::uint32_t> pair_starts,
-      pairs_by_member;               // numbers of each member's pairs, in rows
-  std::vector<ContactTag> tags;      // of arc->start().contacts
+  bool asleep = false;             // at rest for the time being (stillness.h)
+  QuietTime quiet;                 // of the group as a whole
+  double first_step = 0;           // of the arc, s; 0: chosen
+  MassRange masses;                // of all that hung together when it was made
+  std::vector<ProcessId> members;  // ascending
+  std::vector<BodyId> outside;     // of arc->start().outside: all in contact that are no members
+  bool has_border = false;         // some of them are dynamic
+  std::vector<ContactPair> pairs;  // ascending
+  std::vector<std::uint32_t> pair_starts, pairs_by_member;  // numbers of each member's, in rows
+  std::vector<ContactTag> tags;                             // of arc->start().contacts
   std::vector<double> gaps;          // m, of arc->start().contacts, at the start
   std::vector<Stillness> stillness;  // of each member
   std::vector<double> ends;          // of each member's arc, s; empty: all at next_check
   std::unique_ptr<GroupArc> arc;
 
   // Its place among the members; -1: it is none.
-  int member_of(std::uint32_t body) const {
-    const auto at = std::lower_bound(members.begin(), members.end(), body);
-    return at != members.end() && *at == body ? static_cast<int>(at - members.begin()) : -1;
+  int member_of(ProcessId process) const {
+    const auto at = std::lower_bound(members.begin(), members.end(), process);
+    return at != members.end() && *at == process ? static_cast<int>(at - members.begin()) : -1;
   }
-  bool contains(std::uint32_t body) const { return member_of(body) >= 0; }
+  bool contains(ProcessId process) const { return member_of(process) >= 0; }
+  // Null if the two are not in contact here.
   const ContactPair* find(std::uint64_t pair) const {
     const auto at =
         std::lower_bound(pairs.begin(), pairs.end(), pair,
-                         [](const ContactPair& l, std::uint64_t p) { return l.id < p; });
+                         [](const ContactPair& known, std::uint64_t id) { return known.id < id; });
     return at != pairs.end() && at->id == pair ? &*at : nullptr;
   }
   // The numbers of a member's contact pairs.
@@ -87,10 +89,11 @@ struct Group : Counted<Group> {
     const std::uint32_t first = pair_starts[member];
     return {pairs_by_member.data() + first, pair_starts[member + 1] - first};
   }
-  // Fills in what pairs_of reads.
-  void index_pairs();
   // When its contacts are looked at for what holds at `when`: resting ones at their start alone.
   double contact_time(double when) const { return at_rest ? arc->start().time : when; }
+  ContactForce contact_at(std::uint32_t contact, double when) const {
+    return arc->contact_force(static_cast<int>(contact), contact_time(when));
+  }
   // Where the arc of a member ends by itself, s.
   double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
 };
@@ -100,6 +103,12 @@ using Groups = std::vector<std::shared_ptr<Group>>;
 inline void add_once(Groups& groups, const std::shared_ptr<Group>& group) {
   if (group && std::find(groups.begin(), groups.end(), group) == groups.end())
     groups.push_back(group);
+}
+
+// Calls visit(c) for each contact of the pair.
+template <class Visit>
+void each_contact(const ContactPair& pair, Visit&& visit) {
+  for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) visit(c);
 }
 
 }  // namespace tw

@@ -1,16 +1,12 @@
-// After a blow on a member of a group: what touches it and is now approached too fast for a spring
-// gets an impulse without restitution, fastest first; what does not touch yet is left to collision
-// checks.
-//
-// Source: doc/numerics.md, "Contact groups".
-//
+// Impulses passed on through contacts.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/propagation.h"
+
 #include <algorithm>
 #include <deque>
 #include <map>
 
-#include "kernel/kernel.h"
-#include "kernel/resolution.h"
+#include "groups/resolution.h"
 
 namespace tw {
 namespace {
@@ -22,18 +18,18 @@ constexpr double touching = 1e-3;
 
 }  // namespace
 
-// Bodies at the border that an impulse would reach; then nothing is as it should be.
-std::vector<BodyId> Kernel::propagate_impulses(Regrouping& work) const {
-  std::vector<BodyId> at_border;
-  // the bodies at the links: drafts, and outside ones at this instant
+std::vector<ProcessId> propagate_impulses(Regrouping& work) {
+  const Scene& scene = work.scene();
+  std::vector<ProcessId> at_border;
+  // the bodies in contact: successors, and outside ones at this instant
   std::map<BodyId, Resolved> resolved;
   std::deque<PoseTwist> outside_points;
   const auto body_at = [&](BodyId id) -> Resolved& {
     if (const auto known = resolved.find(id); known != resolved.end()) return known->second;
     const Successor* successor = work.successor_of(id);
-    if (!successor) outside_points.push_back(placed_outside(*bodies[id], work.key.time).point);
+    if (!successor) outside_points.push_back(work.before.placed(id).point);
     const PoseTwist& point = successor ? successor->point : outside_points.back();
-    Resolved& body = resolved.try_emplace(id, *bodies[id], point).first->second;
+    Resolved& body = resolved.try_emplace(id, scene.body(id), point).first->second;
     if (!work.changes(successor)) body.hold();
     return body;
   };
@@ -49,7 +45,7 @@ std::vector<BodyId> Kernel::propagate_impulses(Regrouping& work) const {
     double excess = 0;
     for (const NewContact& c : work.contacts) {
       if (c.gap > touching * c.contact.law.depth) continue;
-      const double slow = fusion_speed(*bodies[c.tag.reference], *bodies[c.tag.other]);
+      const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
       const double beyond = -parting(c) - slow;
       if (beyond <= excess) continue;
       excess = beyond;
@@ -63,7 +59,7 @@ std::vector<BodyId> Kernel::propagate_impulses(Regrouping& work) const {
         impact_impulse(reference.compliance(worst->point) + other.compliance(worst->point),
                        worst->normal, u, 0, worst->contact.law.mu);
     for (const BodyId id : {worst->tag.reference, worst->tag.other})
-      if (bodies[id]->dynamic() && !work.changes(work.successor_of(id))) at_border.push_back(id);
+      if (work.lies_beyond(id)) at_border.push_back(scene.process_of(id));
     if (!at_border.empty()) return at_border;
     // of what is held only kinematic bodies move
     if (!reference.moves)
@@ -76,12 +72,13 @@ std::vector<BodyId> Kernel::propagate_impulses(Regrouping& work) const {
     if (Successor* successor = work.successor_of(id); successor && after.moves)
       take_velocities(*successor, after);
 
-  // links that carry nothing and close fast
-  std::erase_if(work.pairs, [&](const NewContactPair& pair) {
+  // pairs that carry nothing and close fast
+  std::erase_if(work.pairs, [&](const ContactPair& pair) {
     bool touches = false, fast = false;
     for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
       const NewContact& contact = work.contacts[c];
-      const double slow = fusion_speed(*bodies[contact.tag.reference], *bodies[contact.tag.other]);
+      const double slow =
+          fusion_speed(scene, scene.body(contact.tag.reference), scene.body(contact.tag.other));
       touches = touches || contact.gap <= touching * contact.contact.law.depth;
       fast = fast || -parting(contact) > slow;
     }

@@ -1,43 +1,23 @@
-// Making groups: what a discontinuity leaves of links and contacts, and the groups that follow.
+// A regrouping: what a discontinuity leaves of contacts, and the groups that follow.
 //
-// A discontinuity that touches groups chooses the bodies that get new arcs (region.cc), collects
-// drafts of them and of those at their border, then the links and contacts that hold from there on
-// (carried along, refreshed or new), and then cuts the drafts into connected components: each is a
-// group, a body without links is isolated.  Kinematic and fixed bodies and those at the border link
-// nothing together.
+// It has the successors of all that take part, then the contact pairs that hold from there on
+// (carried along, refreshed or new), and in the end the groups.  A value that the functions of this
+// folder pass on: nothing in it outlives the discontinuity but the successors and the groups.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "groups/before.h"
+#include "groups/group-counters.h"
 #include "groups/group.h"
+#include "groups/surroundings.h"
 #include "timeline/successor.h"
 
 namespace tw {
-
-// A contact on its way into a group, with what it looks like now (world frame).
-struct NewContact {
-  GroupContact contact;  // a and b not yet set
-  ContactTag tag;
-  double gap = 0;               // m
-  Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
-  Vec3 point = Vec3::Zero();
-};
-
-struct NewContactPair {
-  std::uint64_t id = 0;
-  std::uint32_t first = 0, count = 0;
-  bool has_borne_load = false;
-};
-
-// A contact pair before the discontinuity, in the group that owns it.
-struct PairBefore {
-  std::uint64_t id = 0;
-  std::shared_ptr<Group> group;
-  const ContactPair* pair = nullptr;
-};
 
 // What sets a regrouping off.
 enum class Cause : std::uint8_t {
@@ -54,33 +34,80 @@ inline bool finds_contacts(Cause cause) {
 }
 inline bool passes_impulses(Cause cause) { return cause == Cause::impact || finds_contacts(cause); }
 
+// A contact on its way into a group, with what it looks like now (world frame).
+struct NewContact {
+  GroupContact contact;  // a and b not yet set
+  ContactTag tag;
+  double gap = 0;               // m
+  Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
+  Vec3 point = Vec3::Zero();
+};
+
+// A contact pair before the discontinuity, in the group that owns it.
+struct PairBefore {
+  std::uint64_t id = 0;
+  std::shared_ptr<Group> owner;
+  const ContactPair* pair = nullptr;
+};
+
 struct Regrouping {
-  Key key;
-  std::vector<Successor>&
-      successors;                  // with new arcs: the bodies concerned; else those at the border
-  Groups old;                      // whose members get new arcs, each once
-  std::vector<PairBefore> before;  // of bodies with new arcs, ascending pairs
+  const Before& before;
+  const Surroundings& surroundings;
+  Cause cause;
+  bool reports_fissions = false;       // somebody wants to hear of them
+  std::vector<Successor>& successors;  // of all that take part
+
+  Groups old;                            // whose members get new arcs, each once
+  std::vector<PairBefore> pairs_before;  // of processes with new arcs, ascending
   bool has_border = false;
-  bool may_sleep = false;            // the check of whole groups
   bool falls_asleep = false;         // whatever comes to rest does so for the time being
-  std::vector<Stillness> stillness;  // of the drafts
-  std::vector<bool> asleep;          // of the drafts: laid to rest provisionally
-  std::vector<NewContactPair> pairs;
+  std::vector<Stillness> stillness;  // of the successors
+  std::vector<bool> asleep;          // of the successors: laid to rest for the time being
+  std::vector<ContactPair> pairs;    // from here on; their contacts in a row of `contacts`
   std::vector<NewContact> contacts;
   Groups made;
-  std::vector<std::pair<BodyId, std::size_t>> index;  // body, place in drafts; ascending
-  double lightest = never, heaviest = 0;  // kg, of the drafts and, at a border, of their groups
+  MassRange masses;  // of the successors and, at a border, of their groups
   Tally tally;
   Report report;
+  GroupCounters counters;
 
-  Regrouping(const Key& k, std::vector<Successor>& d) : key(k), successors(d) {}
-  // The draft of a body; null if there is none.
-  Successor* successor_of(BodyId id) const;
+  Regrouping(const Before& standing, const Surroundings& near, Cause why,
+             std::vector<Successor>& all)
+      : before(standing), surroundings(near), cause(why), successors(all) {
+    update_index();
+  }
+
+  const Scene& scene() const { return before.scene(); }
+  const Key& key() const { return before.key(); }
+  double now() const { return before.key().time; }
+
+  // Null if it takes no part.
+  Successor* successor_of(ProcessId process) const;
+  Successor* successor_of(BodyId body) const { return successor_of(scene().process_of(body)); }
+  std::size_t place_of(const Successor* successor) const {
+    return static_cast<std::size_t>(successor - successors.data());
+  }
+  // Places among the successors, by ascending process.
+  const std::vector<std::pair<ProcessId, std::size_t>>& index() const { return index_; }
   void update_index();
+
   // Whether the discontinuity gives it a new arc.
-  bool changes(const Successor* successor) const { return successor && successor->starts_arc(); }
-  // Null if the pair was not linked.
+  static bool changes(const Successor* successor) { return successor && successor->starts_arc(); }
+  bool changes(BodyId body) const { return changes(successor_of(body)); }
+  // A dynamic body that keeps its arc: it stands at the border, or farther off.
+  bool lies_beyond(BodyId body) const { return scene().body(body).dynamic() && !changes(body); }
+  // Null if the two were not in contact.
   const PairBefore* pair_before(std::uint64_t pair) const;
+  // Where a body is now: by its successor, or, of one without, on its motion.
+  PlacedBody placed(BodyId body) const;
+  Quat attitude(BodyId body) const;
+
+ private:
+  std::vector<std::pair<ProcessId, std::size_t>> index_;
 };
+
+inline PlacedBody placed(const Successor& successor) {
+  return PlacedBody(*successor.body, successor.point);
+}
 
 }  // namespace tw

@@ -60,7 +60,7 @@ void Kernel::rewind_callback(std::uint32_t number, const Key& key) {
   schedule_callback(number);
 }
 
-void Kernel::process_callback(std::uint32_t number) {
+Progress Kernel::process_callback(std::uint32_t number) {
   CallbackRecord& callback = callbacks[number];
   const Key key = callback.next;
 
@@ -69,22 +69,20 @@ void Kernel::process_callback(std::uint32_t number) {
     if (graph.tail(process_of(id))->error && graph.tail(process_of(id))->key < key) {
       callback.parked = true;
       schedule_callback(number);
-      return;
+      return Progress::done;
     }
-  std::vector<BodyId> struck;
+  std::vector<ProcessId> struck;
   for (const BodyId id : callback.def.targets) {
-    if (!await(id, key)) return;
-    if (bodies[id]->dynamic()) struck.push_back(id);
+    if (!await(process_of(id), key)) return Progress::try_again;
+    if (scene.body(id).dynamic()) insert(struck, process_of(id));
   }
-  std::sort(struck.begin(), struck.end());
-  struck.erase(std::unique(struck.begin(), struck.end()), struck.end());
-  if (!await(region_of(key, struck, false), key)) return;
-  if (!(callback.next == key)) return;
+  if (!await(region_of(before(key), struck, false), key)) return Progress::try_again;
+  if (!(callback.next == key)) return Progress::try_again;
 
   // drafts that carry the old arcs, and views of them
   std::vector<Successor> successors;
   for (const BodyId id : callback.def.targets)
-    successors.push_back(make_successor(*bodies[id], key, false));
+    successors.push_back(make_successor(before(key), process_of(id), false));
   std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
   for (Successor& successor : successors) {
     successor.role = Role::record;
@@ -127,8 +125,9 @@ void Kernel::process_callback(std::uint32_t number) {
   for (Successor& successor : successors) successor.data.changed = any_changed;
   if (successors.front().data.error)
     stop_group_mates(key, successors);
-  else if (touches_groups(successors) && !regroup(key, successors, Cause::callback))
-    return;
+  else if (touches_groups(successors) &&
+           regroup(key, successors, Cause::callback) == Progress::try_again)
+    return Progress::try_again;
 
   // the next call, then the states (a rollback through them rewinds it again)
   callback.next = callback.def.period
@@ -136,6 +135,7 @@ void Kernel::process_callback(std::uint32_t number) {
                       : Key{next, 0, KeyKind::callback, number};
   schedule_callback(number);
   enter_discontinuity(key, successors);
+  return Progress::done;
 }
 
 }  // namespace tw

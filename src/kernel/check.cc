@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include "collision/impact-time.h"
+#include "detect/grid.h"
 #include "kernel/kernel.h"
 #include "math/root.h"
 
@@ -116,8 +117,8 @@ void Kernel::drop_pair(std::uint32_t index) {
     if (moved == index) return;
     (pairs[moved].a == body.id() ? pairs[moved].place_a : pairs[moved].place_b) = place;
   };
-  take_out(*bodies[pair.a], pair.place_a);
-  take_out(*bodies[pair.b], pair.place_b);
+  take_out(*scene.bodies[pair.a], pair.place_a);
+  take_out(*scene.bodies[pair.b], pair.place_b);
   pair.live = false;
   pair.caches.clear();
   unused_pairs.push_back(index);
@@ -164,8 +165,8 @@ void Kernel::reset_pair(std::uint32_t index, const Key& key) {
 
 Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   Piece piece;
-  piece.body_a = bodies[a].get();
-  piece.body_b = bodies[b].get();
+  piece.body_a = scene.bodies[a].get();
+  piece.body_b = scene.bodies[b].get();
   piece.a = graph.last_at_or_before(process_of(a), from);
   piece.b = graph.last_at_or_before(process_of(b), from);
   if (!piece.a) piece.a = graph.head(process_of(a));
@@ -181,7 +182,7 @@ Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
 }
 
 bool Kernel::in_contact(const Piece& piece) const {
-  const Group* owner = owner_of(*piece.a, *piece.b);
+  const Group* owner = owner_of(*piece.body_a, *piece.a, *piece.body_b, *piece.b).get();
   return owner && owner->find(pair_id(piece.body_a->id(), piece.body_b->id()));
 }
 
@@ -217,7 +218,8 @@ Key Kernel::impact_key(const Piece& piece, double impact_time) const {
       if (s->key.time == impact_time && s->key.kind == KeyKind::edit)
         microstep = std::max(microstep, s->key.microstep);
   }
-  return {impact_time, microstep + 1, KeyKind::impact, pair_id(piece.body_a->id(), piece.body_b->id())};
+  return {impact_time, microstep + 1, KeyKind::impact,
+          pair_id(piece.body_a->id(), piece.body_b->id())};
 }
 
 // How fast the nearest points close, m/s; 0 where that is rounding.
@@ -298,7 +300,7 @@ std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, cons
 bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
   Pair& pair = pairs[index];
   ++counters.predictions;
-  const double impact_time = exact_impact(piece, *bodies[pair.a], *bodies[pair.b]);
+  const double impact_time = exact_impact(piece, *scene.bodies[pair.a], *scene.bodies[pair.b]);
   if (impact_time < never) {
     const Key key = impact_key(piece, impact_time);
     if (key < piece.end) {
@@ -335,8 +337,8 @@ bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
 
 // Looks at one grid point; true if there is an impact at or before it (then pair.impact).
 bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
-  const Body& a = *bodies[pair.a];
-  const Body& b = *bodies[pair.b];
+  const Body& a = *scene.bodies[pair.a];
+  const Body& b = *scene.bodies[pair.b];
   const double slack = depth_slack * std::min(a.least_width, b.least_width);
   ++counters.checks;
   const double clear = certificate(pair, piece, when, slack);
@@ -431,7 +433,8 @@ void Kernel::pursue(std::uint32_t index) {
     // arcs of moving groups are known as far as both have claimed
     double until = now;
     if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
-      until = std::min(process(*bodies[pair.a]).claim.time, process(*bodies[pair.b]).claim.time);
+      until = std::min(process(*scene.bodies[pair.a]).claim.time,
+                       process(*scene.bodies[pair.b]).claim.time);
       if (!(pair.from.time < until)) {
         queue.withdraw(pair.event);
         return;
@@ -448,7 +451,7 @@ void Kernel::pursue(std::uint32_t index) {
         return;
       }
     }
-    const bool exact = predicted_exactly(piece, *bodies[pair.a], *bodies[pair.b]);
+    const bool exact = predicted_exactly(piece, *scene.bodies[pair.a], *scene.bodies[pair.b]);
     if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, until)) return;
   }
 }

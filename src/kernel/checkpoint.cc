@@ -30,7 +30,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   result->edits = edits_;
   result->removals = removals_;
   result->gravity = options.gravity;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     const Key present = present_key();
     const State* state = graph.last_before(body->process, present);
     while (state->prev && !state->committed) state = state->prev;
@@ -55,14 +55,14 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   require_between_runs("a checkpoint was restored");
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
   TW_REQUIRE(
-      checkpoint.states.size() == bodies.size() &&
+      checkpoint.states.size() == scene.bodies.size() &&
           checkpoint.callbacks.size() == callbacks.size() && checkpoint.removals == removals_,
       "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
 
   // empty the graph and the event queue
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
     if (pairs[i].live) drop_pair(i);
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     queue.withdraw(process(*body).advance);
     queue.withdraw(process(*body).group_check);
     graph.clear(body->process);
@@ -83,7 +83,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   options.gravity = checkpoint.gravity;
   const Key present = present_key();
   newborn_.clear();
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     for (const Checkpoint::Kept& kept : checkpoint.states[body->id()]) {
       State* state = graph.append(body->process, kept.key);
       static_cast<StateData&>(*state) = kept.data;
@@ -96,7 +96,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     if (!body->fixed()) body->placed = false;
     if (begun) {
       schedule_advance(*body);
-      schedule_group_check(*body);
+      schedule_group_check(body->process);
     } else {
       newborn_.push_back(body->id());
     }

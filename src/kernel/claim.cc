@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "groups/contact-graph.h"
 #include "kernel/kernel.h"
 
 namespace tw {
@@ -105,7 +106,6 @@ void Kernel::claim_window(Body& body) {
   ++counters.claims;
   if (const auto& group = graph.tail(body.process)->group; group && !group->end_tested) {
     test_group_end(*group);
-    schedule_group_checks(*group);
   }
   const Key before = process(body).claim;
   if (graph.tail(body.process)->error ||
@@ -141,27 +141,24 @@ bool Kernel::boxes_overlap(const Body& a, const Body& b) const {
   return grid.box(a.id()).overlaps(grid.box(b.id()));
 }
 
-bool Kernel::may_collide(const Body& a, const Body& b) const {
-  return !a.info.removed && !b.info.removed && contact_parameters(a.id(), b.id()).collide;
-}
-
 // Both boxes now reach from GVT to the lesser claim; disjoint boxes mean: free until then.
 void Kernel::drop_parted_pairs(Body& body) {
   for (std::size_t i = body.pairs.size(); i-- > 0;) {
     const std::uint32_t index = body.pairs[i];
     const Pair& pair = pairs[index];
-    if (!pair.pending && !boxes_overlap(*bodies[pair.a], *bodies[pair.b])) drop_pair(index);
+    if (!pair.pending && !boxes_overlap(*scene.bodies[pair.a], *scene.bodies[pair.b]))
+      drop_pair(index);
   }
 }
 
 void Kernel::find_partners(Body& body, const Key& claimed_before) {
   const auto consider = [&](BodyId id) {
     ++counters.candidates;
-    Body& other = *bodies[id];
+    Body& other = *scene.bodies[id];
     if (body.dynamic() || other.dynamic()) meet(body, other, claimed_before);
   };
   if (body.unbounded) {
-    for (const auto& other : bodies)
+    for (const auto& other : scene.bodies)
       if (other->placed && other->id() != body.id() && boxes_overlap(body, *other))
         consider(other->id());
     return;
@@ -169,13 +166,13 @@ void Kernel::find_partners(Body& body, const Key& claimed_before) {
   grid.overlapping(body.id(), consider);
   const Aabb& box = grid.box(body.id());
   for (const BodyId id : unbounded) {
-    const Body& other = *bodies[id];
+    const Body& other = *scene.bodies[id];
     if (other.placed && (!other.is_fixed_plane || plane_overlaps(other, box))) consider(id);
   }
 }
 
 void Kernel::meet(Body& body, Body& other, const Key& claimed_before) {
-  if (contacts_may_disable_ && !may_collide(body, other)) return;
+  if (scene.contacts.may_disable() && !scene.may_collide(body, other)) return;
   if (const std::uint32_t known = find_pair(body, other); known != no_pair) {
     const Pair& pair = pairs[known];
     const bool waits = pair.event == EventQueue::none && !pair.pending && !pair.parked;

@@ -176,13 +176,14 @@ void Kernel::deliver_frame(SinkRecord& record) {
   const double frame_time = record.next_time();
   const long index = record.next_frame++;
   std::vector<BodyPose> poses;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (body->fixed()) continue;
     const State* state = graph.last_at_or_before_time(body->process, frame_time);
     if (!state) continue;
     poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
   }
-  counters.max_penetration = std::max(counters.max_penetration, deepest_contact(frame_time));
+  counters.max_penetration =
+      std::max(counters.max_penetration, deepest_contact(scene, states_at(frame_time), frame_time));
   const std::shared_ptr<FrameSink> sink = record.sink;
   sink->frame(index, frame_time, poses);
 }
@@ -201,7 +202,7 @@ void Kernel::free_states(double limit) {
 
 std::string Kernel::history_hash() const {
   std::uint64_t sum = hash_sum_;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (body->info.removed) continue;
     const State* state = state_at(body->id(), time);
     const Key end{time, 0, KeyKind::step, body->id()};

@@ -4,11 +4,14 @@
 
 #include <cstdint>
 
+#include "groups/group-counters.h"
+
 namespace tw {
 
-struct Counters {
+struct Counters : GroupCounters {
   // events, as processed
-  std::uint64_t events = 0, claims = 0, checks = 0, certificates = 0, predictions = 0;
+  std::uint64_t events = 0, events_postponed = 0, claims = 0, checks = 0, certificates = 0,
+                predictions = 0;
   std::uint64_t candidates = 0, pairs_made = 0, live_pairs = 0, gvt_computations = 0;
   double pair_sum = 0;  // live pairs, summed over processed events: for the average
 
@@ -18,16 +21,7 @@ struct Counters {
   double deepest_rollback = 0;        // s, from the cause to the latest state removed
   double rollback_length = 0;         // s, summed over bodies
 
-  // arcs
-  std::uint64_t integrations = 0;
-  double integration_length = 0;  // s, of arcs that have ended
-
-  // steps of groups, rolled back ones too
-  std::uint64_t implicit_steps = 0, rejected_steps = 0, factorizations = 0, force_evaluations = 0;
-
-  // groups, as made
-  std::uint64_t groups = 0, group_checks = 0, manifolds = 0, early_ends = 0;
-  std::uint64_t largest_group_bodies = 0, largest_group_contacts = 0;
+  std::uint64_t group_checks = 0;
 
   // committed
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "groups/resolution.h"
 #include "kernel/kernel.h"
-#include "kernel/resolution.h"
 
 namespace tw {
 namespace {
@@ -157,10 +157,10 @@ bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
   const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
   const Successor& mover = fixed == &a ? b : a;
-  find_fixed_around(*mover.body);
+  const std::vector<BodyId> ground = surroundings_.ground_around(*mover.body);
   const auto& parts = fixed->body->shape_P->parts();
-  if (ground_.size() < 2 && parts.size() < 2) return false;
-  const std::vector<SeamNeighbour> others = around(*fixed->body);
+  if (ground.size() < 2 && parts.size() < 2) return false;
+  const std::vector<SeamNeighbour> others = surroundings_.seam_neighbours(*fixed->body, ground);
   const Frame frame(fixed->point.q.toRotationMatrix(), fixed->point.x);
   const double size = std::min(a.body->least_width, b.body->least_width);
   const std::size_t parts_b = b.body->shape_P->parts().size();
@@ -177,12 +177,12 @@ bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
   if (std::erase_if(contact_points_, is_ghost) == 0 || !contact_points_.empty()) return false;
 
   // another axis may support
-  manifold_points_.clear();
+  std::vector<ManifoldPoint> points;
   const PlacedBody side_a = placed(a), side_b = placed(b);
-  manifold_at_seams(*a.body->shape_P, side_a.frame, around(*a.body), *b.body->shape_P, side_b.frame,
-                    around(*b.body), touch_per_accuracy * options.accuracy * size, size,
-                    manifold_points_);
-  for (const ManifoldPoint& p : manifold_points_)
+  manifold_at_seams(*a.body->shape_P, side_a.frame, surroundings_.seam_neighbours(*a.body, ground),
+                    *b.body->shape_P, side_b.frame, surroundings_.seam_neighbours(*b.body, ground),
+                    touch_per_accuracy * options.accuracy * size, size, points);
+  for (const ManifoldPoint& p : points)
     contact_points_.push_back({p.core_point - p.radius * p.normal,
                                p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, p.pair});
   return contact_points_.empty();
@@ -190,12 +190,11 @@ bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
 
 // Slow and pressed together, or a quick run of impacts: counts this one.  `fastest`: approach, m/s.
 bool Kernel::is_soft(const Key& key, Successor& a, Successor& b, double fastest) const {
-  const double gravity = gravity_magnitude();
-  const double slow = fusion_speed(*a.body, *b.body);
   const double mass_a = a.body->dynamic() ? a.body->mass : b.body->mass;
   const double mass_b = b.body->dynamic() ? b.body->mass : a.body->mass;
-  const double d0 =
-      contact_law(*a.body, *b.body, std::min(mass_a, mass_b), std::max(mass_a, mass_b)).depth;
+  const ContactScales scales =
+      contact_scales(scene, *a.body, *b.body, {std::min(mass_a, mass_b), std::max(mass_a, mass_b)});
+  const double slow = scales.fusion_speed;
   if (key.microstep > 1 && fastest <= grazing * slow) return true;
   if (key.microstep > most_repeated) return true;
 
@@ -209,7 +208,7 @@ bool Kernel::is_soft(const Key& key, Successor& a, Successor& b, double fastest)
   // what nothing presses together may knock about in a corner for a while; a true collapse goes on
   // to ever shorter intervals
   const double tau =
-      std::min(slow / gravity, pi * std::sqrt(d0 / gravity)) * (pressed ? 1 : free_run_share);
+      std::min(slow / scales.gravity, scales.bounce_time()) * (pressed ? 1 : free_run_share);
   bool quick = true;
   for (Successor* successor : {&a, &b}) {
     if (!successor->body->dynamic()) continue;
@@ -225,7 +224,7 @@ bool Kernel::compute_impact(const Key& key, Successor& a, Successor& b,
   find_impact_points(a, b);
   // nothing to hit: the two are followed as a contact while they pass the seam
   if (drop_ghosts(a, b)) return true;
-  const ContactParameters& contact = contact_parameters(a.body->id(), b.body->id());
+  const ContactParameters& contact = scene.contacts.between(a.body->id(), b.body->id());
   Resolution r{{*a.body, a.point}, {*b.body, b.point}, contact.restitution, contact.friction};
   double worst = 0;
   for (const ContactPoint& c : contact_points_) {
@@ -286,22 +285,23 @@ void Kernel::run_collision_callbacks(const Collision& collision, Successor& a, S
   }
 }
 
-void Kernel::process_impact(std::uint32_t index) {
+Progress Kernel::process_impact(std::uint32_t index) {
   const Key key = pairs[index].impact;
-  Body& body_a = *bodies[pairs[index].a];
-  Body& body_b = *bodies[pairs[index].b];
+  Body& body_a = *scene.bodies[pairs[index].a];
+  Body& body_b = *scene.bodies[pairs[index].b];
 
   // only after the claims of the receivers, and of those they touch, have reached its time
-  std::vector<BodyId> struck;
-  for (const BodyId id : {body_a.id(), body_b.id()})
-    if (bodies[id]->dynamic()) struck.push_back(id);
+  std::vector<ProcessId> struck;
   bool all_known = true;
-  for (const BodyId id : {body_a.id(), body_b.id()}) all_known = await(id, key) && all_known;
-  if (!all_known || !await(region_of(key, struck, false), key)) return;
+  for (const Body* body : {&body_a, &body_b}) {
+    if (body->dynamic()) insert(struck, body->process);
+    all_known = await(body->process, key) && all_known;
+  }
+  if (!all_known || !await(region_of(before(key), struck, false), key)) return Progress::try_again;
 
   std::vector<Successor> successors;
-  successors.push_back(make_successor(body_a, key, body_a.dynamic()));
-  successors.push_back(make_successor(body_b, key, body_b.dynamic()));
+  successors.push_back(make_successor(before(key), body_a.process, body_a.dynamic()));
+  successors.push_back(make_successor(before(key), body_b.process, body_b.dynamic()));
   std::optional<Collision> collision;
   const bool soft = compute_impact(key, successors[0], successors[1], collision);
 
@@ -322,9 +322,10 @@ void Kernel::process_impact(std::uint32_t index) {
   if (successors[0].data.error)
     stop_group_mates(key, successors);
   else if ((soft || successors[0].data.group || successors[1].data.group) &&
-           !regroup(key, successors, soft ? Cause::fusion : Cause::impact))
-    return;
+           regroup(key, successors, soft ? Cause::fusion : Cause::impact) == Progress::try_again)
+    return Progress::try_again;
   enter_discontinuity(key, successors);
+  return Progress::done;
 }
 
 }  // namespace tw

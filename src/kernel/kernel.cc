@@ -48,17 +48,19 @@ Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, 
 }
 
 void Kernel::handle(Event event) {
+  Progress progress = Progress::done;
   switch (event.kind) {
-    case EventKind::advance: claim_window(*bodies[event.subject]); break;
-    case EventKind::callback: process_callback(event.subject); break;
-    case EventKind::group_check: process_group_check(event.subject); break;
+    case EventKind::advance: claim_window(*scene.bodies[event.subject]); break;
+    case EventKind::callback: progress = process_callback(event.subject); break;
+    case EventKind::group_check: progress = check_group(ProcessId{event.subject}); break;
     case EventKind::pair:
       if (pairs[event.subject].pending)
-        process_impact(event.subject);
+        progress = process_impact(event.subject);
       else
         pursue(event.subject);
       break;
   }
+  if (progress == Progress::try_again) ++counters.events_postponed;
   ++counters.events;
   counters.pair_sum += static_cast<double>(counters.live_pairs);
   ++events_since_gvt_;
@@ -133,39 +135,35 @@ const State* Kernel::state_at(BodyId id, double when) const {
 }
 
 PoseTwist Kernel::point_at(BodyId id, double when) const {
-  return evaluate(*bodies[id], *state_at(id, when), when);
+  return evaluate(*scene.bodies[id], *state_at(id, when), when);
+}
+
+StateOf Kernel::states_at(double when) const {
+  return [this, when](BodyId id) -> const State& { return *state_at(id, when); };
 }
 
 double Kernel::total_energy(double when) const {
   double energy = 0;
-  const auto by_key = [](const Group* x, const Group* y) {
-    return x->key < y->key || (x->key == y->key && x->members < y->members);
-  };
-  std::set<const Group*, decltype(by_key)> groups(by_key);
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (!body->dynamic()) continue;
     const PoseTwist p = point_at(body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
-    const State* state = state_at(body->id(), when);
-    if (state->group) groups.insert(state->group.get());
   }
-  // the springs of a link in the group that has the say in it
-  for (const Group* group : groups) {
-    std::vector<bool> counted(group->tags.size(), false);
-    for (const ContactPair& pair : group->pairs) {
-      const State* a = state_at(first_of(pair.id), when);
-      const State* b = state_at(second_of(pair.id), when);
-      if (owner_of(*a, *b) != group) continue;
-      std::fill_n(counted.begin() + pair.first, pair.count, true);
-    }
-    energy += group->arc->elastic_energy(group->at_rest ? group->key.time : when, counted);
-  }
-  return energy;
+  return energy + elastic_energy(scene, states_at(when), when);
+}
+
+ContactSurvey Kernel::survey_contacts(double when) const {
+  return tw::survey_contacts(scene, states_at(when), when);
+}
+
+// Nothing is computed in worlds without kinematic bodies.
+double Kernel::kinematic_work_of(const State& state, double until) const {
+  return kinematic.empty() ? 0 : contact_work(scene, state, until);
 }
 
 Vec3 Kernel::total_momentum(double when) const {
   Vec3 sum = Vec3::Zero();
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     if (body->dynamic()) sum += body->mass * point_at(body->id(), when).v;
   return sum;
 }

@@ -31,9 +31,8 @@
 #include "collision/manifold.h"
 #include "detect/active-pair.h"
 #include "dynamics/body.h"
-#include "dynamics/placed-body.h"
-#include "groups/region.h"
-#include "groups/regrouping.h"
+#include "groups/regroup.h"
+#include "groups/surroundings.h"
 #include "kernel/checkpoint.h"
 #include "kernel/counters.h"
 #include "kernel/due.h"
@@ -48,14 +47,14 @@
 
 namespace tw {
 
-// Checks of pairs that are not predicted exactly happen at multiples of this, s (2^-20).
-inline constexpr double check_grid = 0x1p-20;
-
-// Boxes of members of moving groups reach this share of their size farther: a group check finds in
-// them whom a member may touch before the next check.
-inline constexpr double contact_margin = 0.1;
-
 inline constexpr std::uint32_t no_pair = 0xffffffffu;
+
+// What became of an event.
+enum class [[nodiscard]] Progress{
+    done,
+    try_again  // something else may come first: nothing was done, the event stays and is taken
+               // again
+};
 
 struct CallbackRecord {
   CallbackDef def;
@@ -94,7 +93,6 @@ class Kernel {
   void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
   void remove_frame_sink(const FrameSink* sink);
   void set_gravity(const Vec3& gravity);
-  const ContactParameters& contact_parameters(BodyId a, BodyId b) const;
   void edit(BodyId id, const std::function<void(StateView&)>& change);
   std::shared_ptr<const Checkpoint> checkpoint();  // checkpoint.cc
   void restore(const Checkpoint& checkpoint);
@@ -111,8 +109,9 @@ class Kernel {
   PoseTwist point_at(BodyId id, double when) const;
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
-  ContactSurvey survey_contacts(double when) const;  // contacts.cc
-  double deepest_contact(double when) const;
+  ContactSurvey survey_contacts(double when) const;
+  // The state of each body that holds at the instant.
+  StateOf states_at(double when) const;
   Vec3 total_momentum(double when) const;
   std::string history_hash() const;
   StatisticsTable statistics() const;
@@ -133,7 +132,7 @@ class Kernel {
   // ---- data ----
   WorldOptions options;
   std::unique_ptr<Policy> policy = make_policy("timewarp");
-  std::vector<std::unique_ptr<Body>> bodies;
+  Scene scene{options};
   std::vector<Process> processes;  // by number
   std::unordered_map<std::string, BodyId> names;
   StateGraph graph;
@@ -147,7 +146,6 @@ class Kernel {
   std::vector<CollisionCallbackDef> collision_callbacks;
   std::vector<ObserverRecord> observers;
   std::vector<SinkRecord> sinks;
-  ContactTable contacts;
   Counters counters;
   double time = 0;  // last committed time users see
   double gvt = 0;
@@ -157,9 +155,9 @@ class Kernel {
   // ---- who owns whom ----
   Process& process(const Body& body) { return processes[number(body.process)]; }
   const Process& process(const Body& body) const { return processes[number(body.process)]; }
-  ProcessId process_of(BodyId id) const { return bodies[id]->process; }
+  ProcessId process_of(BodyId id) const { return scene.process_of(id); }
   // The body of a process that has one.
-  Body& body_of(ProcessId id) const { return *bodies[processes[number(id)].bodies.front()]; }
+  Body& body_of(ProcessId id) const { return *scene.bodies[scene.first_bodies[number(id)]]; }
 
  private:
   friend class KernelTest;  // tests/rollback: looks and pokes inside
@@ -168,8 +166,7 @@ class Kernel {
   void begin_run();
   void require_no_overlap(const Body& a, const Body& b) const;
   void check_overlaps(Body& body);
-  void update_contact_classes() const;
-  Key edit_key(const std::vector<BodyId>& concerned);
+  Key edit_key(const std::vector<ProcessId>& concerned);
   Key present_key() const;
   void edit_together(const std::function<bool(BodyId)>& concerned,
                      const std::function<void(Successor&)>& change);
@@ -196,7 +193,6 @@ class Kernel {
   void meet(Body& body, Body& other, const Key& claimed_before);
   void drop_parted_pairs(Body& body);
   bool boxes_overlap(const Body& a, const Body& b) const;
-  bool may_collide(const Body& a, const Body& b) const;
   bool ready(const Body& body, const Key& key) const;
   void make_ready(Body& body, const Key& key);
 
@@ -238,7 +234,7 @@ class Kernel {
   bool apart_throughout(Pair& pair, const Piece& piece, double to);
 
   // ---- impact.cc ----
-  void process_impact(std::uint32_t index);
+  Progress process_impact(std::uint32_t index);
   // True: the impact is soft, and the two stay in contact.
   bool compute_impact(const Key& key, Successor& a, Successor& b,
                       std::optional<Collision>& collision);
@@ -251,106 +247,25 @@ class Kernel {
 
   // ---- callbacks.cc ----
   void schedule_callback(std::uint32_t number);
-  void process_callback(std::uint32_t number);
+  Progress process_callback(std::uint32_t number);
   void rewind_callback(std::uint32_t number, const Key& key);
   Key first_tick(const CallbackRecord& callback, const Key& key) const;
 
-  // ---- regroup.cc ----
-  void collect_old(Regrouping& work) const;
-  void carry(Regrouping& work, const PairBefore& old) const;
-  // Cuts the drafts into groups and isolated bodies.
-  void finish(Regrouping& work);
-  std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<BodyId>& members);
-  MotionPtr outside_motion(const Regrouping& work, BodyId id) const;
-  void start_arc_of(Group& group, Regrouping& work) const;
-  void share_stiffness(Regrouping& work) const;
-  void share_ground_stiffness(const std::vector<NewContact*>& points, BodyId mover) const;
-  void add_report(Regrouping& work) const;
-  void count_group(const Group& group);
-  std::size_t count_pieces(const Regrouping& work,
-                           const std::vector<std::uint64_t>& in_contact) const;
-  void count_fissions(Regrouping& work, const std::vector<bool>& held) const;
-
-  // ---- region.cc ----
-  const Group* owner_of(const State& a, const State& b) const;
-  std::vector<BodyId> remaining(const Group& group, const Key& key) const;
-  template <class Visit>
-  void visit_contacts(const std::vector<BodyId>& inside, const Key& key, Visit visit) const;
-  Region region_of(const Key& key, const std::vector<BodyId>& struck, bool whole) const;
-  void add_neighbours(Region& region, const Key& key) const;
-  void complete(Region& region, const Key& key, bool whole) const;
-  template <class GoesOn>
-  std::vector<BodyId> reached_from(const std::vector<BodyId>& ids, const Key& key,
-                                   GoesOn goes_on) const;
-  std::vector<BodyId> all_asleep(const std::vector<BodyId>& ids, const Key& key) const;
-  std::vector<BodyId> hanging_together(BodyId id, const Key& key) const;
-  bool disturbed(const Regrouping& work, const std::vector<BodyId>& asleep,
-                 std::vector<BodyId>& movers) const;
-  bool own_check_before(BodyId id, const Key& key) const;
-  bool await(BodyId id, const Key& key);
+  // ---- group-events.cc ----
+  // What stands before a key, and who is near: what groups are decided by.
+  Before before(const Key& key) const { return Before(scene, graph, key); }
+  bool own_check_before(ProcessId id, const Key& key) const;
+  bool claims_reach(ProcessId id, const Key& key) const;
+  bool known(ProcessId id, const Key& key) const;
+  bool await(ProcessId id, const Key& key);
   bool await(const Region& region, const Key& key);
-  double deviation(const Group& group, BodyId id) const;
-  std::vector<BodyId> reached_beyond(const Regrouping& work) const;
-  void discard(const Regrouping& work);
-  std::vector<Successor> make_successors(const Region& region, const Key& key,
-                                         const std::vector<Successor>& given) const;
-  bool touches_groups(const std::vector<Successor>& successors) const;
-  bool regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
+  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
-
-  // ---- linking.cc ----
-  // Links the pair if it touches or may touch before the next check; `must`: in any case.
-  bool connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b, double interval,
-               bool must);
-  bool comes_into_contact(const PlacedBody& a, const PlacedBody& b, bool linked_before,
-                          double interval, const ContactConstants& law) const;
-  ContactConstants contact_law(const Body& a, const Body& b, double lightest,
-                               double heaviest) const;
-  NewContact new_contact(const ManifoldPoint& point, const PlacedBody& a, const PlacedBody& b,
-                         const ContactConstants& law) const;
-  void match_stretches(Regrouping& work, const NewContactPair& pair,
-                       const PairBefore& before_it) const;
-  bool ghosts(const PlacedBody& a, const PlacedBody& b, double distance) const;
-  void preload(Regrouping& work, const NewContactPair& pair, const PlacedBody& a,
-               const PlacedBody& b) const;
-  void refresh(Regrouping& work, const std::vector<BodyId>& bodies_looked_at, double interval);
-  void find_fixed_around(const Body& mover);
-  std::vector<SeamNeighbour> around(const Body& body) const;
-  PlacedBody placed(const Successor& successor) const;
-  PlacedBody placed_outside(const Body& body, double when) const;
-  double gravity_magnitude() const;
-  double fusion_speed(const Body& a, const Body& b) const;
-
-  // ---- group-check.cc ----
-  Key group_check_key(const Group& group, double when) const;
-  void schedule_group_check(Body& body);
-  void schedule_group_checks(const Group& group);
-  std::vector<BodyId> family(const std::shared_ptr<Group>& group, const Key& key) const;
-  std::vector<BodyId> early_bodies(const Group& group, double when, const Key& key) const;
-  void process_group_check(BodyId id);
-  double check_interval(const Regrouping& work, const std::vector<BodyId>& members) const;
-  double next_check_time(double birth, double now, double interval) const;
-  bool comes_to_rest(Regrouping& work, Group& after, const Group& before) const;
-  void note_changes(Regrouping& work) const;
-  std::string group_failure(const Group& group) const;
-
-  // ---- calm.cc ----
-  Stillness stillness_of(const Successor& successor, const Key& key) const;
-  std::vector<bool> sleepers(const Regrouping& work) const;
-  std::vector<BodyId> asleep_around(const Regrouping& work) const;
-
-  // ---- kinematic-work.cc ----
-  double contact_work(const State& state, double until) const;
-
-  // ---- end-test.cc ----
+  void schedule_group_check(ProcessId id);
   void test_group_end(Group& group);
-  double early_end(Group& group, const ContactPair& pair);
-
-  // ---- pass-on.cc ----
-  std::vector<BodyId> propagate_impulses(Regrouping& work) const;
+  Progress check_group(ProcessId id);
 
   // ---- rollback.cc ----
-  Successor make_successor(const Body& body, const Key& key, bool new_arc) const;
   void enter_discontinuity(const Key& key, std::vector<Successor>& successors);
   void treat(const std::vector<Affected>& affected);
   void stop_group_mates(const Key& key, std::vector<Successor>& successors) const;
@@ -374,8 +289,10 @@ class Kernel {
   void free_states(double limit);
   std::exception_ptr error_before(double& limit, bool& inclusive) const;
 
-  double cell_ = 1;                    // typical spacing, m
-  bool contacts_may_disable_ = false;  // somebody called disable-collisions!
+  double kinematic_work_of(const State& state, double until) const;
+
+  Surroundings surroundings_{scene, grid, unbounded};
+  double cell_ = 1;  // typical spacing, m
   long events_since_gvt_ = 0;
   double slice_end_ = never;  // wall clock, s
   double until_ = 0;          // end of the present run
@@ -394,8 +311,6 @@ class Kernel {
   mutable unsigned contact_cache_version_ = 0;
   std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after
   std::vector<ContactPoint> contact_points_;
-  std::vector<ManifoldPoint> manifold_points_;
-  std::vector<BodyId> candidates_, ground_;
 };
 
 // Hash of a state at one instant, as it enters the history's hash.

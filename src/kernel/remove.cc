@@ -12,7 +12,7 @@ namespace tw {
 
 void Kernel::remove_body(BodyId id) {
   require_between_runs("a body was removed");
-  Body& body = *bodies[id];
+  Body& body = *scene.bodies[id];
   TW_REQUIRE(!body.info.removed,
              "body " + body.info.name + " was removed before; expected one that is there");
   const BodyState last = body_state(body, point_at(id, time));
@@ -22,7 +22,7 @@ void Kernel::remove_body(BodyId id) {
   // whoever touches it gets arcs without it
   edit_together(
       [&](BodyId other) {
-        const State& state = *graph.last_before(process_of(other), present_key());
+        const State& state = before(present_key()).state_of(other);
         if (!state.group || state.error) return false;
         const auto in_contact = state.group->pairs_of(state.member);
         return std::any_of(in_contact.begin(), in_contact.end(), [&](std::uint32_t number) {
@@ -51,7 +51,7 @@ void Kernel::remove_body(BodyId id) {
   if (body.dynamic()) {
     graph.free_before(graph.tail(process_of(id)), release());
     const State& tail = *graph.tail(process_of(id));
-    counters.kinematic_work += contact_work(tail, time);
+    counters.kinematic_work += kinematic_work_of(tail, time);
     counters.integration_length += time - tail.arc_time;
   }
   graph.clear(process_of(id));

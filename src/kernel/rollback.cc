@@ -13,24 +13,6 @@
 
 namespace tw {
 
-// The state of `body` just below `key`, evaluated at its time: with a new arc or carrying the old.
-Successor Kernel::make_successor(const Body& body, const Key& key, bool new_arc) const {
-  const State* state = graph.last_before(body.process, key);
-  TW_ASSERT(state, "no state of " + body.info.name + " before " + show(key));
-  Successor successor;
-  successor.body = &body;
-  successor.point = evaluate(body, *state, key.time);
-  successor.data = *state;
-  successor.data.changed = true;
-  successor.data.next_callback = never;
-  successor.data.report.reset();
-  successor.data.tally = {};
-  successor.data.error = nullptr;
-  successor.role = body.dynamic() || successor.data.slots ? Role::record : Role::no_state;
-  if (new_arc) start_new_arc(successor, key);
-  return successor;
-}
-
 // A motion that is not finite, or runs away, becomes a speculative error of its body.
 void Kernel::check_finite(Successor& successor) const {
   const StateData& d = successor.data;
@@ -49,16 +31,15 @@ void Kernel::check_finite(Successor& successor) const {
 // An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
 void Kernel::stop_group_mates(const Key& key, std::vector<Successor>& successors) const {
   const std::exception_ptr error = successors.front().data.error;
-  std::vector<BodyId> ids;
+  std::vector<ProcessId> stopped;
   for (const Successor& successor : successors)
-    if (successor.body->dynamic()) ids.push_back(successor.body->id());
-  std::sort(ids.begin(), ids.end());
-  const Region region = region_of(key, ids, true);
-  for (const std::vector<BodyId>* side : {&region.inside, &region.border})
-    for (const BodyId id : *side)
+    if (successor.body->dynamic()) insert(stopped, successor.process());
+  const Region region = region_of(before(key), stopped, true);
+  for (const std::vector<ProcessId>* part : {&region.inside, &region.border})
+    for (const ProcessId process : *part)
       if (std::none_of(successors.begin(), successors.end(),
-                       [&](const Successor& d) { return d.body->id() == id; }))
-        successors.push_back(make_successor(*bodies[id], key, false));
+                       [&](const Successor& s) { return s.process() == process; }))
+        successors.push_back(make_successor(before(key), process, false));
   for (Successor& successor : successors) successor.data.error = error;
 }
 
@@ -132,13 +113,14 @@ void Kernel::treat(const std::vector<Affected>& affected) {
     if (body.fixed()) continue;
     process(body).claim = std::min(process(body).claim, t.least_removed);
     schedule_advance(body);
-    schedule_group_check(body);
+    schedule_group_check(t.process);
   }
   // events: pairs and callbacks
   for (const Affected& t : affected) {
     Body& body = body_of(t.process);
     for (const std::uint32_t index : body.pairs) reset_pair(index, t.least_removed);
-    for (const std::uint32_t number : process(body).callbacks) rewind_callback(number, t.least_removed);
+    for (const std::uint32_t number : process(body).callbacks)
+      rewind_callback(number, t.least_removed);
   }
 }
 
@@ -185,7 +167,7 @@ StateGraph::OnRelease Kernel::release() {
     if (!body_of(state.process).dynamic() || !state.starts_arc()) return;
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
-    if (next) counters.kinematic_work += contact_work(state, next->key.time);
+    if (next) counters.kinematic_work += kinematic_work_of(state, next->key.time);
     if (stepped(state))
       counters.integration_length += count_steps(counters, state);
     else if (next)
@@ -202,7 +184,7 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
   name.add(static_cast<std::uint64_t>(key.kind));
   name.add(key.id);
   // redone is what follows the same states: another history may have an impact at the same time
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     if (const State* s = graph.tail(body->process); s->key == key && s->prev)
       name.add(state_checksum(*s->prev));
   const std::uint64_t now = ring_checksum(key);
@@ -213,7 +195,7 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
   }
 
   std::vector<Affected> affected;
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     if (graph.tail(body->process)->key == key) {
       graph.rollback(body->process, key, affected, removal());
       break;

@@ -111,7 +111,7 @@ void Kernel::make_birth(Body& body, const BodyDef& def) {
 
 BodyId Kernel::add_body(const BodyDef& def) {
   require_between_runs("a body was added");
-  const BodyId id = static_cast<BodyId>(bodies.size());
+  const BodyId id = static_cast<BodyId>(scene.bodies.size());
   const std::string name = def.name.empty() ? "body-" + std::to_string(id) : def.name;
   validate_body_def(def, name);
 
@@ -140,17 +140,19 @@ BodyId Kernel::add_body(const BodyDef& def) {
   Process& process = processes.back();
   process.id = body->process = graph.add_process();
   process.bodies = {id};
+  scene.first_bodies.push_back(id);
   make_birth(*body, def);
   newborn_.push_back(id);
   names[name] = id;
   if (body->unbounded) unbounded.push_back(id);
   if (body->info.kind == BodyKind::kinematic) kinematic.push_back(id);
-  bodies.push_back(std::move(body));
+  scene.contacts.add_body(*body);
+  scene.bodies.push_back(std::move(body));
   return id;
 }
 
 void Kernel::require_no_overlap(const Body& a, const Body& b) const {
-  if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !may_collide(a, b)) return;
+  if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !scene.may_collide(a, b)) return;
   const auto frame = [&](const Body& body) {
     return frame_at(body, *state_at(body.id(), time), time);
   };
@@ -171,12 +173,13 @@ void Kernel::check_overlaps(Body& body) {
     Aabb box = swept_bounds(body, *state_at(body.id(), time), time, time);
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
     grid.place(body.id(), box, body.fixed());
-    grid.overlapping(body.id(), [&](BodyId other) { require_no_overlap(*bodies[other], body); });
+    grid.overlapping(body.id(),
+                     [&](BodyId other) { require_no_overlap(*scene.bodies[other], body); });
     for (const BodyId other : unbounded)
-      if (boxes_overlap(body, *bodies[other])) require_no_overlap(*bodies[other], body);
+      if (boxes_overlap(body, *scene.bodies[other])) require_no_overlap(*scene.bodies[other], body);
     return;
   }
-  for (const auto& other : bodies)
+  for (const auto& other : scene.bodies)
     if (other->id() != body.id() && (other->unbounded || grid.contains(other->id())) &&
         boxes_overlap(body, *other))
       require_no_overlap(*other, body);
@@ -187,39 +190,10 @@ void Kernel::check_overlaps(Body& body) {
 void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
                          const ContactSettings& settings) {
   require_between_runs("contact parameters were set");
-  contacts.add(a, b, settings);
-  if (settings.collide && !*settings.collide) contacts_may_disable_ = true;
+  scene.contacts.add(a, b, settings);
   if (!begun) return;
   restart_future();
   renew_groups();
-}
-
-// Bodies that no rule names differ by their material alone: one class for each material, one for
-// each body that is named.  Few classes, so what is looked up for all pairs stays small.
-void Kernel::update_contact_classes() const {
-  if (contact_cache_version_ != contacts.version()) {
-    contact_cache_.clear();
-    contact_classes_.clear();
-    contact_class_of_material_.clear();
-    contact_cache_version_ = contacts.version();
-  }
-  while (contact_classes_.size() < bodies.size()) {
-    const BodyId id = static_cast<BodyId>(contact_classes_.size());
-    const ContactBody& body = bodies[id]->contact;
-    BodyId first = id;
-    if (!contacts.names_body(id))
-      first = contact_class_of_material_.emplace(body.material, id).first->second;
-    contact_classes_.push_back(first);
-  }
-}
-
-const ContactParameters& Kernel::contact_parameters(BodyId a, BodyId b) const {
-  update_contact_classes();
-  const std::uint64_t id = pair_id(contact_classes_[a], contact_classes_[b]);
-  const auto known = contact_cache_.find(id);
-  if (known != contact_cache_.end()) return known->second;
-  const ContactParameters found = contacts.look_up(bodies[a]->contact, bodies[b]->contact);
-  return contact_cache_.emplace(id, found).first->second;
 }
 
 std::uint64_t Kernel::add_callback(const CallbackDef& def) {
@@ -227,7 +201,7 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   TW_REQUIRE(!def.targets.empty(), "callback " + def.name + " has no targets; expected bodies");
   for (std::size_t i = 0; i < def.targets.size(); ++i)
     TW_REQUIRE(std::count(def.targets.begin(), def.targets.end(), def.targets[i]) == 1,
-               "callback " + def.name + " names " + bodies[def.targets[i]]->info.name +
+               "callback " + def.name + " names " + scene.bodies[def.targets[i]]->info.name +
                    " twice; expected each target once");
   TW_REQUIRE(std::isfinite(def.start), "start of callback " + def.name + " is " + show(def.start) +
                                            "; expected a finite number of seconds");
@@ -255,7 +229,7 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   // ticks before the present are not made up for
   const KeyKind present = begun ? KeyKind::group_check : KeyKind::birth;
   if (def.period) callback.next = first_tick(callback, {time, 0, present, 0});
-  for (const BodyId id : def.targets) process(*bodies[id]).callbacks.push_back(number);
+  for (const BodyId id : def.targets) process(*scene.bodies[id]).callbacks.push_back(number);
   schedule_callback(number);
   return number;
 }
@@ -297,23 +271,23 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 // Of an edit that concerns these.  After whatever they have done at this instant, where that is
 // final; else before everything there: a callback that stopped the run, or an impact that an
 // interrupt left, sees what was changed, and doesn't take it back by coming earlier.
-Key Kernel::edit_key(const std::vector<BodyId>& concerned) {
+Key Kernel::edit_key(const std::vector<ProcessId>& concerned) {
   if (!due_.inclusive) return {time, 0, KeyKind::early_edit, edits_++};
   std::uint32_t microstep = 1;
-  for (const BodyId member : concerned)
-    for (const State* s = graph.tail(process_of(member)); s && s->key.time >= time; s = s->prev)
+  for (const ProcessId member : concerned)
+    for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
       if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
   return {time, microstep, KeyKind::edit, edits_++};
 }
 
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   require_between_runs("a body was changed");
-  Body& body = *bodies[id];
-  const Region region = region_of(present_key(), {id}, true);
-  std::vector<BodyId> concerned = region.inside;
+  Body& body = *scene.bodies[id];
+  const Region region = region_of(before(present_key()), {body.process}, true);
+  std::vector<ProcessId> concerned = region.inside;
   concerned.insert(concerned.end(), region.border.begin(), region.border.end());
   const Key key = edit_key(concerned);
-  std::vector<Successor> successors{make_successor(body, key, false)};
+  std::vector<Successor> successors{make_successor(before(key), body.process, false)};
   successors[0].role = Role::record;
   const Vec3 x_before = successors[0].point.x;
   const Quat q_before = successors[0].point.q;
@@ -332,7 +306,7 @@ void Kernel::set_gravity(const Vec3& gravity) {
   options.gravity = gravity;
   // a body that is still at its birth needs no discontinuity
   const auto newborn = [&](BodyId id) { return !begun && !graph.tail(process_of(id))->prev; };
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     if (body->dynamic() && newborn(body->id())) {
       State* tail = graph.tail(body->process);
       tail->acceleration = gravity + tail->force / body->mass;
@@ -349,16 +323,16 @@ void Kernel::set_gravity(const Vec3& gravity) {
 // whose members are half changed.
 void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
                            const std::function<void(Successor&)>& change) {
-  std::vector<bool> done(bodies.size(), false);
-  for (const auto& body : bodies) {
-    if (!body->dynamic() || done[body->id()] || !concerned(body->id())) continue;
-    const std::vector<BodyId> together = hanging_together(body->id(), present_key());
+  std::vector<bool> done(processes.size(), false);
+  for (const auto& body : scene.bodies) {
+    if (!body->dynamic() || done[number(body->process)] || !concerned(body->id())) continue;
+    const std::vector<ProcessId> together = before(present_key()).hanging_together(body->process);
     const Key key = edit_key(together);
     std::vector<Successor> successors;
     successors.reserve(together.size());
-    for (const BodyId id : together) {
-      done[id] = true;
-      successors.push_back(make_successor(*bodies[id], key, true));
+    for (const ProcessId process : together) {
+      done[number(process)] = true;
+      successors.push_back(make_successor(before(key), process, true));
       change(successors.back());
     }
     regroup_edited(key, successors);
@@ -378,11 +352,11 @@ void Kernel::restart_future() {
   undone_.clear();
   const Key present = present_key();
   std::vector<Affected> affected;
-  for (const auto& body : bodies) graph.rollback(body->process, present, affected, removal());
+  for (const auto& body : scene.bodies) graph.rollback(body->process, present, affected, removal());
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
     if (pairs[i].live) drop_pair(i);
   std::vector<Affected> all;
-  for (const auto& body : bodies) all.push_back({body->process, present});
+  for (const auto& body : scene.bodies) all.push_back({body->process, present});
   treat(all);
 }
 
@@ -402,7 +376,7 @@ void Kernel::update_cell() {
   Aabb space;
   double radii = 0;
   int count = 0;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (!body->dynamic() || !body->shape_P) continue;
     space.add(point_at(body->id(), time).x);
     radii += body->radius;
@@ -417,7 +391,7 @@ void Kernel::update_cell() {
 // What stopped a process may have been mended since: try again.
 void Kernel::retry_errors() {
   std::vector<Affected> affected;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     const State* tail = graph.tail(body->process);
     if (tail->error) graph.rollback(body->process, tail->key, affected, removal());
   }
@@ -428,18 +402,19 @@ void Kernel::begin_run() {
   retry_errors();
   if (!newborn_.empty()) {
     update_cell();
-    for (const BodyId id : newborn_) check_overlaps(*bodies[id]);
+    for (const BodyId id : newborn_) check_overlaps(*scene.bodies[id]);
     if (!begun && options.adversary) {
       adversary_ = Random(mix64(options.adversary->seed + 1));
-      for (const auto& body : bodies)
+      for (const auto& body : scene.bodies)
         if (options.adversary->some_bodies && adversary_.real() < options.adversary->body_share)
           process(*body).head_start = options.adversary->head_start * adversary_.real();
       for (CallbackRecord& callback : callbacks)
         for (const BodyId id : callback.def.targets)
-          callback.head_start = std::max(callback.head_start, process(*bodies[id]).head_start);
+          callback.head_start =
+              std::max(callback.head_start, process(*scene.bodies[id]).head_start);
     }
     begun = true;
-    for (const BodyId id : newborn_) claim_window(*bodies[id]);
+    for (const BodyId id : newborn_) claim_window(*scene.bodies[id]);
     newborn_.clear();
   }
   begun = true;

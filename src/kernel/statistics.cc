@@ -24,13 +24,13 @@ std::int64_t peak_resident_bytes() {
 
 StatisticsTable Kernel::statistics() const {
   std::int64_t moving = 0;
-  for (const auto& body : bodies) moving += !body->fixed();
+  for (const auto& body : scene.bodies) moving += !body->fixed();
 
   // arcs that still stand count up to the present
   double length = counters.integration_length, kinematic_work = counters.kinematic_work;
   std::uint64_t kinematic_arcs = 0;
   std::uint64_t steps = 0, factorizations = 0;  // of groups that still stand
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (body->info.kind == BodyKind::kinematic) {
       length += time;
       ++kinematic_arcs;
@@ -41,7 +41,7 @@ StatisticsTable Kernel::statistics() const {
       const State* next = s->next;
       while (next && !next->starts_arc()) next = next->next;
       const double until = std::min(time, next ? next->key.time : time);
-      kinematic_work += contact_work(*s, until);
+      kinematic_work += kinematic_work_of(*s, until);
       if (s->group && !s->group->at_rest) {
         const GroupArc& arc = *s->group->arc;
         length += arc.reached() - arc.start().time;
@@ -66,7 +66,7 @@ StatisticsTable Kernel::statistics() const {
       {"duration", time},
       {"frames", sinks.empty() ? std::int64_t{0} : std::int64_t{sinks.front().next_frame}},
       {"bodies_moving", moving},
-      {"bodies_total", whole(bodies.size() - removals_)},
+      {"bodies_total", whole(scene.bodies.size() - removals_)},
       {"discontinuities", whole(discontinuities)},
       {"collisions", whole(counters.collisions)},
       {"fusions", whole(counters.fusions)},
@@ -85,6 +85,7 @@ StatisticsTable Kernel::statistics() const {
       {"cpu_seconds", counters.cpu_seconds},
       {"cpu_seconds_per_frame", counters.cpu_seconds / frames},
       {"events", whole(counters.events)},
+      {"events_postponed", whole(counters.events_postponed)},
       {"claims", whole(counters.claims)},
       {"candidates", whole(counters.candidates)},
       {"predictions", whole(counters.predictions)},

@@ -10,7 +10,7 @@ namespace tw {
 
 std::string Kernel::validate_state_graph() const {
   if (std::string broken = graph.validate(); !broken.empty()) return broken;
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     for (const State* s = graph.head(body->process); s; s = s->next) {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
@@ -29,11 +29,13 @@ std::string Kernel::validate_event_queue() const {
     const Event& event = queue.event(handle);
     switch (event.kind) {
       case EventKind::advance:
-        if (process(*bodies[event.subject]).advance != handle) return "advance event of nobody";
+        if (process(*scene.bodies[event.subject]).advance != handle)
+          return "advance event of nobody";
         break;
       case EventKind::group_check: {
         const State* tail = graph.tail(process_of(event.subject));
-        if (process(*bodies[event.subject]).group_check != handle) return "group check of nobody";
+        if (process(*scene.bodies[event.subject]).group_check != handle)
+          return "group check of nobody";
         if (!tail->group || tail->group->at_rest) return "group check of a dead group";
         break;
       }
@@ -55,9 +57,11 @@ std::string Kernel::validate_pairs() const {
     const Pair& pair = pairs[i];
     if (!pair.live) continue;
     ++live;
-    const std::string where = bodies[pair.a]->info.name + " and " + bodies[pair.b]->info.name;
+    const std::string where =
+        scene.bodies[pair.a]->info.name + " and " + scene.bodies[pair.b]->info.name;
     if (!(pair.a < pair.b)) return "ids out of order: " + where;
-    if (bodies[pair.a]->pairs[pair.place_a] != i || bodies[pair.b]->pairs[pair.place_b] != i)
+    if (scene.bodies[pair.a]->pairs[pair.place_a] != i ||
+        scene.bodies[pair.b]->pairs[pair.place_b] != i)
       return "pair not in its bodies' lists: " + where;
     if (pair.safe_time() < gvt) return "safe time before GVT: " + where;
     if (pair.pending) {
@@ -78,12 +82,12 @@ std::string Kernel::validate_pairs() const {
 // Each dynamic body has one residence: the states of a group stand in its members' queues, all of
 // them.
 std::string Kernel::validate_residences() const {
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     for (const State* s = graph.head(body->process); s; s = s->next) {
       if (!s->group || s->error) continue;
       const std::string where = body->info.name + ", " + show(s->key);
       const Group& group = *s->group;
-      if (s->member >= group.members.size() || group.members[s->member] != body->id())
+      if (s->member >= group.members.size() || group.members[s->member] != body->process)
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
       if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
@@ -91,12 +95,13 @@ std::string Kernel::validate_residences() const {
       if (s->starts_arc() && s->member == 0)
         for (const ContactPair& pair : group.pairs)
           for (const BodyId id : {first_of(pair.id), second_of(pair.id)})
-            if (!group.contains(id) &&
+            if (!group.contains(process_of(id)) &&
                 std::find(group.outside.begin(), group.outside.end(), id) == group.outside.end())
-              return "linked to a group and neither in it nor outside: " + bodies[id]->info.name;
+              return "linked to a group and neither in it nor outside: " +
+                     scene.bodies[id]->info.name;
       if (s->committed || s->key != group.key) continue;
-      for (const BodyId other : group.members) {
-        const State* t = graph.last_at_or_before(process_of(other), s->key);
+      for (const ProcessId other : group.members) {
+        const State* t = graph.last_at_or_before(other, s->key);
         if (!t || t->group != s->group) return "a member is elsewhere: " + where;
       }
     }
@@ -110,7 +115,7 @@ std::string Kernel::validate_residences() const {
 
 // Boxes hold the bodies from GVT to their claims (sampled), and nobody has states past a claim.
 std::string Kernel::validate_claims() const {
-  for (const auto& body : bodies) {
+  for (const auto& body : scene.bodies) {
     if (body->fixed() || !body->placed || body->unbounded) continue;
     const State* tail = graph.tail(body->process);
     if (tail->starts_arc() && tail->key.time > process(*body).claim.time && body->dynamic())
@@ -143,13 +148,13 @@ void add(Hasher& h, const Vec3& v) {
 }
 
 void add_group(Hasher& h, const Group& group) {
-  for (const double time : {group.birth, group.next_check, group.quiet_since, group.quiet_speed,
-                            group.first_step, group.lightest, group.heaviest})
+  for (const double time : {group.birth, group.next_check, group.quiet.since, group.quiet.speed,
+                            group.first_step, group.masses.lightest, group.masses.heaviest})
     h.add(time);
   h.add(std::uint64_t{group.at_rest} << 2 | std::uint64_t{group.asleep} << 1 |
         std::uint64_t{group.has_border});
-  for (const auto& ids : {group.members, group.outside})
-    for (const BodyId id : ids) h.add(std::uint64_t{id});
+  for (const ProcessId id : group.members) h.add(std::uint64_t{number(id)});
+  for (const BodyId id : group.outside) h.add(std::uint64_t{id});
   for (const ContactPair& pair : group.pairs) {
     h.add(pair.id);
     h.add(std::uint64_t{pair.first} << 33 | std::uint64_t{pair.count} << 1 |
@@ -190,7 +195,7 @@ std::uint64_t Kernel::state_checksum(const State& s) const {
 
 std::uint64_t Kernel::graph_checksum() const {
   Hasher h;
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     for (const State* s = graph.head(body->process); s; s = s->next) h.add(state_checksum(*s));
   return h.value();
 }
@@ -198,7 +203,7 @@ std::uint64_t Kernel::graph_checksum() const {
 // Of the latest states that one discontinuity made.
 std::uint64_t Kernel::ring_checksum(const Key& key) const {
   Hasher h;
-  for (const auto& body : bodies)
+  for (const auto& body : scene.bodies)
     if (const State* s = graph.tail(body->process); s->key == key) h.add(state_checksum(*s));
   return h.value();
 }
@@ -206,8 +211,8 @@ std::uint64_t Kernel::ring_checksum(const Key& key) const {
 std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
   std::vector<QueuedState> result;
   for (const State* s = graph.head(process_of(id)); s; s = s->next)
-    result.push_back(
-        {s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
+    result.push_back({s->key, s->committed,
+                      body_state(*scene.bodies[id], evaluate(*scene.bodies[id], *s, s->key.time))});
   return result;
 }
 

@@ -29,7 +29,7 @@ void World::set_accuracy(double accuracy) {
 
 void World::set_seed(std::uint64_t seed) {
   kernel_->require_before_first_run("the seed was set");
-  TW_REQUIRE(kernel_->bodies.empty() || kernel_->options.seed == seed,
+  TW_REQUIRE(kernel_->scene.bodies.empty() || kernel_->options.seed == seed,
              "the seed was set after bodies were added; expected it before them");
   kernel_->options.seed = seed;
 }
@@ -70,11 +70,11 @@ void World::set_policy(const std::string& policy) {
 }
 
 BodyId World::add_body(const BodyDef& def) { return kernel_->add_body(def); }
-std::size_t World::body_count() const { return kernel_->bodies.size(); }
+std::size_t World::body_count() const { return kernel_->scene.bodies.size(); }
 
 const BodyInfo& World::body(BodyId id) const {
-  TW_REQUIRE(id < kernel_->bodies.size(), "body " + std::to_string(id) + " does not exist");
-  return kernel_->bodies[id]->info;
+  TW_REQUIRE(id < kernel_->scene.bodies.size(), "body " + std::to_string(id) + " does not exist");
+  return kernel_->scene.bodies[id]->info;
 }
 
 std::optional<BodyId> World::find_body(const std::string& name) const {
@@ -89,7 +89,7 @@ void World::set_contact(const ContactSide& a, const ContactSide& b,
 }
 
 ContactParameters World::contact_parameters(BodyId a, BodyId b) const {
-  return kernel_->contact_parameters(a, b);
+  return kernel_->scene.contacts.between(a, b);
 }
 
 std::uint64_t World::removals() const { return kernel_->removals(); }
@@ -123,11 +123,11 @@ bool World::step(double until) { return kernel_->step(until); }
 bool World::running() const { return kernel_->running; }
 
 BodyState World::state(BodyId id) const {
-  return body_state(*kernel_->bodies[id], kernel_->point_at(id, kernel_->time));
+  return body_state(*kernel_->scene.bodies[id], kernel_->point_at(id, kernel_->time));
 }
 
 double World::kinetic_energy(BodyId id) const {
-  return tw::kinetic_energy(*kernel_->bodies[id], kernel_->point_at(id, kernel_->time));
+  return tw::kinetic_energy(*kernel_->scene.bodies[id], kernel_->point_at(id, kernel_->time));
 }
 
 Vec3 World::applied_force(BodyId id) const { return kernel_->state_at(id, kernel_->time)->force; }

@@ -14,7 +14,9 @@
 #include "base/error.h"
 #include "dynamics/contact-parameters.h"
 #include "dynamics/motion.h"
+#include "dynamics/scene.h"
 #include "geometry/shape.h"
+#include "groups/contact-survey.h"
 #include "kernel/callback.h"
 #include "kernel/statistics.h"
 #include "timeline/key.h"
@@ -54,16 +56,13 @@ struct AdversaryOptions {
   bool some_bodies = true;
 };
 
-struct WorldOptions {
-  Vec3 gravity{0, 0, -9.81};
-  double accuracy = 1e-6;
+struct WorldOptions : SceneOptions {
   std::uint64_t seed = 0;
-  bool hash = false;              // accumulate the hash of the committed history
-  bool check = false;             // run every validator after every event
-  bool undo_redo = false;         // test mode: undo every discontinuity and redo it
-  long gvt_interval = 0;          // events between computations of GVT; 0: automatic
-  double window_cells = 0.7;      // claimed window, in cells of travel
-  double group_check_rate = 480;  // Hz, the finest
+  bool hash = false;          // accumulate the hash of the committed history
+  bool check = false;         // run every validator after every event
+  bool undo_redo = false;     // test mode: undo every discontinuity and redo it
+  long gvt_interval = 0;      // events between computations of GVT; 0: automatic
+  double window_cells = 0.7;  // claimed window, in cells of travel
   std::optional<AdversaryOptions> adversary;
 };
 
@@ -93,23 +92,6 @@ struct QueuedState {
   Key key;
   bool committed = false;
   BodyState state;
-};
-
-// A contact of a group at one instant.
-struct ContactReading {
-  BodyId body1 = 0, body2 = 0;   // body1 < body2
-  Vec3 point = Vec3::Zero();     // where the force acts, world, m
-  Vec3 normal = Vec3::UnitZ();   // unit, world, from body1 to body2
-  double gap = 0;                // m; negative: depth
-  double force = 0;              // N, on body2 along the normal, >= 0; 0: not in touch just now
-  Vec3 friction = Vec3::Zero();  // N, on body2, world
-  bool slipping = false;         // in touch, with the friction at its limit
-};
-
-struct ContactSurvey {
-  std::vector<ContactReading> contacts;  // by pair of bodies, then in the group's own order
-  std::size_t groups = 0;
-  std::size_t bodies_at_rest = 0;
 };
 
 class World {

@@ -7,7 +7,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "kernel/kernel.h"
+#include "detect/grid.h"
 
 #include "support/scene.h"
 #include "support/schedule.h"

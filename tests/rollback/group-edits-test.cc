@@ -132,10 +132,11 @@ TEST(GroupCallbacks, that_throw_a_member_up_end_in_a_fission) {
   });
   scene.world.advance(0.29);
   KernelTest kernel(scene.world);
-  ASSERT_EQ(kernel.tail(scene.boxes[2]).group->members, scene.boxes);
+  ASSERT_EQ(members_of(*kernel.tail(scene.boxes[2]).group), scene.boxes);
   scene.world.advance(0.4);
   EXPECT_FALSE(kernel.tail(scene.boxes[2]).group);
-  EXPECT_EQ(kernel.tail(scene.boxes[0]).group->members, (Members{scene.boxes[0], scene.boxes[1]}));
+  EXPECT_EQ(members_of(*kernel.tail(scene.boxes[0]).group),
+            (Members{scene.boxes[0], scene.boxes[1]}));
 }
 
 // Between runs.  `change` is made at 0.25 s, while the stack settles, and at 1.5 s, when it rests.

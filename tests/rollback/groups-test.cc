@@ -39,7 +39,7 @@ constexpr double figure_end = 2;
 std::vector<Members> residences(const KernelTest& kernel, BodyId id) {
   std::vector<Members> result;
   for (const State* s : kernel.states(id)) {
-    const Members now = s->group ? s->group->members : Members();
+    const Members now = s->group ? members_of(*s->group) : Members();
     if (result.empty() || result.back() != now) result.push_back(now);
   }
   return result;
@@ -99,13 +99,13 @@ TEST(Groups, figure_4_fusions_collisions_and_fissions_come_in_order) {
   for (const State* s : kernel.states(scene.c))
     if (s->key.kind == KeyKind::impact && !s->group && s->ring != s) {
       ++blows;
-      EXPECT_EQ(s->ring->group ? s->ring->group->members : Members(), pair);
+      EXPECT_EQ(s->ring->group ? members_of(*s->ring->group) : Members(), pair);
     }
   EXPECT_GE(blows, 1);
   // the fixed floor links nothing together
   for (const State* s : kernel.states(scene.far)) {
     if (s->group) {
-      EXPECT_EQ(s->group->members, Members{scene.far});
+      EXPECT_EQ(members_of(*s->group), Members{scene.far});
     }
   }
   EXPECT_EQ(scene.world.kernel().validate_residences(), "");
@@ -229,12 +229,12 @@ TEST(Groups, kinematic_platform_links_nothing_together) {
     const Group* l = kernel.tail(left).group.get();
     const Group* r = kernel.tail(right).group.get();
     if (l) {
-      EXPECT_EQ(l->members, Members{left});
+      EXPECT_EQ(members_of(*l), Members{left});
       seen[0] = true;
     }
     if (r) {
-      EXPECT_TRUE(r->members == Members{right} || r->members == (Members{right, on_top}));
-      seen[1] = seen[1] || r->members.size() == 2;
+      EXPECT_TRUE(members_of(*r) == Members{right} || members_of(*r) == (Members{right, on_top}));
+      seen[1] = seen[1] || members_of(*r).size() == 2;
     }
   }
   EXPECT_TRUE(seen[0] && seen[1]);
@@ -273,7 +273,7 @@ TEST(Groups, hard_impact_on_a_member_leaves_the_group_living) {
   for (const State* s = struck.ring; s != &struck; s = s->ring) {
     ++ring;
     ASSERT_TRUE(s->group);
-    EXPECT_EQ(s->group->members, (Members{lower, upper}));
+    EXPECT_EQ(members_of(*s->group), (Members{lower, upper}));
     EXPECT_EQ(s->group->key, struck.key);
   }
   EXPECT_EQ(ring, 3) << "the blow stands in the queues of ball and both members";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/impact-law.h"
+
 #include "timeline/arc.h"
 #include "timeline/successor.h"
 

@@ -1,0 +1,42 @@
+// What holds between two bodies: the rules that users set, looked up once for a class of pairs.
+//
+// Bodies that no rule names differ by their material alone: one class for each material, one for
+// each body that is named.  Few classes, so what is looked up for all pairs stays small.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "dynamics/body.h"
+#include "dynamics/contact-parameters.h"
+
+namespace tw {
+
+class ContactBook {
+ public:
+  // Errors: a value out of its range, with the keyword and the range.
+  void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
+  // A body has come into the world; numbers are dense, from 0.
+  void add_body(const Body& body);
+  // Of two bodies that have come into the world; stays valid until the next add.
+  const ContactParameters& between(BodyId a, BodyId b) const;
+  // Whether some pair may have been told not to collide.
+  bool may_disable() const { return may_disable_; }
+
+ private:
+  void classify();
+
+  ContactTable table_;
+  std::vector<ContactBody> bodies_;
+  std::vector<BodyId> classes_;  // of each body: the first body of its class
+  std::unordered_map<std::string, BodyId> class_of_material_;
+  bool may_disable_ = false;
+  // what was looked up: only this thread asks
+  mutable std::unordered_map<std::uint64_t, ContactParameters> known_;
+};
+
+}  // namespace tw

@@ -1,0 +1,45 @@
+// The scene: what a world is made of, and what stays as it is while a run goes on.
+//
+// Whoever decides how bodies move asks this, the states and nothing else: so a decision can be
+// tested without a world.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dynamics/body.h"
+#include "dynamics/contact-book.h"
+
+namespace tw {
+
+// What users set, as far as the motion depends on it.
+struct SceneOptions {
+  Vec3 gravity{0, 0, -9.81};      // m/s^2
+  double accuracy = 1e-6;         // relative
+  double group_check_rate = 480;  // Hz, the finest
+};
+
+struct Scene {
+  explicit Scene(const SceneOptions& settings) : options(settings) {}
+
+  std::vector<std::unique_ptr<Body>> bodies;  // by number
+  std::vector<BodyId> first_bodies;           // of each process, by number
+  ContactBook contacts;
+  const SceneOptions& options;
+
+  const Body& body(BodyId id) const { return *bodies[id]; }
+  ProcessId process_of(BodyId id) const { return bodies[id]->process; }
+  // The body of a process that has one.
+  const Body& body_of(ProcessId process) const { return *bodies[first_bodies[number(process)]]; }
+  // The magnitude of gravity, or the standard one where there is none: the scale of what is slow,
+  // m/s^2, > 0.
+  double gravity_scale() const;
+  // Whether the two may touch at all.
+  bool may_collide(const Body& a, const Body& b) const {
+    return !a.info.removed && !b.info.removed && contacts.between(a.id(), b.id()).collide;
+  }
+};
+
+}  // namespace tw

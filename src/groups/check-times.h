@@ -1,0 +1,24 @@
+// When group checks happen.
+//
+// At birth + k 2^j / rate, j such that no surface point moves more than a twentieth of its body's
+// size in between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do
+// not).
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "groups/regrouping.h"
+
+namespace tw {
+
+// From now to the next check of a group of these, s: on the grid of checks.
+double check_interval(const Regrouping& work, const std::vector<ProcessId>& members);
+
+// The first check after `now` of a group born at `birth`.
+double next_check_time(double birth, double now, double interval);
+
+// The key of a check at `when`, but for its id, which is that of the least member: just before
+// whatever else happens to the group then.
+Key group_check_key(const Group& group, double when);
+
+}  // namespace tw

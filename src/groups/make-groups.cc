@@ -1,0 +1,230 @@
+// Cutting a regrouping into groups.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/make-groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "groups/changes.h"
+#include "groups/check-times.h"
+#include "groups/components.h"
+#include "groups/rest.h"
+#include "groups/share-stiffness.h"
+#include "groups/tolerances.h"
+
+namespace tw {
+namespace {
+
+// At rest from here on.
+void stop(Successor& successor) {
+  successor.point.v = successor.point.w = successor.data.v = successor.data.L = Vec3::Zero();
+}
+
+void index_pairs(const Scene& scene, Group& group) {
+  const auto each_side = [&](auto&& visit) {
+    for (std::uint32_t i = 0; i < group.pairs.size(); ++i)
+      for (const BodyId id : {group.pairs[i].a(), group.pairs[i].b()})
+        if (const int member = group.member_of(scene.process_of(id)); member >= 0)
+          visit(static_cast<std::size_t>(member), i);
+  };
+  std::vector<std::uint32_t>& starts = group.pair_starts;
+  starts.assign(group.members.size() + 1, 0);
+  each_side([&](std::size_t member, std::uint32_t) { ++starts[member + 1]; });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  group.pairs_by_member.resize(starts.back());
+  std::vector<std::uint32_t> next = starts;
+  each_side(
+      [&](std::size_t member, std::uint32_t i) { group.pairs_by_member[next[member]++] = i; });
+}
+
+// The motion of a body that a group meets.
+MotionPtr outside_motion(const Regrouping& work, BodyId id) {
+  const Body& body = work.scene().body(id);
+  if (!body.dynamic()) return body.motion;
+  const Successor& successor = *work.successor_of(id);
+  // laid to rest by this discontinuity, or, seen from there, what goes on: it is not asked for long
+  if (work.changes(&successor)) return make_fixed_motion({successor.point.x, successor.point.q});
+  const Group& theirs = *successor.data.group;
+  if (theirs.at_rest) return make_fixed_motion({successor.data.x, successor.data.q});
+  // a copy of what the new group will see of it: a group that kept those at its border, and these
+  // theirs, would keep all there ever were
+  return theirs.arc->motion(static_cast<int>(successor.data.member), work.now(), theirs.next_check);
+}
+
+// Members of the arc, and the tolerances of its steps.
+void start_members(const Regrouping& work, const Group& group, GroupStart& start) {
+  double size = never, speed = 0;
+  for (const ProcessId member : group.members) {
+    const Successor& successor = *work.successor_of(member);
+    const Body& body = *successor.body;
+    const StateData& d = successor.data;
+    start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
+                             body.mass * d.acceleration, Vec3::Zero()});
+    size = std::min(size, body.least_width);
+    speed = std::max(speed, placed(successor).surface_speed());
+  }
+  const double accuracy = work.scene().options.accuracy, gravity = work.scene().gravity_scale();
+  const double closeness = group_closeness(accuracy, speed / std::sqrt(gravity * size));
+  start.position_tolerance = closeness * group_position_tolerance(accuracy, size);
+  start.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size, gravity);
+}
+
+// Members, outside bodies and contacts as the integrator wants them.
+void start_arc(Regrouping& work, Group& group) {
+  GroupStart start;
+  start.time = work.now();
+  start.end = group.next_check;
+  start.first_step = group.first_step;
+  start_members(work, group, start);
+
+  // >= 0: a member, else the complement of an outside body's number
+  const auto index_of = [&](BodyId id) {
+    if (const int member = group.member_of(work.scene().process_of(id)); member >= 0) return member;
+    const auto known = std::find(group.outside.begin(), group.outside.end(), id);
+    if (known != group.outside.end()) return ~static_cast<int>(known - group.outside.begin());
+    group.outside.push_back(id);
+    start.outside.push_back(outside_motion(work, id));
+    return ~static_cast<int>(group.outside.size() - 1);
+  };
+  for (ContactPair& pair : group.pairs) {
+    const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
+    const ContactConstants law = contact_scales(work.scene(), work.scene().body(pair.a()),
+                                                work.scene().body(pair.b()), group.masses)
+                                     .law;
+    each_contact(pair, [&](std::uint32_t c) {
+      NewContact& contact = work.contacts[c];
+      contact.contact.law = law;
+      contact.contact.a = index_of(contact.tag.reference);
+      contact.contact.b = index_of(contact.tag.other);
+      start.contacts.push_back(contact.contact);
+      group.tags.push_back(contact.tag);
+      group.gaps.push_back(contact.gap);
+      pair.has_borne_load = pair.has_borne_load || contact.gap < 0;
+    });
+    pair.first = first;
+  }
+  // also what is in contact without a point is looked at along the arc (end-test.h)
+  for (const ContactPair& pair : group.pairs)
+    for (const BodyId id : {pair.a(), pair.b()}) index_of(id);
+  group.arc = std::make_unique<GroupArc>(std::move(start));
+}
+
+// Its contact pairs, and until when those at its border know where they go, s.
+double take_pairs(const Regrouping& work, Group& group) {
+  const auto is_member = [&](BodyId id) { return group.contains(work.scene().process_of(id)); };
+  double border_end = never;
+  for (const ContactPair& pair : work.pairs) {
+    const bool has_a = is_member(pair.a());
+    if (!has_a && !is_member(pair.b())) continue;
+    group.pairs.push_back(pair);
+    const BodyId other = has_a ? pair.b() : pair.a();
+    if (!work.scene().body(other).dynamic() || is_member(other)) continue;
+    const Successor* successor = work.successor_of(other);
+    if (!successor) continue;
+    group.has_border = true;
+    if (!work.changes(successor))
+      border_end = std::min(border_end, successor->data.group->next_check);
+  }
+  index_pairs(work.scene(), group);
+  for (const ProcessId member : group.members)
+    group.masses.add(work.successor_of(member)->body->mass);
+  if (group.has_border) group.masses = work.masses;
+  return border_end;
+}
+
+// The group with these very members that was there before; null: there was none.
+const Group* same_before(const Regrouping& work, const Group& group) {
+  const auto same = std::find_if(work.old.begin(), work.old.end(),
+                                 [&](const auto& old) { return old->members == group.members; });
+  return same != work.old.end() ? same->get() : nullptr;
+}
+
+// Checks stay on the grid they are on, so that those of neighbours meet; the one that is due stays
+// due, unless this is it.
+void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
+  const double now = work.now();
+  group.birth = before ? before->birth : now;
+  if (!before && group.has_border)
+    for (const auto& old : work.old)
+      if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
+  const double interval = check_interval(work, group.members);
+  group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
+  if (before && !finds_contacts(work.cause) && before->next_check >= now)
+    group.next_check = std::min(group.next_check, before->next_check);
+}
+
+void lay_to_rest(const Regrouping& work, Group& group) {
+  group.at_rest = true;
+  group.next_check = never;
+  for (const ProcessId member : group.members) stop(*work.successor_of(member));
+}
+
+std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>& members) {
+  auto group = std::make_shared<Group>();
+  group->key = work.key();
+  group->members = members;
+  const double border_end = take_pairs(work, *group);
+  const Group* before = same_before(work, *group);
+  set_check_times(work, before, border_end, *group);
+
+  if (before && finds_contacts(work.cause)) {
+    group->first_step = before->arc->next_step();
+    if (comes_to_rest(work, *group, *before)) {
+      group->asleep = work.falls_asleep;
+      lay_to_rest(work, *group);
+    }
+  }
+  for (const ProcessId member : members) {
+    const std::size_t place = work.place_of(work.successor_of(member));
+    group->stillness.push_back(work.stillness[place]);
+    group->asleep = group->asleep || work.asleep[place];
+  }
+  if (group->asleep) lay_to_rest(work, *group);
+  start_arc(work, *group);
+  return group;
+}
+
+}  // namespace
+
+void make_groups(Regrouping& work) {
+  std::sort(work.pairs.begin(), work.pairs.end(),
+            [](const ContactPair& x, const ContactPair& y) { return x.id < y.id; });
+  share_stiffness(work);
+  note_stillness(work);
+
+  // who hangs together, and who touches anything at all
+  const std::size_t count = work.successors.size();
+  Components components(count);
+  std::vector<bool> held(count, false);
+  for (const ContactPair& pair : work.pairs) {
+    const Successor *a = work.successor_of(pair.a()), *b = work.successor_of(pair.b());
+    const bool moves_a = work.changes(a), moves_b = work.changes(b);
+    if (moves_a) held[work.place_of(a)] = true;
+    if (moves_b) held[work.place_of(b)] = true;
+    if (moves_a && moves_b && work.asleep[work.place_of(a)] == work.asleep[work.place_of(b)])
+      components.join(work.place_of(a), work.place_of(b));
+  }
+  count_fissions(work, held);
+
+  // one group a component, its members ascending
+  std::vector<std::vector<ProcessId>> members(count);
+  for (const auto& [process, i] : work.index())
+    if (held[i]) members[components.root(i)].push_back(process);
+  std::vector<std::shared_ptr<Group>> made(count);
+  for (std::size_t root = 0; root < count; ++root)
+    if (!members[root].empty()) work.made.push_back(made[root] = make_group(work, members[root]));
+
+  note_changes(work);
+  add_report(work);
+  for (std::size_t i = 0; i < count; ++i) {
+    Successor& successor = work.successors[i];
+    if (!work.changes(&successor)) continue;
+    const std::shared_ptr<Group>& group = made[components.root(i)];
+    const int member = held[i] ? group->member_of(successor.process()) : 0;
+    successor.data.group = group;
+    successor.data.member = static_cast<std::uint32_t>(member);
+  }
+}
+
+}  // namespace tw

@@ -1,0 +1,158 @@
+// Regrouping.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/regroup.h"
+
+#include <algorithm>
+
+#include "groups/check-times.h"
+#include "groups/contact-graph.h"
+#include "groups/make-groups.h"
+#include "groups/propagation.h"
+#include "groups/rest.h"
+
+namespace tw {
+namespace {
+
+// Arcs that were integrated to no end.
+void count_discarded(const Regrouping& work, GroupCounters& counters) {
+  for (const auto& group : work.made) {
+    if (group->at_rest) continue;
+    const GroupCounts& counts = group->arc->counts();
+    counters.integrations += counts.steps;
+    counters.implicit_steps += counts.steps;
+    counters.rejected_steps += counts.rejected;
+    counters.factorizations += counts.factorizations;
+    counters.force_evaluations += counts.evaluations;
+    counters.integration_length += static_cast<double>(group->members.size()) *
+                                   (group->arc->reached() - group->arc->start().time);
+  }
+}
+
+void count_made(const Regrouping& work, GroupCounters& counters) {
+  for (const auto& group : work.made) {
+    ++counters.groups;
+    counters.largest_group_bodies =
+        std::max<std::uint64_t>(counters.largest_group_bodies, group->members.size());
+    counters.largest_group_contacts =
+        std::max<std::uint64_t>(counters.largest_group_contacts, group->tags.size());
+  }
+}
+
+// The successors of a region: those given as they are, but with new arcs for all inside; then the
+// others.
+std::vector<Successor> successors_of(const Region& region, const Before& before,
+                                     const std::vector<Successor>& given) {
+  std::vector<Successor> all = given;
+  all.reserve(given.size() + region.inside.size() + region.border.size());
+  const auto known = [&](ProcessId process) {
+    for (Successor& successor : all)
+      if (successor.process() == process) return &successor;
+    return static_cast<Successor*>(nullptr);
+  };
+  const auto add_record = [&](ProcessId process, Role role) {
+    all.push_back(make_successor(before, process, false));
+    all.back().data.changed = false;
+    all.back().role = role;
+  };
+  for (const ProcessId process : region.inside) {
+    Successor* successor = known(process);
+    if (!successor)
+      all.push_back(make_successor(before, process, true));
+    else if (!successor->starts_arc())
+      start_new_arc(*successor, before.key());
+  }
+  for (const ProcessId process : region.border)
+    if (!known(process)) add_record(process, Role::border);
+  for (const ProcessId process : region.depends_on)
+    if (!holds(region.border, process) && !known(process)) add_record(process, Role::dependence);
+  return all;
+}
+
+// The contacts that hold from here on.
+void find_contacts(Regrouping& work, const std::vector<ProcessId>& struck) {
+  collect_old(work);
+  if (finds_contacts(work.cause))
+    refresh(work, struck, check_interval(work, struck));
+  else
+    for (const PairBefore& old : work.pairs_before) carry(work, old);
+  if (work.cause == Cause::fusion) fuse(work, check_interval(work, struck));
+}
+
+bool all_known(const Region& region, const Known& known) {
+  for (const std::vector<ProcessId>* part : {&region.inside, &region.border, &region.depends_on})
+    if (!std::all_of(part->begin(), part->end(), known)) return false;
+  return true;
+}
+
+}  // namespace
+
+bool touches_groups(const std::vector<Successor>& successors) {
+  return std::any_of(successors.begin(), successors.end(), [](const Successor& successor) {
+    return successor.starts_arc() && successor.data.group;
+  });
+}
+
+Successor make_successor(const Before& before, ProcessId process, bool new_arc) {
+  const State& state = before.state(process);
+  Successor successor;
+  successor.body = &before.scene().body_of(process);
+  successor.point = evaluate(*successor.body, state, before.key().time);
+  successor.data = state;
+  successor.data.changed = true;
+  successor.data.next_callback = never;
+  successor.data.report.reset();
+  successor.data.tally = {};
+  successor.data.error = nullptr;
+  const bool keeps_states = successor.body->dynamic() || successor.data.slots;
+  successor.role = keeps_states ? Role::record : Role::no_state;
+  if (new_arc) start_new_arc(successor, before.key());
+  return successor;
+}
+
+std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings& surroundings,
+                                       const Known& known, const RegroupRequest& request,
+                                       const std::vector<Successor>& given,
+                                       GroupCounters& counters) {
+  std::vector<ProcessId> struck;
+  for (const Successor& successor : given)
+    if (successor.starts_arc()) insert(struck, successor.process());
+
+  // the work list: the region grows until nobody beyond it would notice
+  Region region = region_of(before, struck, request.cause == Cause::edit);
+  for (;;) {
+    if (!all_known(region, known)) return Waits{region};
+    std::vector<Successor> successors = successors_of(region, before, given);
+    Regrouping work(before, surroundings, request.cause, successors);
+    work.reports_fissions = request.reports_fissions;
+    work.falls_asleep = !region.depends_on.empty();
+    find_contacts(work, struck);
+
+    // impulses that reach the border come first: then nothing is as it should be
+    std::vector<ProcessId> more;
+    if (passes_impulses(request.cause)) more = propagate_impulses(work);
+    if (more.empty()) {
+      make_groups(work);
+      more = who_notices(work);
+      const std::vector<ProcessId> sleepers = wakes_with(work);
+      std::vector<ProcessId> in_motion;
+      if (more.empty() && disturbed(work, sleepers, in_motion)) {
+        // what would come to rest with them falls asleep instead: once more, the same region
+        count_discarded(work, counters);
+        counters.manifolds += work.counters.manifolds;
+        region.depends_on = sleepers;
+        region.depends_on.insert(region.depends_on.end(), in_motion.begin(), in_motion.end());
+        continue;
+      }
+      more.insert(more.end(), sleepers.begin(), sleepers.end());
+    }
+    counters.manifolds += work.counters.manifolds;
+    if (more.empty()) {
+      count_made(work, counters);
+      return Regrouped{std::move(successors)};
+    }
+    count_discarded(work, counters);
+    widen(region, before, more);
+  }
+}
+
+}  // namespace tw

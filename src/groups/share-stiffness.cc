@@ -1,0 +1,75 @@
+// How the contacts of a pair share its stiffness.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/share-stiffness.h"
+
+#include <algorithm>
+
+namespace tw {
+namespace {
+
+// Contacts of one body with several fixed ones share one stiffness where their normals agree to
+// this, rad.
+constexpr double coplanar = 1e-3;
+// Where a corner crosses the edge between two faces that meet at a small angle, both hold it for a
+// moment: as far as they are at one place (share of the size) with one normal (cosine), they hold
+// it together.
+constexpr double same_place = 1e-2, same_normal = 0.95;
+
+// How much of a point counts: all of it to the depth that one weight makes, less and less to twice
+// that above the surface.  Nothing jumps where a point comes near.
+double participation(const NewContact& c) {
+  return std::clamp(2 - c.gap / c.contact.law.depth, 0.0, 1.0);
+}
+
+// Of the contacts of one dynamic body with the ground.
+void share_ground(const std::vector<NewContact*>& points, const Body& body) {
+  const double radius = same_place * body.least_width;
+  // seen from the ground all normals point the same way
+  const auto cosine = [&](const NewContact& x, const NewContact& y) {
+    const double sign = (x.tag.reference == body.id()) == (y.tag.reference == body.id()) ? 1 : -1;
+    return sign * x.normal.dot(y.normal);
+  };
+  std::vector<double> here(points.size(), 1);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (i == j || !(cosine(*points[i], *points[j]) > same_normal)) continue;
+      const double distance = (points[i]->point - points[j]->point).norm();
+      here[i] += participation(*points[j]) * std::max(0.0, 1 - distance / radius);
+    }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double places = 0;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (i == j || cosine(*points[i], *points[j]) > 1 - 0.5 * coplanar * coplanar)
+        places += participation(*points[j]) / here[j];
+    points[i]->contact.share = 1 / std::max(1.0, places * here[i]);
+  }
+}
+
+}  // namespace
+
+void share_stiffness(Regrouping& work) {
+  const Scene& scene = work.scene();
+  std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
+  for (const ContactPair& pair : work.pairs) {
+    const bool a_moves = scene.body(pair.a()).dynamic(), b_moves = scene.body(pair.b()).dynamic();
+    double count = 0;
+    each_contact(pair, [&](std::uint32_t c) {
+      if (!(a_moves && b_moves)) on_ground.push_back({a_moves ? pair.a() : pair.b(), c});
+      count += participation(work.contacts[c]);
+    });
+    if (a_moves && b_moves)
+      each_contact(pair, [&](std::uint32_t c) {
+        work.contacts[c].contact.share = 1 / std::max(1.0, count);
+      });
+  }
+
+  std::sort(on_ground.begin(), on_ground.end());
+  for (std::size_t i = 0, j = 0; i < on_ground.size(); i = j) {
+    for (j = i; j < on_ground.size() && on_ground[j].first == on_ground[i].first;) ++j;
+    std::vector<NewContact*> points;
+    for (std::size_t k = i; k < j; ++k) points.push_back(&work.contacts[on_ground[k].second]);
+    share_ground(points, scene.body(on_ground[i].first));
+  }
+}
+
+}  // namespace tw

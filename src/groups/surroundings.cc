@@ -1,0 +1,32 @@
+// Who is near a body.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/surroundings.h"
+
+#include <algorithm>
+
+namespace tw {
+
+std::vector<BodyId> Surroundings::ground_around(const Body& moving) const {
+  std::vector<BodyId> ground;
+  if (moving.unbounded) return ground;
+  grid_.standing_around(moving.id(), [&](BodyId id) {
+    if (scene_.may_collide(moving, scene_.body(id))) ground.push_back(id);
+  });
+  std::sort(ground.begin(), ground.end());
+  return ground;
+}
+
+std::vector<SeamNeighbour> Surroundings::seam_neighbours(const Body& body,
+                                                         const std::vector<BodyId>& ground) const {
+  std::vector<SeamNeighbour> result;
+  if (!body.fixed()) return result;
+  for (const BodyId id : ground) {
+    if (id == body.id()) continue;
+    const Frame frame(scene_.body(id).motion->pose(0));
+    for (const ConvexPart& part : scene_.body(id).shape_P->parts())
+      result.push_back({&part, frame});
+  }
+  return result;
+}
+
+}  // namespace tw

@@ -1,0 +1,37 @@
+// Who is near a body: candidates for contacts, and the ground that buries edges of its neighbours.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "collision/broad-phase.h"
+#include "collision/manifold.h"
+#include "dynamics/scene.h"
+
+namespace tw {
+
+class Surroundings {
+ public:
+  Surroundings(const Scene& scene, const BroadPhase& grid, const std::vector<BodyId>& unbounded)
+      : scene_(scene), grid_(grid), unbounded_(unbounded) {}
+
+  // All bodies whose boxes overlap that of a bounded body, and those that no box holds; in no
+  // order.
+  template <class Visit>
+  void visit_near(BodyId body, Visit&& visit) const {
+    grid_.overlapping(body, visit);
+    for (const BodyId other : unbounded_) visit(other);
+  }
+  // The fixed bodies near a moving one that it may touch, ascending: they bury each other's edges.
+  std::vector<BodyId> ground_around(const Body& moving) const;
+  // The parts of those of them that stand beside a fixed body; of a body that moves there are none.
+  std::vector<SeamNeighbour> seam_neighbours(const Body& body,
+                                             const std::vector<BodyId>& ground) const;
+
+ private:
+  const Scene& scene_;
+  const BroadPhase& grid_;
+  const std::vector<BodyId>& unbounded_;
+};
+
+}  // namespace tw
