@@ -11,13 +11,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "collision/separation.h"
-#include "dynamics/body.h"
+#include "detect/certificate.h"
+#include "detect/clearance.h"
 #include "timeline/event-queue.h"
 #include "timeline/key.h"
-#include "timeline/state.h"
 
 namespace tw {
 
@@ -32,27 +30,13 @@ struct Pair {
   Key impact;
   bool parked = false;  // one of the processes has stopped
   EventQueue::Handle event = EventQueue::none;
-  double head_start = 0;             // adversary scheduler
-  bool live = false;                 // the record is in use
-  std::vector<SimplexCache> caches;  // per pair of parts, where polyhedra are concerned
+  double head_start = 0;  // adversary scheduler
+  bool live = false;      // the record is in use
+  SimplexCaches caches;   // per pair of parts, where polyhedra are concerned
 
-  // known to be at least this far apart from `clear_from` to `clear_at`, m and s: decides only
-  // whether to look, never the answer
-  double clearance = 0, clear_from = 0, clear_at = -never;
+  Clearance clearance;
 
   double safe_time() const { return pending ? impact.time : from.time; }
-};
-
-// A stretch over which both arcs stand: [start, end) in keys.
-struct Piece {
-  const State* a = nullptr;
-  const State* b = nullptr;
-  const Body* body_a = nullptr;
-  const Body* body_b = nullptr;
-  Key start;  // the later of the two arcs' starts: the common start
-  Key end;    // the earlier of the next arcs' starts, or of the arcs' natural ends
-  bool ends_naturally = false;  // what follows is not known yet
-  double start_time() const { return start.time; }
 };
 
 }  // namespace tw

@@ -1,30 +1,13 @@
-// Certificates: until when two scene.bodies are surely apart.
-//
-// For each pair of convex parts a plane is put midway between them, across the witness direction n,
-// and moves with the mean of the witness points' velocity and the bodies' acceleration along n.  As
-// long as every point of a part's core stays on its side, the parts are apart.  A core point r of a
-// body in free flight has the height along n
-//   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
-// with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
-// torque-free rotation.  So the time until the plane may be reached is the least root of
-// quadratics: close to the true impact time, and never after it.  Kinematic scene.bodies are
-// bounded by their speed, over a horizon.  Members of groups are bounded by the derivatives of
-// their dense output, over one step.
-//
-// With an allowance the plane gives way by half of it to either side: scene.bodies that slide past
-// each other at touch are then apart for as long as they do.
-//
-// The certificate decides only where the next query is made, never the answer: warm simplices are
-// allowed here.
-//
+// Certificates: until when two bodies are surely apart.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "detect/certificate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"
-#include "kernel/kernel.h"
 
 namespace tw {
 namespace {
@@ -132,9 +115,8 @@ double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBod
 
 }  // namespace
 
-double Kernel::certificate(Pair& pair, const Piece& piece, double when, double allowance) {
-  const MovingBody a(*scene.bodies[pair.a], *piece.a, when),
-      b(*scene.bodies[pair.b], *piece.b, when);
+double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
+  const MovingBody a(*piece.body_a, *piece.a, when), b(*piece.body_b, *piece.b, when);
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
   double least = never;
@@ -179,8 +161,8 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
         }
       }
 
-      if (pair.caches.empty()) pair.caches.resize(parts_a.size() * parts_b.size());
-      SimplexCache& cache = pair.caches[i * parts_b.size() + j];
+      if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
+      SimplexCache& cache = caches[i * parts_b.size() + j];
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
       if (!(s.distance > -allowance)) return -never;
       double apart = longest([&](const MovingBody& x, const MovingBody& y) {
@@ -193,7 +175,6 @@ double Kernel::certificate(Pair& pair, const Piece& piece, double when, double a
                          }));
       least = std::min(least, apart);
     }
-  ++counters.certificates;
   return when + least;
 }
 

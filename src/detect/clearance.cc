@@ -1,14 +1,10 @@
-// Clearance: whether a pair is surely apart for a whole window, by how far it is apart and how far
-// its scene.bodies can come towards each other.
-//
-// In a heap most neighbours never touch and hardly move: a distance once measured, less what both
-// have travelled since, keeps answering for many windows without another query.  What is remembered
-// decides only whether to look, never the answer.
-//
+// Clearance: whether a pair is surely apart for a whole window.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "detect/clearance.h"
+
 #include <algorithm>
 
-#include "kernel/kernel.h"
+#include "timeline/arc.h"
 
 namespace tw {
 namespace {
@@ -67,35 +63,33 @@ struct RelativeTravel {
 
 }  // namespace
 
-bool Kernel::apart_throughout(Pair& pair, const Piece& piece, double to) {
-  const Body& a = *scene.bodies[pair.a];
-  const Body& b = *scene.bodies[pair.b];
+bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& caches, double from,
+                      double to) {
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
   if (a.unbounded || b.unbounded) return false;
-  const double from = pair.from.time;
   const Travel ta = travel_of(a, *piece.a, from, to), tb = travel_of(b, *piece.b, from, to);
   const RelativeTravel travel(ta, tb);
 
   // remembered, or by the bounding balls, or by a query: what is left of it at the end
-  const bool remembered = pair.clear_from <= from && from <= pair.clear_at;
+  const bool remembered = known.from <= from && from <= known.until;
   const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
-  double left = std::max(remembered ? pair.clearance : 0, balls) - travel.most();
+  double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
   if (!(left > 0)) {
     const Frame fa = frame_at(a, *piece.a, from), fb = frame_at(b, *piece.b, from);
     const auto& parts_a = a.shape_P->parts();
     const auto& parts_b = b.shape_P->parts();
-    if (pair.caches.empty()) pair.caches.resize(parts_a.size() * parts_b.size());
+    if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
     left = never;
     for (std::size_t i = 0; i < parts_a.size() && left > 0; ++i)
       for (std::size_t j = 0; j < parts_b.size() && left > 0; ++j) {
         const Separation s =
-            part_separation(parts_a[i], fa, parts_b[j], fb, &pair.caches[i * parts_b.size() + j]);
+            part_separation(parts_a[i], fa, parts_b[j], fb, &caches[i * parts_b.size() + j]);
         left = std::min(left, s.distance - travel.against(s.normal));
       }
   }
   if (!(left > 0)) return false;
-  pair.clearance = left;
-  pair.clear_from = from;
-  pair.clear_at = to;
+  known = {left, from, to};
   return true;
 }
 

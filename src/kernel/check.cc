@@ -17,7 +17,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/impact-time.h"
+#include "detect/approach.h"
+#include "detect/exact-impact.h"
 #include "detect/grid.h"
 #include "kernel/kernel.h"
 #include "math/root.h"
@@ -28,9 +29,6 @@ namespace {
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a
 // distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
 constexpr double depth_slack = 1e-12;
-
-// An approach slower than this share of the speeds involved is rounding left by an impact before.
-constexpr double speed_noise = 1e-13;
 
 double grid_floor(double t) { return std::floor(t / check_grid) * check_grid; }
 double grid_ceil(double t) { return std::ceil(t / check_grid) * check_grid; }
@@ -46,27 +44,6 @@ bool moves_in_group(const State& state) {
 }
 
 Key key_or_last(const State* state) { return state ? state->key : last_key; }
-
-// A bound on how fast any point of the body moves, m/s.
-double point_speed(const Body& body, const PoseTwist& p) {
-  const double turn = p.w.norm();
-  return p.v.norm() + (turn > 0 ? turn * body.radius : 0);
-}
-
-Vec3 velocity_at(const Body& body, const State& arc, double when) {
-  if (!body.dynamic()) return Vec3::Zero();
-  return arc.v + (when - arc.arc_time) * arc.acceleration;
-}
-
-// Seconds from `start` to the first impact of a ball on a fixed plane.
-double ball_meets_plane(const Body& ball, const State& arc, const Body& plane, double start) {
-  const Vec3& n = plane.plane_normal;
-  const Vec3 v = velocity_at(ball, arc, start);
-  double speed = n.dot(v);
-  if (std::abs(speed) <= speed_noise * v.norm()) speed = 0;
-  const double gap = n.dot(center_at(ball, arc, start)) - plane.plane_offset - ball.sphere_radius;
-  return sphere_plane_impact(gap, speed, n.dot(arc.acceleration));
-}
 
 }  // namespace
 
@@ -142,7 +119,7 @@ void Kernel::set_pending(std::uint32_t index, const Key& key) {
 void Kernel::reset_pair(std::uint32_t index, const Key& key) {
   Pair& pair = pairs[index];
   if (pair.pending && pair.impact < key) return;
-  pair.clear_at = key.time < pair.clear_from ? -never : std::min(pair.clear_at, key.time);
+  pair.clearance.forget_from(key.time);
   if (pair.pending || key < pair.from || pair.parked) {
     pair.from = pair.pending ? key : std::min(pair.from, key);
     pair.started = false;
@@ -222,61 +199,7 @@ Key Kernel::impact_key(const Piece& piece, double impact_time) const {
           pair_id(piece.body_a->id(), piece.body_b->id())};
 }
 
-// How fast the nearest points close, m/s; 0 where that is rounding.
-double Kernel::closing_at(const Piece& piece, double when, const Separation& s) const {
-  const Body& a = *piece.body_a;
-  const Body& b = *piece.body_b;
-  const PoseTwist pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
-  const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
-  const double closing = -(ub - ua).dot(s.normal);
-  return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
-}
-
-bool Kernel::approaching_at(const Piece& piece, double when) const {
-  return closing_at(piece, when, separation_at(piece, when)) > 0;
-}
-
-// Whether the free accelerations press the two together; what a group or the ground carries has
-// none.
-bool Kernel::pressed_at(const Piece& piece, const Vec3& normal) const {
-  const auto pull = [&](const State& s) {
-    return body_of(s.process).dynamic() && !s.group ? s.acceleration : Vec3(Vec3::Zero());
-  };
-  return (pull(*piece.b) - pull(*piece.a)).dot(normal) < 0;
-}
-
-Separation Kernel::separation_at(const Piece& piece, double when) const {
-  const Body& a = *piece.body_a;
-  const Body& b = *piece.body_b;
-  return separation(*a.shape_P, frame_at(a, *piece.a, when), *b.shape_P,
-                    frame_at(b, *piece.b, when));
-}
-
 // ---- exact pairs ----
-
-bool Kernel::predicted_exactly(const Piece& piece, const Body& a, const Body& b) const {
-  if (piece.a->group || piece.b->group) return false;
-  if (a.sphere_radius >= 0 && b.sphere_radius >= 0) {
-    if (a.info.kind == BodyKind::kinematic || b.info.kind == BodyKind::kinematic) return false;
-    return piece.a->acceleration == piece.b->acceleration;
-  }
-  return (a.sphere_radius >= 0 && b.is_fixed_plane) || (b.sphere_radius >= 0 && a.is_fixed_plane);
-}
-
-// Time of the first impact on the piece's arcs as if uncut; `never` if there is none.
-double Kernel::exact_impact(const Piece& piece, const Body& a, const Body& b) const {
-  const double start = piece.start_time();
-  if (a.is_fixed_plane) return start + ball_meets_plane(b, *piece.b, a, start);
-  if (b.is_fixed_plane) return start + ball_meets_plane(a, *piece.a, b, start);
-
-  const Vec3 va = velocity_at(a, *piece.a, start), vb = velocity_at(b, *piece.b, start);
-  const Vec3 r = center_at(b, *piece.b, start) - center_at(a, *piece.a, start), u = vb - va;
-  if (r.dot(u) >= 0) return never;
-  // what an impact left behind is no approach
-  const double noise = speed_noise * (va.norm() + vb.norm());
-  if (r.dot(u) > -noise * r.norm()) return never;
-  return start + sphere_sphere_impact(r, u, a.sphere_radius + b.sphere_radius);
-}
 
 // Follows the pieces from `from` as long as they are exact.
 std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, const Key& from,
@@ -285,9 +208,9 @@ std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, cons
   const Body& second = a.id() < b.id() ? b : a;
   for (Key at = from;;) {
     const Piece piece = piece_at(first.id(), second.id(), at);
-    all_exact = !piece.a->error && !piece.b->error && predicted_exactly(piece, first, second);
+    all_exact = !piece.a->error && !piece.b->error && predicted_exactly(piece);
     if (!all_exact) return std::nullopt;
-    const double impact_time = exact_impact(piece, first, second);
+    const double impact_time = exact_impact(piece);
     if (impact_time < never) {
       const Key key = impact_key(piece, impact_time);
       if (key < piece.end) return key;
@@ -300,7 +223,7 @@ std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, cons
 bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
   Pair& pair = pairs[index];
   ++counters.predictions;
-  const double impact_time = exact_impact(piece, *scene.bodies[pair.a], *scene.bodies[pair.b]);
+  const double impact_time = exact_impact(piece);
   if (impact_time < never) {
     const Key key = impact_key(piece, impact_time);
     if (key < piece.end) {
@@ -324,7 +247,8 @@ bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
 bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
   const double start = piece.start_time();
   ++counters.checks;
-  const double clear = certificate(pair, piece, start, 0);
+  const double clear = certificate(piece, pair.caches, start, 0);
+  counters.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
   const Separation s = separation_at(piece, start);
@@ -341,7 +265,8 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   const Body& b = *scene.bodies[pair.b];
   const double slack = depth_slack * std::min(a.least_width, b.least_width);
   ++counters.checks;
-  const double clear = certificate(pair, piece, when, slack);
+  const double clear = certificate(piece, pair.caches, when, slack);
+  counters.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + check_grid);
   if (clear > when) return false;
 
@@ -440,7 +365,7 @@ void Kernel::pursue(std::uint32_t index) {
         return;
       }
       const double to = std::min(until, piece.end.time);
-      if (apart_throughout(pair, piece, to)) {
+      if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to)) {
         if (to == piece.end.time) {
           if (!next_piece(pair, piece)) return;
           continue;
@@ -451,7 +376,7 @@ void Kernel::pursue(std::uint32_t index) {
         return;
       }
     }
-    const bool exact = predicted_exactly(piece, *scene.bodies[pair.a], *scene.bodies[pair.b]);
+    const bool exact = predicted_exactly(piece);
     if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, until)) return;
   }
 }

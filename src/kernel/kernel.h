@@ -30,6 +30,7 @@
 #include "collision/broad-phase.h"
 #include "collision/manifold.h"
 #include "detect/active-pair.h"
+#include "detect/piece.h"
 #include "dynamics/body.h"
 #include "groups/regroup.h"
 #include "groups/surroundings.h"
@@ -201,8 +202,6 @@ class Kernel {
   std::uint32_t make_pair(Body& a, Body& b, const Key& from);
   void drop_pair(std::uint32_t index);
   Piece piece_at(BodyId a, BodyId b, const Key& from) const;
-  bool predicted_exactly(const Piece& piece, const Body& a, const Body& b) const;
-  double exact_impact(const Piece& piece, const Body& a, const Body& b) const;
   Key impact_key(const Piece& piece, double impact_time) const;
   std::optional<Key> first_exact_impact(const Body& a, const Body& b, const Key& from,
                                         bool& all_exact) const;
@@ -219,19 +218,6 @@ class Kernel {
   bool in_contact(const Piece& piece) const;
   bool in_contact_from(BodyId a, BodyId b, const Key& from) const;
   bool next_piece(Pair& pair, const Piece& piece);
-  Separation separation_at(const Piece& piece, double when) const;
-  double closing_at(const Piece& piece, double when, const Separation& s) const;
-  bool approaching_at(const Piece& piece, double when) const;
-  bool pressed_at(const Piece& piece, const Vec3& normal) const;
-
-  // ---- certificate.cc ----
-  // Until when the pair is surely apart on the piece's arcs; -infinity: perhaps not at `when`.
-  // Overlaps up to `allowance` (m) count as apart.
-  double certificate(Pair& pair, const Piece& piece, double when, double allowance);
-
-  // ---- clearance.cc ----
-  // Whether the pair is surely apart from its safe time to `to`; cheaper than a certificate.
-  bool apart_throughout(Pair& pair, const Piece& piece, double to);
 
   // ---- impact.cc ----
   Progress process_impact(std::uint32_t index);

@@ -1,0 +1,47 @@
+// How the two bodies of a piece stand to each other at one instant.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "detect/approach.h"
+
+#include <cmath>
+
+#include "timeline/arc.h"
+
+namespace tw {
+namespace {
+
+// A bound on how fast any point of the body moves, m/s.
+double point_speed(const Body& body, const PoseTwist& p) {
+  const double turn = p.w.norm();
+  return p.v.norm() + (turn > 0 ? turn * body.radius : 0);
+}
+
+}  // namespace
+
+Separation separation_at(const Piece& piece, double when) {
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
+  return separation(*a.shape_P, frame_at(a, *piece.a, when), *b.shape_P,
+                    frame_at(b, *piece.b, when));
+}
+
+double closing_at(const Piece& piece, double when, const Separation& s) {
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
+  const PoseTwist pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
+  const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
+  const double closing = -(ub - ua).dot(s.normal);
+  return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
+}
+
+bool approaching_at(const Piece& piece, double when) {
+  return closing_at(piece, when, separation_at(piece, when)) > 0;
+}
+
+bool pressed_at(const Piece& piece, const Vec3& normal) {
+  const auto pull = [](const Body& body, const State& arc) {
+    return body.dynamic() && !arc.group ? arc.acceleration : Vec3(Vec3::Zero());
+  };
+  return (pull(*piece.body_b, *piece.b) - pull(*piece.body_a, *piece.a)).dot(normal) < 0;
+}
+
+}  // namespace tw

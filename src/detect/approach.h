@@ -1,0 +1,23 @@
+// How the two bodies of a piece stand to each other at one instant: apart, closing, pressed.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "collision/separation.h"
+#include "detect/piece.h"
+
+namespace tw {
+
+// An approach slower than this share of the speeds involved is rounding left by an impact before.
+inline constexpr double speed_noise = 1e-13;
+
+// The signed distance at `when`, by a cold query: a function of the piece and the time alone.
+Separation separation_at(const Piece& piece, double when);
+// How fast the nearest points of `s` close at `when`, m/s; 0 where that is rounding.
+double closing_at(const Piece& piece, double when, const Separation& s);
+// Whether they close at all.
+bool approaching_at(const Piece& piece, double when);
+// Whether the free accelerations press the two together, `normal` from a to b; what a group or the
+// ground carries has none.
+bool pressed_at(const Piece& piece, const Vec3& normal);
+
+}  // namespace tw

@@ -1,0 +1,37 @@
+// Certificates: until when two bodies are surely apart.
+//
+// For each pair of convex parts a plane is put midway between them, across the witness direction n,
+// and moves with the mean of the witness points' velocity and the bodies' acceleration along n.  As
+// long as every point of a part's core stays on its side, the parts are apart.  A core point r of a
+// body in free flight has the height along n
+//   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
+// with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
+// torque-free rotation.  So the time until the plane may be reached is the least root of
+// quadratics: close to the true impact time, and never after it.  Kinematic bodies are bounded by
+// their speed, over a horizon.  Members of groups are bounded by the derivatives of their dense
+// output, over one step.
+//
+// With an allowance the plane gives way by half of it to either side: bodies that slide past each
+// other at touch are then apart for as long as they do.
+//
+// The certificate decides only where the next query is made, never the answer: warm simplices are
+// allowed here.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "collision/separation.h"
+#include "detect/piece.h"
+
+namespace tw {
+
+// Warm starts of the distance queries, one for each pair of parts; empty: none yet.
+using SimplexCaches = std::vector<SimplexCache>;
+
+// Until when the two are surely apart on the piece's arcs, as seen at `when`, s; -infinity: perhaps
+// not at `when`.  Overlaps up to `allowance` (m) count as apart.
+double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance);
+
+}  // namespace tw
