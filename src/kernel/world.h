@@ -56,7 +56,8 @@ struct AdversaryOptions {
   bool some_bodies = true;
 };
 
-struct WorldOptions : SceneOptions {
+// How a world is run: the answer depends on the seed alone.
+struct WorldOptions {
   std::uint64_t seed = 0;
   bool hash = false;          // accumulate the hash of the committed history
   bool check = false;         // run every validator after every event
@@ -103,6 +104,7 @@ class World {
 
   // ---- settings; most only before the first run ----
   const WorldOptions& options() const;
+  const Vec3& gravity() const;            // m/s^2, at time()
   void set_gravity(const Vec3& gravity);  // from now on
   void set_accuracy(double accuracy);     // before the first run
   void set_seed(std::uint64_t seed);      // before the first run
