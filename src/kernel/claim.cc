@@ -64,7 +64,9 @@ void Kernel::make_ready(Body& body, const Key& key) {
 double Kernel::window_end(const Body& body) const {
   const State& tail = *graph.tail(body.process);
   const double start = process(body).claim.time;
-  if (tail.group) return natural_end(tail);
+  const double limit = policy->may_reach(queue, process(body));
+  const double least = std::nextafter(start, never);
+  if (tail.group) return std::max(std::min(natural_end(tail), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process(body).lonely_claims - patience));
@@ -84,7 +86,7 @@ double Kernel::window_end(const Body& body) const {
     const double next = callbacks[number].next.time;
     if (next > start) end = std::min(end, next);
   }
-  return std::max(end, std::nextafter(start, never));
+  return std::max(std::min(end, limit), least);
 }
 
 Aabb Kernel::claimed_box(const Body& body, double end) const {

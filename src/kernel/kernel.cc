@@ -49,7 +49,8 @@ Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, 
   return {priority, key, kind, subject};
 }
 
-void Kernel::handle(Event event) {
+void Kernel::process_next() {
+  const Event event = policy->next(queue);
   Progress progress = Progress::done;
   switch (event.kind) {
     case EventKind::advance: claim_window(*scene.bodies[event.subject]); break;
@@ -99,7 +100,7 @@ RunStatus Kernel::advance(double until, double slice) {
   if (!deliver(slice_end_)) return RunStatus::slice_over;
   long events = 0;
   while (!finished()) {
-    policy->go_forward(*this);
+    process_next();
     if (gvt_is_due()) update_gvt();
     if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end_)
       return RunStatus::slice_over;
@@ -121,7 +122,7 @@ bool Kernel::step(double until) {
   until_ = until;
   begin_run();
   if (finished()) return false;
-  policy->go_forward(*this);
+  process_next();
   update_gvt();
   deliver(never);
   return true;

@@ -103,7 +103,7 @@ class Kernel {
   // ---- kernel.cc ----
   RunStatus advance(double until, double slice);
   bool step(double until);
-  void handle(Event event);  // for policies
+  void process_next();  // the event that the policy chooses
 
   // ---- reading ----
   PoseTwist point_at(BodyId id, double when) const;

@@ -83,6 +83,13 @@ void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& success
   for (const Successor& successor : successors)
     if (successor.enters())
       removed += graph.rollback(successor.body->process, key, affected, removal());
+  // whom the policy adds loses nothing that is past: between runs others may have had more
+  // discontinuities at the present time than those whom an edit concerns
+  RollbackScope others(processes.size());
+  policy->widen(others, key);
+  const Key from = std::max(key, present.key());
+  for (const ProcessId process : others.added())
+    removed += graph.rollback(process, from, affected, removal());
   if (removed > 0) {
     ++present.counters.rollbacks;
     present.counters.states_removed += removed;
@@ -103,6 +110,7 @@ void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& success
     else if (arc_changed)
       affected.push_back({successor.process(), key});
   }
+  for (const ProcessId process : others.added()) affected.push_back({process, from});
   treat(affected);
   if (options.undo_redo && removed == 0) undo_and_check(key, checksum);
 }

@@ -65,9 +65,11 @@ void World::set_adversary(std::optional<AdversaryOptions> adversary) {
   kernel_->options.adversary = adversary;
 }
 
-void World::set_policy(const std::string& policy) {
+void World::set_policy(const std::string& policy) { set_policy(make_policy(policy)); }
+
+void World::set_policy(std::unique_ptr<Policy> policy) {
   kernel_->require_before_first_run("the policy was set");
-  kernel_->policy = make_policy(policy);
+  kernel_->policy = std::move(policy);
 }
 
 BodyId World::add_body(const BodyDef& def) { return kernel_->add_body(def); }

@@ -24,6 +24,7 @@
 namespace tw {
 
 class Kernel;
+class Policy;
 struct Checkpoint;
 
 // How a body comes into the world.  Absent mass properties come from shape and density.
@@ -117,6 +118,7 @@ class World {
   void set_adversary(std::optional<AdversaryOptions> adversary);  // before the first run
   // "timewarp" is the only policy so far; others raise UserError.
   void set_policy(const std::string& policy);
+  void set_policy(std::unique_ptr<Policy> policy);  // one of your own: policy.h
 
   // ---- bodies ----
   BodyId add_body(const BodyDef& def);  // born at time()

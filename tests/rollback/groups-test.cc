@@ -265,7 +265,7 @@ TEST(Groups, hard_impact_on_a_member_leaves_the_group_living) {
   KernelTest kernel(world);
   kernel.begin();
   while (kernel.tail(ball).key.kind != KeyKind::impact && world.kernel().queue.top_priority() < 1)
-    world.kernel().policy->go_forward(world.kernel());
+    world.kernel().process_next();
   const State& struck = kernel.tail(ball);
   ASSERT_EQ(struck.key.kind, KeyKind::impact);
   EXPECT_FALSE(struck.group);
