@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
+#include "base/constants.h"
 #include "collision/seam-pair.h"
 
 namespace tw {
@@ -21,7 +22,7 @@ double add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
                 seam.pair, out);
   double least = 1e300;
   for (std::size_t i = from; i < out.size(); ++i) least = std::min(least, out[i].gap);
-  seam.remove_ghosts(from, same_angle, out);
+  seam.remove_ghosts(from, seam::same_angle, out);
   return least;
 }
 
