@@ -1,6 +1,7 @@
 // The contact graph: finding contacts, carrying them along, matching stretches.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/contact-graph.h"
+#include "collision/seams/seams.h"
 
 #include <algorithm>
 #include <cmath>

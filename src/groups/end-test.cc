@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "collision/manifold.h"
+#include "collision/seams/seams.h"
 #include "detect/grid.h"
 #include "groups/region.h"
 #include "math/root.h"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/seams/seams.h"
 #include "groups/resolution.h"
 #include "kernel/kernel.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "collision/manifold-parts.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 

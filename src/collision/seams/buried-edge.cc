@@ -10,6 +10,7 @@
 #include "collision/cylinder-point.h"
 #include "collision/manifold-parts.h"
 #include "collision/nearest-to-point.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 

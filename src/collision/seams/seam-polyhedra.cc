@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "base/constants.h"
-#include "collision/exposed-edges.h"
 #include "collision/face-contact.h"
 #include "collision/nearest-to-point.h"
-#include "collision/seam-pair.h"
+#include "collision/seams/exposed-edges.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "base/constants.h"
-#include "collision/seam-pair.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 #include "collision/separation.h"
 
 namespace tw {
