@@ -94,7 +94,7 @@ bool wakes(const Regrouping& work, const Body& body, const Vec3& change) {
 }
 
 // Whether the body beyond a new group's border notices what it does at their contact.
-bool notices(const Regrouping& work, const Group& group, const ContactPair& pair, const Body& body,
+bool notices(Regrouping& work, const Group& group, const ContactPair& pair, const Body& body,
              const Body& member) {
   const Group& theirs = *work.successor_of(body.process)->data.group;
   if (theirs.at_rest) {
@@ -105,8 +105,11 @@ bool notices(const Regrouping& work, const Group& group, const ContactPair& pair
   }
   // the impulse only where the neighbour's motion could have changed it
   const double tolerance = answer::missed_share * group.arc->start().velocity_tolerance;
-  return deviation(work.before, group, member) > tolerance &&
-         missed_impulse(body.id(), group, pair, theirs).norm() > tolerance * body.mass;
+  if (!(deviation(work.before, group, member) > tolerance)) return false;
+  const double missed = missed_impulse(body.id(), group, pair, theirs).norm();
+  if (missed > tolerance * body.mass) return true;
+  work.tally.momentum_dropped += missed;
+  return false;
 }
 
 // Whether what rests has lost a support that carried it.

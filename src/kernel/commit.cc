@@ -119,6 +119,9 @@ void Kernel::commit_state(State& state) {
   counters.collisions -= state.tally.fusions;  // their keys are those of impacts
   counters.fissions += state.tally.fissions;
   counters.contact_changes += state.tally.contact_changes;
+  counters.impulses_given_up += state.tally.impulses_given_up;
+  counters.declared_soft += state.tally.declared_soft;
+  counters.momentum_dropped += state.tally.momentum_dropped;
   if (state.report && !observers.empty())
     for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
   if (options.hash && state.changed) {
