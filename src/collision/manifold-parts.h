@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "collision/manifold.h"
 #include "collision/nearest-features.h"
 #include "collision/part-pairs.h"
 #include "collision/round-distance.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "collision/face-contact.h"
 #include "collision/manifold-parts.h"
 
@@ -66,11 +67,6 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
   out.push_back(p);
 }
 
-// A face that slides along an edge of the ground takes its border along: where the edge leaves the
-// face, the point belongs to the face, and the normal stands on the edge, so that sliding does not
-// part them. Tilted faces (sine of the angle with the edge) only touch it in passing.
-constexpr double along_edge = 0.05;
-
 // The direction of the incident edge that the name of a crossing holds.
 Vec3 incident_edge(const Polyhedron& incident, const Frame& placed, std::uint64_t key) {
   const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
@@ -83,7 +79,7 @@ void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& fa
                  const Frame& world, std::uint64_t key, ManifoldPoint& p) {
   const Vec3 edge = incident_edge(incident, placed, key);
   const double sine = edge.dot(face_normal);
-  if (std::abs(sine) > along_edge) return;
+  if (std::abs(sine) > seam::along_edge) return;
   const Vec3 normal = world.R * (face_normal - sine * edge).normalized();
   std::swap(p.core_point, p.reference_point);
   p.gap *= normal.dot(p.normal);
@@ -99,7 +95,7 @@ void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& inc
   const Vec3 border = face_normal.cross(reference.side(static_cast<int>(key & 0xfffff)).inward);
   const Vec3 across = border.cross(incident_edge(incident, placed, key));
   const double length = across.norm(), cosine = across.dot(face_normal) / length;
-  if (!(cosine * cosine >= 1 - along_edge * along_edge)) return;
+  if (!(cosine * cosine >= 1 - seam::along_edge * seam::along_edge)) return;
   const Vec3 normal = (cosine > 0 ? 1 / length : -1 / length) * across;
   p.gap *= std::abs(cosine);
   p.normal = world.R * normal;

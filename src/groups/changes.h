@@ -14,7 +14,7 @@ void count_fissions(Regrouping& work, const std::vector<bool>& held);
 // they are.  After count_fissions.
 void note_changes(Regrouping& work);
 
-// Puts the tally and the report on the first state that enters the graph.
+// Puts the tally and the report on the first state that enters the graph: once all is decided.
 void add_report(Regrouping& work);
 
 }  // namespace tw

@@ -5,23 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace tw {
-namespace {
-
-// A surface point moves at most this share of its body's size between checks.
-constexpr double most_travel = 0.05;
-// The slowest checks are 2^most_halvings times rarer than the finest.
-constexpr int most_halvings = 5;
-
-}  // namespace
-
 double check_interval(const Regrouping& work, const std::vector<ProcessId>& members) {
   const double gravity = work.scene().gravity_scale();
   double interval = never;
   for (const ProcessId member : members) {
     // the time to move that far: v s + g s^2/2 = distance
     const PlacedBody body = placed(*work.successor_of(member));
-    const double distance = most_travel * body.body->least_width;
+    const double distance = answer::most_travel * body.body->least_width;
     const double speed = body.surface_speed();
     const double root = std::sqrt(speed * speed + 2 * gravity * distance);
     interval = std::min(interval, 2 * distance / (speed + root));
@@ -29,7 +22,7 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
   // to a power of two on the grid
   const double rate = work.scene().options.group_check_rate;
   const double ticks = interval * rate;
-  const int halvings = ticks > 1 ? std::min(most_halvings, std::ilogb(ticks)) : 0;
+  const int halvings = ticks > 1 ? std::min(answer::most_halvings, std::ilogb(ticks)) : 0;
   return std::ldexp(1 / rate, halvings);
 }
 

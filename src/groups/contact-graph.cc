@@ -1,19 +1,17 @@
 // The contact graph: finding contacts, carrying them along, matching stretches.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/contact-graph.h"
+#include "collision/seams/seams.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
 namespace {
-
-// A contact after a refresh is one before it if they are not farther apart, share of the smaller
-// size.
-constexpr double same_point = 0.1;
 
 // Whether bounding balls prove a gap above `reach`.
 bool far_apart(const PlacedBody& a, const PlacedBody& b, double reach) {
@@ -35,10 +33,6 @@ Vec3 turned_into(const Vec3& stretch, const Vec3& normal) {
   return length > 0 ? Vec3(flat * (stretch.norm() / length)) : Vec3(Vec3::Zero());
 }
 
-// An edge or corner of the ground whose normal is that of a face but for this, rad, is met as the
-// face: beyond a seam the neighbour goes on with it.
-constexpr double flat_angle = 1e-3;
-
 void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) {
   if (p.kind == ReferenceFeature::plane || reference.body->dynamic()) return;
   const auto parts_b = static_cast<int>(body_b.shape_P->parts().size());
@@ -47,7 +41,7 @@ void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) 
   if (part.kind != PartKind::polyhedron) return;
   for (const Polyhedron::Face& face : part.core->faces()) {
     const Vec3 normal = reference.frame.R * (part.placement.R * face.normal);
-    if (normal.dot(p.normal) < 1 - 0.5 * flat_angle * flat_angle) continue;
+    if (normal.dot(p.normal) < 1 - 0.5 * answer::flat_angle * answer::flat_angle) continue;
     p.kind = ReferenceFeature::plane;
     p.normal = normal;
     p.gap = normal.dot(p.core_point - p.reference_point) - p.radius - p.reference_radius;
@@ -114,7 +108,7 @@ void match_stretches(Regrouping& work, const ContactPair& pair, const PairBefore
   std::vector<bool> taken(old->count, false);
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
     NewContact& fresh = work.contacts[c];
-    double nearest = same_point * size;
+    double nearest = answer::same_point * size;
     std::uint32_t best = old->count;
     for (std::uint32_t o = 0; o < old->count; ++o) {
       if (taken[o]) continue;
@@ -178,8 +172,7 @@ void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, con
                    : Vec3(Vec3::Zero());
   const bool slides = law.ct * slip.norm() > cone;
   if (slides) force = cone * slip.normalized();
-  constexpr double beyond = 10;
-  if (slides || force.norm() > cone) force *= beyond * cone / force.norm();
+  if (slides || force.norm() > cone) force *= answer::preload_beyond * cone / force.norm();
   const Vec3 stretch = force / law.kt * (straight ? 1 : -1);
   for (std::uint32_t c = 0; c < pair.count; ++c) {
     NewContact& contact = work.contacts[pair.first + c];
@@ -208,7 +201,7 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
   const double size = scales.size, depth = scales.depth();
   const double travel =
       2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
-  const double search_distance = depth + std::min(travel, contact_margin * size - depth);
+  const double search_distance = depth + std::min(travel, answer::contact_margin * size - depth);
   if (!must && far_apart(a, b, search_distance)) return;
 
   thread_local std::vector<ManifoldPoint> points;

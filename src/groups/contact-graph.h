@@ -12,11 +12,6 @@
 
 namespace tw {
 
-// Boxes of members of moving groups reach this share of their size farther: a group check finds in
-// them whom a member may touch before the next check.  What comes from farther away in that time is
-// not in contact yet: collision checks find it.
-inline constexpr double contact_margin = 0.1;
-
 // The groups that the successors come from, and the contact pairs of those that get new arcs.
 void collect_old(Regrouping& work);
 

@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/manifold.h"
+#include "base/constants.h"
+#include "collision/seams/seams.h"
 #include "detect/grid.h"
 #include "groups/region.h"
 #include "math/root.h"
 
 namespace tw {
 namespace {
-
-// Depth that may stay unrepresented: half of the contact's own depth under the body's weight.
-constexpr double unseen_depth = 0.5;
 
 // A pair of bodies whose contacts do not tell the truth beyond this time, s.
 struct EarlyEnd {
@@ -114,7 +112,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
   PairOnArc along{group, pair, a, b, {}, {}};
   const ContactScales scales = contact_scales(scene, a, b, group.masses);
-  const double allowed = unseen_depth * scales.depth();
+  const double allowed = answer::unseen_depth * scales.depth();
   if (along.travel() <= allowed) return end;
   double known = never;
   each_contact(pair, [&](std::uint32_t c) {
@@ -150,7 +148,7 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   // no shorter than the spacing of checks on the grid of collisions
   const double least = std::min(group.next_check, group.arc->start().time + check_grid);
   for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
-  if (group.members.size() < least_divided) {
+  if (group.members.size() < answer::least_divided) {
     for (const EarlyEnd& early : early_ends)
       group.next_check = std::min(group.next_check, early.time);
     return;

@@ -216,7 +216,6 @@ void make_groups(Regrouping& work) {
     if (!members[root].empty()) work.made.push_back(made[root] = make_group(work, members[root]));
 
   note_changes(work);
-  add_report(work);
   for (std::size_t i = 0; i < count; ++i) {
     Successor& successor = work.successors[i];
     if (!work.changes(&successor)) continue;

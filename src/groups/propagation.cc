@@ -3,88 +3,73 @@
 #include "groups/propagation.h"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 
-#include "groups/resolution.h"
+#include "base/constants.h"
+#include "dynamics/impulse-solver.h"
 
 namespace tw {
 namespace {
 
-constexpr int most_impulses = 700;
-// A gap below this share of the contact's depth counts as touch: found at the touch, up to
-// rounding.
-constexpr double touching = 1e-3;
+bool touches(const NewContact& c) { return c.gap <= answer::touching * c.contact.law.depth; }
 
 }  // namespace
 
 std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   const Scene& scene = work.scene();
-  std::vector<ProcessId> at_border;
-  // the bodies in contact: successors, and outside ones at this instant
-  std::map<BodyId, Resolved> resolved;
-  std::deque<PoseTwist> outside_points;
-  const auto body_at = [&](BodyId id) -> Resolved& {
-    if (const auto known = resolved.find(id); known != resolved.end()) return known->second;
+  // the bodies at the contacts: successors, and outside ones at this instant
+  ImpulseSolver solver;
+  std::map<BodyId, std::uint32_t> slots;
+  std::vector<BodyId> ids;  // by slot
+  const auto slot_of = [&](BodyId id) {
+    const auto [at, is_new] = slots.try_emplace(id, 0);
+    if (!is_new) return at->second;
+    ids.push_back(id);
     const Successor* successor = work.successor_of(id);
-    if (!successor) outside_points.push_back(work.before.placed(id).point);
-    const PoseTwist& point = successor ? successor->point : outside_points.back();
-    Resolved& body = resolved.try_emplace(id, scene.body(id), point).first->second;
-    if (!work.changes(successor)) body.hold();
-    return body;
+    const PoseTwist point = successor ? successor->point : work.before.placed(id).point;
+    const bool keeps_motion = work.lies_beyond(id);
+    return at->second = solver.add(keeps_motion ? ImpulseSlot::border(point)
+                                                : ImpulseSlot::of(scene.body(id), point));
   };
-  const auto parting = [&](const NewContact& c) {
-    return (body_at(c.tag.other).velocity_at(c.point) -
-            body_at(c.tag.reference).velocity_at(c.point))
-        .dot(c.normal);
+  const auto impulse_contact = [&](const NewContact& c) {
+    const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
+    return ImpulseContact{slot_of(c.tag.reference),
+                          slot_of(c.tag.other),
+                          c.normal,
+                          c.point,
+                          0,
+                          c.contact.law.mu,
+                          slow};
   };
 
-  // the fastest, as often as there is one
-  for (int i = 0; i < most_impulses; ++i) {
-    const NewContact* worst = nullptr;
-    double excess = 0;
-    for (const NewContact& c : work.contacts) {
-      if (c.gap > touching * c.contact.law.depth) continue;
-      const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
-      const double beyond = -parting(c) - slow;
-      if (beyond <= excess) continue;
-      excess = beyond;
-      worst = &c;
-    }
-    if (!worst) break;
-    Resolved& reference = body_at(worst->tag.reference);
-    Resolved& other = body_at(worst->tag.other);
-    const Vec3 u = other.velocity_at(worst->point) - reference.velocity_at(worst->point);
-    const Vec3 impulse =
-        impact_impulse(reference.compliance(worst->point) + other.compliance(worst->point),
-                       worst->normal, u, 0, worst->contact.law.mu);
-    for (const BodyId id : {worst->tag.reference, worst->tag.other})
-      if (work.lies_beyond(id)) at_border.push_back(scene.process_of(id));
-    if (!at_border.empty()) return at_border;
-    // of what is held only kinematic bodies move
-    if (!reference.moves)
-      work.tally.kinematic_work += impulse.dot(reference.velocity_at(worst->point));
-    if (!other.moves) work.tally.kinematic_work -= impulse.dot(other.velocity_at(worst->point));
-    reference.apply(-impulse, worst->point);
-    other.apply(impulse, worst->point);
+  std::vector<ImpulseContact> touching_now;
+  for (const NewContact& c : work.contacts)
+    if (touches(c)) touching_now.push_back(impulse_contact(c));
+  const ImpulseResult result = solver.solve(touching_now, 0, guard::most_passed_on);
+  if (const ImpulseContact* at = result.stopped_at) {
+    std::vector<ProcessId> at_border;
+    for (const std::uint32_t slot : {at->a, at->b})
+      if (solver.slot(slot).answer == Answer::border)
+        at_border.push_back(scene.process_of(ids[slot]));
+    return at_border;
   }
-  for (auto& [id, after] : resolved)
-    if (Successor* successor = work.successor_of(id); successor && after.moves)
-      take_velocities(*successor, after);
+  work.tally.kinematic_work += solver.work_of_held();
+  if (result.left_over > 0) ++work.tally.impulses_given_up;
+  for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
+    if (solver.slot(slot).moves())
+      take_velocities(*work.successor_of(ids[slot]), solver.slot(slot));
 
   // pairs that carry nothing and close fast
   std::erase_if(work.pairs, [&](const ContactPair& pair) {
-    bool touches = false, fast = false;
+    bool carries = false, fast = false;
     for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-      const NewContact& contact = work.contacts[c];
-      const double slow =
-          fusion_speed(scene, scene.body(contact.tag.reference), scene.body(contact.tag.other));
-      touches = touches || contact.gap <= touching * contact.contact.law.depth;
-      fast = fast || -parting(contact) > slow;
+      const ImpulseContact contact = impulse_contact(work.contacts[c]);
+      carries = carries || touches(work.contacts[c]);
+      fast = fast || -solver.approach(contact) > contact.bears;
     }
-    return fast && !touches;
+    return fast && !carries;
   });
-  return at_border;
+  return {};
 }
 
 }  // namespace tw

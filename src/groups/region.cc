@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace tw {
 namespace {
-
-// What rests at the border wakes where the force on it changes by this share of its weight.
-constexpr double wake_share = 0.02;
-// What moves there may miss this share of a step's velocity tolerance, for what is missed is lost
-// to the body's momentum.  Where the tolerance was 0.01 sqrt(g size) a row of 16 cubes ended with
-// 2.8 times its momentum with all of it, with 0.9 % too much with this share (with a tenth 1.0 %,
-// at 1.3 times the cost).
-constexpr double missed_share = 0.3;
 
 // Whether a contact pair carries a load at `when`.
 bool carries(const Group& owner, const ContactPair& pair, double when) {
@@ -85,7 +79,7 @@ void complete(Region& region, const Before& before, bool whole) {
   Groups groups;
   for (const ProcessId process : region.inside) add_once(groups, before.state(process).group);
   for (const auto& group : groups)
-    if (whole || group->members.size() < least_divided)
+    if (whole || group->members.size() < answer::least_divided)
       for (const ProcessId process : before.remaining(*group)) insert(region.inside, process);
 
   region.border.clear();
@@ -96,11 +90,11 @@ void complete(Region& region, const Before& before, bool whole) {
 }
 
 bool wakes(const Regrouping& work, const Body& body, const Vec3& change) {
-  return change.norm() > wake_share * (work.scene().gravity_scale() * body.mass);
+  return change.norm() > answer::wake_share * (work.scene().gravity_scale() * body.mass);
 }
 
 // Whether the body beyond a new group's border notices what it does at their contact.
-bool notices(const Regrouping& work, const Group& group, const ContactPair& pair, const Body& body,
+bool notices(Regrouping& work, const Group& group, const ContactPair& pair, const Body& body,
              const Body& member) {
   const Group& theirs = *work.successor_of(body.process)->data.group;
   if (theirs.at_rest) {
@@ -110,9 +104,12 @@ bool notices(const Regrouping& work, const Group& group, const ContactPair& pair
     return wakes(work, body, force_on(body.id(), group, pair, end) - before);
   }
   // the impulse only where the neighbour's motion could have changed it
-  const double tolerance = missed_share * group.arc->start().velocity_tolerance;
-  return deviation(work.before, group, member) > tolerance &&
-         missed_impulse(body.id(), group, pair, theirs).norm() > tolerance * body.mass;
+  const double tolerance = answer::missed_share * group.arc->start().velocity_tolerance;
+  if (!(deviation(work.before, group, member) > tolerance)) return false;
+  const double missed = missed_impulse(body.id(), group, pair, theirs).norm();
+  if (missed > tolerance * body.mass) return true;
+  work.tally.momentum_dropped += missed;
+  return false;
 }
 
 // Whether what rests has lost a support that carried it.

@@ -23,9 +23,6 @@
 
 namespace tw {
 
-// A group of fewer members is always taken whole.
-inline constexpr std::size_t least_divided = 8;
-
 struct Region {
   std::vector<ProcessId> inside, border;  // dynamic, ascending
   // Whose motion the decision rests on beyond the border: those asleep beside a group that falls

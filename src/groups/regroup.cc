@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "groups/changes.h"
 #include "groups/check-times.h"
 #include "groups/contact-graph.h"
 #include "groups/make-groups.h"
@@ -148,6 +149,7 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     counters.manifolds += work.counters.manifolds;
     if (more.empty()) {
       count_made(work, counters);
+      add_report(work);
       return Regrouped{std::move(successors)};
     }
     count_discarded(work, counters);

@@ -5,24 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace tw {
 namespace {
-
-// A group is quiet while no surface point is faster than this share of sqrt(g size) ...
-constexpr double quiet_share = 5e-3;
-// ... and rests when it was so for this long, s, no loaded contact slips, and its speed has fallen
-// to half or is below this share.
-constexpr double rest_time = 0.2;
-constexpr double still_share = 1e-7;
-
-// A member is still while it is slower than this share of sqrt(g size).
-constexpr double sleep_share = 5e-4;
-// s; the second half's peak must not exceed the first's by more, and the way made by this share of
-// it.
-constexpr double watch = 0.5, growth = 1.1, drift = 0.1;
-// Fewer are not worth a group of their own: a number, and a share of the group.
-constexpr std::size_t least_sleepers = 8;
-constexpr double least_share = 0.25;
 
 // The scale of speeds of a body: what it falls through its own size at, m/s.
 double speed_scale(const Scene& scene, const Body& body) {
@@ -33,23 +19,23 @@ double speed_scale(const Scene& scene, const Body& body) {
 bool stays(const Stillness& book, const PlacedBody& body, double now) {
   const double way = std::max(book.early_peak, book.peak) * (now - book.since);
   const double turned = body.point.q.angularDistance(book.q) * body.body->radius;
-  return book.peak <= growth * book.early_peak &&
-         (body.point.x - book.x).norm() + turned <= drift * way;
+  return book.peak <= answer::growth * book.early_peak &&
+         (body.point.x - book.x).norm() + turned <= answer::drift * way;
 }
 
 // The book of one body at the discontinuity.
 Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   const PlacedBody body = placed(successor);
   const double speed = body.fastest_point(), now = work.now();
-  if (speed >= sleep_share * speed_scale(work.scene(), *body.body)) return {};
+  if (speed >= answer::sleep_share * speed_scale(work.scene(), *body.body)) return {};
   const Group* group = successor.data.group.get();
   const Stillness known =
       group && !group->at_rest ? group->stillness[successor.data.member] : Stillness();
   const double age = now - known.since;
-  if (known.since == never || (age > watch && !stays(known, body, now)))
+  if (known.since == never || (age > answer::sleep_time && !stays(known, body, now)))
     return {now, speed, 0, body.point.x, body.point.q};
   Stillness book = known;
-  double& peak = age < 0.5 * watch ? book.early_peak : book.peak;
+  double& peak = age < 0.5 * answer::sleep_time ? book.early_peak : book.peak;
   peak = std::max(peak, speed);
   return book;
 }
@@ -83,12 +69,13 @@ std::vector<bool> sleepers(const Regrouping& work) {
     if (!work.changes(&successor)) continue;
     ++moving;
     const Stillness& book = work.stillness[i];
-    asleep[i] = work.now() - book.since > watch && stays(book, placed(successor), work.now());
+    asleep[i] =
+        work.now() - book.since > answer::sleep_time && stays(book, placed(successor), work.now());
   }
   const auto too_few = [&] {
     const auto number = static_cast<std::size_t>(std::count(asleep.begin(), asleep.end(), true));
-    return number < least_sleepers ||
-           static_cast<double>(number) < least_share * static_cast<double>(moving);
+    return number < answer::least_sleepers ||
+           static_cast<double>(number) < answer::least_sleeping_share * static_cast<double>(moving);
   };
   if (too_few()) return std::vector<bool>(count, false);
 
@@ -111,7 +98,7 @@ std::vector<bool> sleepers(const Regrouping& work) {
 
 // Slow, nothing loaded slips, and everything outside stands still.
 bool is_quiet(const Regrouping& work, const Group& before, double speed, double scale) {
-  if (!(speed < quiet_share * scale)) return false;
+  if (!(speed < answer::quiet_share * scale)) return false;
   for (std::size_t c = 0; c < before.tags.size(); ++c) {
     const ContactForce f = before.arc->contact_force(static_cast<int>(c), work.now());
     const bool smooth = before.arc->start().contacts[c].law.law == FrictionLaw::smooth;
@@ -152,8 +139,8 @@ bool comes_to_rest(const Regrouping& work, Group& group, const Group& before) {
     return false;
   }
   group.quiet = before.quiet;
-  return work.now() - before.quiet.since >= rest_time &&
-         (speed <= 0.5 * before.quiet.speed || speed <= still_share * scale);
+  return work.now() - before.quiet.since >= answer::rest_time &&
+         (speed <= answer::rest_decay * before.quiet.speed || speed <= answer::still_share * scale);
 }
 
 std::vector<ProcessId> wakes_with(const Regrouping& work) {

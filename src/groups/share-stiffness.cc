@@ -4,16 +4,10 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
+
 namespace tw {
 namespace {
-
-// Contacts of one body with several fixed ones share one stiffness where their normals agree to
-// this, rad.
-constexpr double coplanar = 1e-3;
-// Where a corner crosses the edge between two faces that meet at a small angle, both hold it for a
-// moment: as far as they are at one place (share of the size) with one normal (cosine), they hold
-// it together.
-constexpr double same_place = 1e-2, same_normal = 0.95;
 
 // How much of a point counts: all of it to the depth that one weight makes, less and less to twice
 // that above the surface.  Nothing jumps where a point comes near.
@@ -23,7 +17,7 @@ double participation(const NewContact& c) {
 
 // Of the contacts of one dynamic body with the ground.
 void share_ground(const std::vector<NewContact*>& points, const Body& body) {
-  const double radius = same_place * body.least_width;
+  const double radius = answer::same_place * body.least_width;
   // seen from the ground all normals point the same way
   const auto cosine = [&](const NewContact& x, const NewContact& y) {
     const double sign = (x.tag.reference == body.id()) == (y.tag.reference == body.id()) ? 1 : -1;
@@ -32,14 +26,14 @@ void share_ground(const std::vector<NewContact*>& points, const Body& body) {
   std::vector<double> here(points.size(), 1);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < points.size(); ++j) {
-      if (i == j || !(cosine(*points[i], *points[j]) > same_normal)) continue;
+      if (i == j || !(cosine(*points[i], *points[j]) > answer::same_normal)) continue;
       const double distance = (points[i]->point - points[j]->point).norm();
       here[i] += participation(*points[j]) * std::max(0.0, 1 - distance / radius);
     }
   for (std::size_t i = 0; i < points.size(); ++i) {
     double places = 0;
     for (std::size_t j = 0; j < points.size(); ++j)
-      if (i == j || cosine(*points[i], *points[j]) > 1 - 0.5 * coplanar * coplanar)
+      if (i == j || cosine(*points[i], *points[j]) > 1 - 0.5 * answer::coplanar * answer::coplanar)
         places += participation(*points[j]) / here[j];
     points[i]->contact.share = 1 / std::max(1.0, places * here[i]);
   }

@@ -1,6 +1,7 @@
 // Who is near a body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/surroundings.h"
+#include "collision/seams/seams.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "collision/broad-phase.h"
-#include "collision/manifold.h"
+#include "collision/seams/seams.h"
 #include "dynamics/scene.h"
 
 namespace tw {

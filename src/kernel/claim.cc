@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "groups/contact-graph.h"
 #include "kernel/kernel.h"
 
@@ -99,7 +100,7 @@ Aabb Kernel::claimed_box(const Body& body, double end) const {
     if (to >= from) box.add(swept_bounds(body, *state, from, to));
   }
   if (const State& tail = *graph.tail(body.process); tail.group && !tail.group->at_rest)
-    box.grow(contact_margin * body.least_width);
+    box.grow(answer::contact_margin * body.least_width);
   box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
 }

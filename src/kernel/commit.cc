@@ -125,6 +125,9 @@ void Kernel::commit_state(State& state) {
   present.counters.collisions -= state.tally.fusions;  // their keys are those of impacts
   present.counters.fissions += state.tally.fissions;
   present.counters.contact_changes += state.tally.contact_changes;
+  present.counters.impulses_given_up += state.tally.impulses_given_up;
+  present.counters.declared_soft += state.tally.declared_soft;
+  present.counters.momentum_dropped += state.tally.momentum_dropped;
   if (state.report && !observers.empty())
     for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
   if (options.hash && state.changed) {

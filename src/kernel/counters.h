@@ -26,8 +26,10 @@ struct Counters : GroupCounters {
   // committed
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
-  double kinematic_work = 0;   // J, by kinematic bodies on dynamic ones
-  double max_penetration = 0;  // m, deepest overlap at impacts, in contacts and at frames
+  std::uint64_t impulses_given_up = 0, declared_soft = 0;
+  double momentum_dropped = 0;  // N s, at borders of regions
+  double kinematic_work = 0;    // J, by kinematic bodies on dynamic ones
+  double max_penetration = 0;   // m, deepest overlap at impacts, in contacts and at frames
 
   // time of this thread, s
   double cpu_seconds = 0, output_cpu_seconds = 0;

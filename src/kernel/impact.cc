@@ -1,68 +1,23 @@
 // Impacts: from two arcs that meet to two new states.
 //
-// Single points by the impact law; face-on: at the manifold's centroid first, then at the deepest
-// approaching point until none approaches; simultaneous contacts: the worst approacher first, at
-// most 200 impulses.  A soft impact leaves the motion as it is: the two fuse (regroup.cc).
+// Single points by the impact law; face-on: at the manifold's centroid first, then the worst
+// approacher first, at most 200 impulses (dynamics/impulse-solver.h).  A soft impact leaves the
+// motion as it is: the two fuse (groups/region.cc).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
 
-#include "groups/resolution.h"
+#include "base/constants.h"
+#include "collision/seams/seams.h"
+#include "dynamics/impulse-solver.h"
 #include "kernel/kernel.h"
 
 namespace tw {
 namespace {
 
-constexpr int most_impulses = 200;
-constexpr std::uint32_t most_microsteps = 100000;
-
-// Points this close take part in an impact, share of the smaller size: a tenth of the accuracy.
-constexpr double touch_per_accuracy = 0.1;
-
-constexpr std::uint32_t soft_run = 8;
-// Again and again at one instant: slower than this share of the fusion speed it is rounding; after
-// so many impacts it is a heavy body that comes down on a light one, which impulses would stop too
-// slowly.
-constexpr double grazing = 1e-5;
-constexpr std::uint32_t most_repeated = 2000;
-// The interval of a quick run where the pair is not pressed together, share of that where it is.
-constexpr double free_run_share = 1e-2;
-
 // A residual approach below this share of the first one is rounding.
 constexpr double residual_approach = 1e-12;
-
-// The impact of one pair of bodies while impulses are applied.
-struct Resolution {
-  Resolved a, b;
-  double restitution, friction;
-  double normal_impulse = 0, kinematic_work = 0;
-  double largest = 0, speed = 0;
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
-
-  // u.n, negative when approaching
-  double approach(const ContactPoint& c) const {
-    return (b.velocity_at(c.point) - a.velocity_at(c.point)).dot(c.normal);
-  }
-  void impulse_at(const ContactPoint& c) {
-    const Vec3 u = b.velocity_at(c.point) - a.velocity_at(c.point);
-    const Mat3 K = a.compliance(c.point) + b.compliance(c.point);
-    const Vec3 impulse = impact_impulse(K, c.normal, u, restitution, friction);
-    // a kinematic body does work with the force it exerts at its own speed
-    if (!a.moves) kinematic_work += impulse.dot(a.velocity_at(c.point));
-    if (!b.moves) kinematic_work -= impulse.dot(b.velocity_at(c.point));
-    const double along = impulse.dot(c.normal);
-    if (along > largest) {
-      largest = along;
-      speed = -u.dot(c.normal);
-      point = c.point;
-      normal = c.normal;
-    }
-    normal_impulse += along;
-    a.apply(-impulse, c.point);
-    b.apply(impulse, c.point);
-  }
-};
 
 // Replaces each manifold of several points by its centroid, the others stay.
 std::vector<ContactPoint> centroids(const std::vector<ContactPoint>& points) {
@@ -77,22 +32,6 @@ std::vector<ContactPoint> centroids(const std::vector<ContactPoint>& points) {
     i = j;
   }
   return result;
-}
-
-// Worst approacher first until none approaches.  False if some still does after all impulses.
-bool resolve(Resolution& r, const std::vector<ContactPoint>& points, double threshold) {
-  for (int i = 0; i < most_impulses; ++i) {
-    const ContactPoint* worst = nullptr;
-    double least = -threshold;
-    for (const ContactPoint& c : points)
-      if (const double u = r.approach(c); u < least) {
-        least = u;
-        worst = &c;
-      }
-    if (!worst) return true;
-    r.impulse_at(*worst);
-  }
-  return false;
 }
 
 ContactPoint sphere_contact(const Body& a, const PoseTwist& pa, const Body& b,
@@ -145,7 +84,7 @@ void Kernel::find_impact_points(const Successor& a, const Successor& b) {
   const Frame fa(a.point.q.toRotationMatrix(), a.point.x);
   const Frame fb(b.point.q.toRotationMatrix(), b.point.x);
   touching_points(*body_a.shape_P, fa, *body_b.shape_P, fb,
-                  touch_per_accuracy * present.settings.accuracy * size, contact_points_);
+                  answer::touch_per_accuracy * present.settings.accuracy * size, contact_points_);
   if (!contact_points_.empty()) return;
   const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
   contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
@@ -181,7 +120,7 @@ bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
   const PlacedBody side_a = placed(a), side_b = placed(b);
   manifold_at_seams(*a.body->shape_P, side_a.frame, surroundings_.seam_neighbours(*a.body, ground),
                     *b.body->shape_P, side_b.frame, surroundings_.seam_neighbours(*b.body, ground),
-                    touch_per_accuracy * present.settings.accuracy * size, size, points);
+                    answer::touch_per_accuracy * present.settings.accuracy * size, size, points);
   for (const ManifoldPoint& p : points)
     contact_points_.push_back({p.core_point - p.radius * p.normal,
                                p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, p.pair});
@@ -195,8 +134,11 @@ bool Kernel::is_soft(const Key& key, Successor& a, Successor& b, double fastest)
   const ContactScales scales =
       contact_scales(scene, *a.body, *b.body, {std::min(mass_a, mass_b), std::max(mass_a, mass_b)});
   const double slow = scales.fusion_speed;
-  if (key.microstep > 1 && fastest <= grazing * slow) return true;
-  if (key.microstep > most_repeated) return true;
+  if (key.microstep > 1 && fastest <= guard::grazing * slow) return true;
+  if (key.microstep > guard::most_repeated) {
+    (a.enters() ? a : b).data.tally.declared_soft = 1;
+    return true;
+  }
 
   // what a group carries does not fall away from what comes to lie on it
   const auto pull = [](const Successor& d) {
@@ -207,13 +149,13 @@ bool Kernel::is_soft(const Key& key, Successor& a, Successor& b, double fastest)
 
   // what nothing presses together may knock about in a corner for a while; a true collapse goes on
   // to ever shorter intervals
-  const double tau =
-      std::min(slow / scales.gravity, scales.bounce_time()) * (pressed ? 1 : free_run_share);
+  const double tau = std::min(slow / scales.gravity, scales.bounce_time()) *
+                     (pressed ? 1 : answer::free_run_share);
   bool quick = true;
   for (Successor* successor : {&a, &b}) {
     if (!successor->body->dynamic()) continue;
     successor->data.impacts = continued(successor->data.impacts, key.time, tau);
-    quick = quick && successor->data.impacts.count >= soft_run;
+    quick = quick && successor->data.impacts.count >= answer::soft_run;
   }
   return (pressed && fastest < slow) || quick;
 }
@@ -225,11 +167,21 @@ bool Kernel::compute_impact(const Key& key, Successor& a, Successor& b,
   // nothing to hit: the two are followed as a contact while they pass the seam
   if (drop_ghosts(a, b)) return true;
   const ContactParameters& contact = scene.contacts.between(a.body->id(), b.body->id());
-  Resolution r{{*a.body, a.point}, {*b.body, b.point}, contact.restitution, contact.friction};
+  // what is told once stands on the first state that enters the graph
+  Tally& tally = (a.enters() ? a : b).data.tally;
+  ImpulseSolver solver;
+  const std::uint32_t slot_a = solver.add(ImpulseSlot::of(*a.body, a.point));
+  const std::uint32_t slot_b = solver.add(ImpulseSlot::of(*b.body, b.point));
+  const auto contact_at = [&](const ContactPoint& c) {
+    return ImpulseContact{slot_a, slot_b, c.normal, c.point, contact.restitution, contact.friction};
+  };
+  std::vector<ImpulseContact> contacts;
+  contacts.reserve(contact_points_.size());
   double worst = 0;
   for (const ContactPoint& c : contact_points_) {
-    worst = std::min(worst, r.approach(c));
-    (a.enters() ? a : b).data.tally.note_gap(c.gap);
+    contacts.push_back(contact_at(c));
+    worst = std::min(worst, solver.approach(contacts.back()));
+    tally.note_gap(c.gap);
   }
   const ContactPoint first = contact_points_.front();
   const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
@@ -247,25 +199,27 @@ bool Kernel::compute_impact(const Key& key, Successor& a, Successor& b,
   const double threshold = residual_approach * -worst;
   if (contact_points_.size() > 1) {
     for (const ContactPoint& c : centroids(contact_points_))
-      if (r.approach(c) < -threshold) r.impulse_at(c);
+      if (const ImpulseContact at = contact_at(c); solver.approach(at) < -threshold)
+        solver.strike(at);
   }
-  const bool done = resolve(r, contact_points_, threshold);
-  if (key.microstep > most_microsteps) {
-    const UserError error("more than " + std::to_string(most_microsteps) + " impacts at " +
+  const ImpulseResult result = solver.solve(contacts, threshold, guard::most_impulses);
+  if (result.left_over > 0) tally.impulses_given_up = 1;
+  if (key.microstep > guard::most_microsteps) {
+    const UserError error("more than " + std::to_string(guard::most_microsteps) + " impacts at " +
                           show(key.time) + " s between " + a.body->info.name + " and " +
                           b.body->info.name + "; expected them to part");
     a.data.error = b.data.error = std::make_exception_ptr(error);
   }
 
   // new arcs
-  if (a.body->dynamic()) take_velocities(a, r.a);
-  if (b.body->dynamic()) take_velocities(b, r.b);
-  // what is told once stands on the first state that enters the graph
-  (a.enters() ? a : b).data.tally.kinematic_work = r.kinematic_work;
+  if (a.body->dynamic()) take_velocities(a, solver.slot(slot_a));
+  if (b.body->dynamic()) take_velocities(b, solver.slot(slot_b));
+  tally.kinematic_work = solver.work_of_held();
   if (wants_collision(*a.body, *b.body))
-    describe(CollisionKind::collision, r.point, r.normal, r.speed, r.normal_impulse);
+    describe(CollisionKind::collision, solver.largest().point, solver.largest().normal,
+             solver.largest_approach(), solver.normal_impulse());
   // what still approaches after so many impulses stays in contact
-  return !done;
+  return result.left_over > 0;
 }
 
 // Every callback that matches, in order of registration.

@@ -25,6 +25,8 @@ namespace tw {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 constexpr double pi = 3.14159265358979323846;

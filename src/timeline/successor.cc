@@ -17,4 +17,11 @@ void start_new_arc(Successor& successor, const Key& key) {
   d.rotation_ready = false;
 }
 
+void take_velocities(Successor& successor, const ImpulseSlot& after) {
+  successor.data.v = successor.point.v = after.v;
+  successor.point.w = after.w;
+  successor.data.L = angular_momentum(*successor.body, successor.point.q, after.w);
+  successor.data.rotation_ready = false;
+}
+
 }  // namespace tw

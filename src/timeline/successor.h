@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include "dynamics/impulse-solver.h"
 #include "dynamics/placed-body.h"
 #include "timeline/state.h"
 
@@ -32,5 +33,7 @@ struct Successor {
 // Starts a new arc at `key` from the successor's point; the group, if there is one, is still the
 // old one.
 void start_new_arc(Successor& successor, const Key& key);
+// Its motion is now what impulses made of it.
+void take_velocities(Successor& successor, const ImpulseSlot& after);
 
 }  // namespace tw

@@ -10,15 +10,22 @@ namespace tw {
 // Stands on one state of the discontinuity's ring.
 struct Tally {
   std::uint16_t fusions = 0, fissions = 0, contact_changes = 0;
-  double kinematic_work = 0;  // J, by impulses of kinematic bodies
-  double depth = 0;           // m, of the deepest overlap at the points that touch
+  // what could hide a failure: contacts that still approached after the most impulses, and an
+  // impact taken for a soft one because there were too many at its instant
+  std::uint8_t impulses_given_up = 0, declared_soft = 0;
+  double kinematic_work = 0;    // J, by impulses of kinematic bodies
+  double momentum_dropped = 0;  // N s, that bodies at the border of a region miss
+  double depth = 0;             // m, of the deepest overlap at the points that touch
 
   void note_gap(double gap) { depth = std::max(depth, -gap); }
   void add(const Tally& other) {
     fusions = static_cast<std::uint16_t>(fusions + other.fusions);
     fissions = static_cast<std::uint16_t>(fissions + other.fissions);
     contact_changes = static_cast<std::uint16_t>(contact_changes + other.contact_changes);
+    impulses_given_up = static_cast<std::uint8_t>(impulses_given_up + other.impulses_given_up);
+    declared_soft = static_cast<std::uint8_t>(declared_soft + other.declared_soft);
     kinematic_work += other.kinematic_work;
+    momentum_dropped += other.momentum_dropped;
     depth = std::max(depth, other.depth);
   }
 };

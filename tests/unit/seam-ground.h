@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "collision/manifold.h"
+#include "collision/seams/seams.h"
 
 namespace tw::testing {
 

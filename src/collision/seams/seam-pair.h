@@ -5,20 +5,11 @@
 
 #include <vector>
 
+#include "base/constants.h"
 #include "collision/manifold-parts.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
-
-// Bodies nearer than this, relative to the size, may overlap the neighbours of what they are near
-// to.
-inline constexpr double sunk_ratio = 0.01;
-
-// Normals that agree so far are the same, rad.
-inline constexpr double same_angle = 1e-4;
-
-// Points on a face of the other body have its normal, up to 2 degrees from that of the nearest
-// features and a little more: rad.
-inline constexpr double face_angle = 0.04;
 
 // One body with what surrounds its parts.
 struct SeamSide {

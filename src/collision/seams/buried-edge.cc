@@ -1,28 +1,20 @@
 // Ghost contacts at the seams of fixed bodies and of unions.
 //
 // For convex Q and a point p of Q, n is a normal of Q at p exactly where p is the nearest point of
-// Q to p + epsilon n.
+// Q to p + seam::probe n.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <cmath>
 
+#include "base/constants.h"
 #include "collision/cylinder-point.h"
 #include "collision/manifold-parts.h"
 #include "collision/nearest-to-point.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 
 namespace {
-
-// relative to the size: points closer than this are one
-constexpr double same_point = 1e-5;
-
-// relative to the size: how far from the surface normals are compared, and how far around a point a
-// face is looked at
-constexpr double epsilon = 0.01;
-
-// cosine above which a normal is that of a face: 1e-4 rad
-constexpr double face_normal = 1 - 5e-9;
 
 struct Nearest {
   Vec3 point;       // of the part; the query itself where that is inside
@@ -65,14 +57,14 @@ bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbo
             double size, double angle) {
   for (const SeamNeighbour& q : neighbours) {
     const Vec3 center = q.frame * q.part->bound_center;
-    const double near = q.part->bound_radius + same_point * size;
+    const double near = q.part->bound_radius + seam::same_point * size;
     if ((center - point).squaredNorm() > near * near) continue;
-    if (surely_apart(q, point, same_point * size)) continue;
+    if (surely_apart(q, point, seam::same_point * size)) continue;
     const Nearest here = nearest_of(q, point);
-    if (here.distance > same_point * size) continue;
-    if (here.distance < -same_point * size) return true;
-    const Nearest foot = nearest_of(q, point + epsilon * size * normal);
-    const double allowed = angle * epsilon * size + std::abs(here.distance);
+    if (here.distance > seam::same_point * size) continue;
+    if (here.distance < -seam::same_point * size) return true;
+    const Nearest foot = nearest_of(q, point + seam::probe * size * normal);
+    const double allowed = angle * seam::probe * size + std::abs(here.distance);
     if ((foot.point - here.point).norm() > allowed) return true;
   }
   return false;
@@ -81,7 +73,7 @@ bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbo
 // The number of the face with this normal (part's frame), or -1.
 int face_with(const Polyhedron& core, const Vec3& normal) {
   for (std::size_t f = 0; f < core.faces().size(); ++f)
-    if (core.faces()[f].normal.dot(normal) > face_normal) return static_cast<int>(f);
+    if (core.faces()[f].normal.dot(normal) > seam::same_normal) return static_cast<int>(f);
   return -1;
 }
 
@@ -111,7 +103,7 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   // far inside a face: bodies don't sink so deep that it could be an inner wall
   const Polyhedron::Face& face = core.face(number);
   const Vec3 local = world.to_local(point);
-  if (over_face(core, face, local, -epsilon * size)) return false;
+  if (over_face(core, face, local, -seam::probe * size)) return false;
   const Vec3 foot = onto_face(core, face, local);
   if (!denied(world * foot, normal, neighbours, size, angle)) return false;
   // an inner wall is denied all around
@@ -120,7 +112,7 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   constexpr int directions = 8;
   for (int i = 0; i < directions; ++i) {
     const double turn = 2 * pi * i / directions;
-    const Vec3 beside = foot + epsilon * size * (std::cos(turn) * u + std::sin(turn) * v);
+    const Vec3 beside = foot + seam::probe * size * (std::cos(turn) * u + std::sin(turn) * v);
     if (!over_face(core, face, beside, 0)) continue;
     if (!denied(world * beside, normal, neighbours, size, angle)) return false;
   }

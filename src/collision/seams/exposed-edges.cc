@@ -1,6 +1,7 @@
 // Exposed edges; see the header.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/exposed-edges.h"
+#include "collision/seams/exposed-edges.h"
+#include "collision/seams/seams.h"
 
 #include <algorithm>
 
@@ -174,7 +175,7 @@ struct EdgeThrough {
     const Vec3 second = other_in_part.R * other.face(rising.face).normal;
     p.normal = (falling.rise() * second - rising.rise() * first).normalized();
     // down to the surface
-    double depth = 1e300;
+    double depth = std::numeric_limits<double>::infinity();
     for (const Polyhedron::Face& face : other.faces()) {
       const Vec3 normal = other_in_part.R * face.normal;
       const double cosine = -normal.dot(p.normal);

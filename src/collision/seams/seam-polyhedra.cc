@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "collision/exposed-edges.h"
+#include "base/constants.h"
 #include "collision/face-contact.h"
 #include "collision/nearest-to-point.h"
-#include "collision/seam-pair.h"
+#include "collision/seams/exposed-edges.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 
 namespace {
-
-// What of an edge is this near to a neighbour, relative to the size, counts as buried: more than
-// buried_edge allows.
-constexpr double margin_ratio = 2e-5;
 
 // What the neighbours of one side leave exposed of it in the other.
 struct Exposure {
@@ -46,7 +44,7 @@ struct Exposure {
     p.pair = seam.pair;
     const FeatureMode mode = of_a ? FeatureMode::exposed_of_a : FeatureMode::exposed_of_b;
     p.feature = feature_name(seam.pair, mode, {found.first, found.second, found.third});
-    if (seam.is_ghost(p, same_angle)) return false;
+    if (seam.is_ghost(p, seam::same_angle)) return false;
     out.push_back(p);
     return true;
   }
@@ -56,7 +54,7 @@ struct Exposure {
     thread_local std::vector<ExposedPoint> exposed;
     exposed.clear();
     exposed_edges(part, world, other, other_in_part, seam.neighbours(of_a),
-                  margin_ratio * seam.size, seam.reach, exposed);
+                  seam::buried_margin * seam.size, seam.reach, exposed);
     for (const ExposedPoint& p : exposed) {
       const auto edge = static_cast<std::uint64_t>(p.edge),
                  face = static_cast<std::uint64_t>(p.face + 1);
@@ -100,7 +98,7 @@ struct Exposure {
            std::any_of(around.begin(), around.end(), holds);
   }
 
-  double same_place() const { return margin_ratio * seam.size; }
+  double same_place() const { return seam::buried_margin * seam.size; }
 
   bool add_vertex(std::uint64_t v, std::uint64_t face, const Vec3& point, double height) const {
     return add({of_a, part.faces()[face].normal, point, height, v, face, ~std::uint64_t{0}});
@@ -115,7 +113,7 @@ struct Exposure {
       const double height = part.face_separation(point, nearest);
       if (height <= seam.reach && add_vertex(v, static_cast<std::uint64_t>(nearest), point, height))
         continue;
-      if (height <= sunk_ratio * seam.size) add_under_face(v, point, height > 0);
+      if (height <= seam::sunk * seam.size) add_under_face(v, point, height > 0);
     }
   }
 
@@ -127,7 +125,7 @@ struct Exposure {
     for (std::uint64_t f = 0; f < part.faces().size(); ++f) {
       const Polyhedron::Face& face = part.faces()[f];
       const double depth = face.offset - face.normal.dot(point);
-      if (depth < 0 || depth > sunk_ratio * seam.size) continue;
+      if (depth < 0 || depth > seam::sunk * seam.size) continue;
       if (beside && !over_face(part, face, point + depth * face.normal, 0)) continue;
       depths.emplace_back(depth, f);
     }
@@ -163,13 +161,13 @@ double polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) 
   if (near.distance > seam.reach) return near.distance;
   const auto buried = [&](bool on_a) {
     return seam.buries(on_a, cores.world_a * (on_a ? near.point_a : near.point_b),
-                       cores.world_a.R * near.normal, same_angle);
+                       cores.world_a.R * near.normal, seam::same_angle);
   };
   if (!buried(true) && !buried(false)) {
     features_manifold(cores, near, seam.reach, seam.choice, seam.pair, out);
-    seam.remove_ghosts(from, face_angle, out);
+    seam.remove_ghosts(from, seam::face_angle, out);
   }
-  if (out.size() > from || near.distance > sunk_ratio * seam.size) return near.distance;
+  if (out.size() > from || near.distance > seam::sunk * seam.size) return near.distance;
   for (const bool of_a : {true, false}) {
     if (!(of_a ? seam.a : seam.b).has_seams) continue;
     const Exposure exposure{seam, cores, of_a, out};

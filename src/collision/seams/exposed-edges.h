@@ -16,7 +16,7 @@
 
 #include <vector>
 
-#include "collision/manifold.h"
+#include "collision/seams/seams.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {

@@ -1,6 +1,7 @@
 // Ghosts of a pair of parts; see the header.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/seam-pair.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 
 #include <algorithm>
 

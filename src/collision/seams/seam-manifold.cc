@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "collision/seam-pair.h"
+#include "base/constants.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 
 namespace tw {
 
@@ -19,9 +21,9 @@ double add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
   part_manifold(seam.first(), seam.a.frame, seam.second(), seam.b.frame, seam.reach, seam.choice,
                 seam.pair, out);
-  double least = 1e300;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = from; i < out.size(); ++i) least = std::min(least, out[i].gap);
-  seam.remove_ghosts(from, same_angle, out);
+  seam.remove_ghosts(from, seam::same_angle, out);
   return least;
 }
 
@@ -36,7 +38,7 @@ double manifold_at_seams(const Shape& a, const Frame& frame_a,
   const SeamSide side_b(b, frame_b, around_b);
   thread_local std::vector<SeamNeighbour> near_a, near_b;
   int pair = 0;
-  double least = 1e300;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < a.parts().size(); ++i)
     for (std::size_t j = 0; j < b.parts().size(); ++j, ++pair) {
       const auto first = static_cast<std::ptrdiff_t>(out.size());

@@ -2,21 +2,17 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
-#include "collision/seam-pair.h"
+#include "base/constants.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/seams.h"
 #include "collision/separation.h"
 
 namespace tw {
 
 namespace {
 
-// How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
-constexpr double shrinking[] = {0.98, 0.9};
-
-// A point this near to a part, relative to the size, is held by it.
-constexpr double held_ratio = 1e-5;
-
 bool buries(const SeamPair& seam, bool on_a, const RoundDistance& near) {
-  return seam.buries(on_a, on_a ? near.point_a : near.point_b, near.normal, same_angle);
+  return seam.buries(on_a, on_a ? near.point_a : near.point_b, near.normal, seam::same_angle);
 }
 
 // Of points along a buried axis, leaves what is exposed elsewhere on that side.
@@ -26,13 +22,13 @@ void keep_exposed(const SeamPair& seam, bool on_a, std::size_t from,
   out.erase(
       std::remove_if(first_new, out.end(), [&](const auto& p) { return p.reference_is_a != on_a; }),
       out.end());
-  seam.remove_ghosts(from, same_angle, out);
+  seam.remove_ghosts(from, seam::same_angle, out);
 }
 
 // Whether the part of a (or of b) or a neighbour of it holds a point of the other body.
 bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
   const auto held_by = [&](const SeamNeighbour& q) {
-    return height_over(q, point) <= held_ratio * seam.size;
+    return height_over(q, point) <= seam::same_point * seam.size;
   };
   const std::vector<SeamNeighbour>& others = seam.neighbours(of_a);
   return held_by({of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame}) ||
@@ -46,7 +42,7 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
   const ConvexPart& second = seam.second();
   if ((of_a ? second : first).kind != PartKind::cylinder) return;
   const std::size_t from = out.size();
-  for (double factor : shrinking) {
+  for (double factor : seam::shrinking) {
     SupportCore core_a(first, seam.a.frame * first.placement);
     SupportCore core_b(second, seam.b.frame * second.placement);
     SupportCore& scaled = of_a ? core_b : core_a;
@@ -64,7 +60,7 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
     const Vec3 outward = of_a ? near.normal : Vec3(-near.normal);
     if (near.distance < 0 && !holds(seam, of_a, point - 0.5 * near.distance * outward)) return;
     round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
-    seam.remove_ghosts(from, face_angle, out);
+    seam.remove_ghosts(from, seam::face_angle, out);
     return;
   }
 }
@@ -84,8 +80,8 @@ double cylinders_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) 
   if (ghost)
     keep_exposed(seam, ghost_a, from, out);
   else
-    seam.remove_ghosts(from, face_angle, out);
-  const bool sunk = near.distance < sunk_ratio * seam.size;
+    seam.remove_ghosts(from, seam::face_angle, out);
+  const bool sunk = near.distance < seam::sunk * seam.size;
   if (ghost && sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
   return near.distance;
 }

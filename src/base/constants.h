@@ -1,0 +1,148 @@
+// Every number that was chosen: what for, in which unit, and why so.
+//
+// Three kinds, kept apart.  `answer`: changes the motion that is computed, so it is part of what a
+// scene means.  `guard`: where a method would not end or not converge; what is cut short there is
+// counted in the statistics or raised, never silent.  `cost`: decides only where to look, when, or
+// how large a window is; the same bits come out whatever it is.
+//
+// Not here: limits of what users may set (limits.h); rounding of one algorithm, which stands with
+// it; what follows from `accuracy` (groups/tolerances.h).  Shares of speed are of sqrt(g size),
+// with size the least width of a body; g the scale of gravity.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tw::answer {
+
+// ---- the contact law ----
+// Static depth over size, and depth of doubled stiffness over static depth: columns of 20 stand.
+inline constexpr double depth_share = 2.5e-4, hardening_depths = 2;
+// The same in groups of unequal masses: 1000 : 1 stands on nine cubes.
+inline constexpr double unequal_depth_share = 0.2 * depth_share, unequal_hardening_depths = 1;
+// Masses are unequal from this ratio on.
+inline constexpr double unequal_masses = 100;
+// The heaviest may lie on any contact of its group: none is softer than for a thousandth of it (the
+// law hardens by no more), nor stiffer than for a thousand times the pair's own: a bead on a lorry
+// must not stop the clock.
+inline constexpr double most_unequal = 1000;
+// Of the small oscillation about the static depth; 0.3 to 0.7 serve.
+inline constexpr double damping_ratio = 0.5;
+// Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
+inline constexpr double tangential_share = 0.8;
+// m/s^2: stands in for gravity where there is none.
+inline constexpr double standard_gravity = 9.81;
+// Fusion speed, share of sqrt(g size): a ball of restitution 0.5 that comes down at it bounces up
+// by a tenth of a percent of its size.  The least that is taken by default, and that may be set,
+// m/s.
+inline constexpr double fusion_share = 0.07, least_default_speed = 1e-4, least_fusion_speed = 1e-9;
+// A new contact that slides is given this many times the stretch of the cone, so that it slides at
+// once.
+inline constexpr double preload_beyond = 10;
+
+// ---- which contacts are the same ----
+// A contact after a refresh is one before it if they are not farther apart, share of the smaller
+// size.
+inline constexpr double same_point = 0.1;
+// Contacts of one body with several fixed ones share a stiffness where their normals agree so far,
+// rad.
+inline constexpr double coplanar = 1e-3;
+// An edge or corner of the ground whose normal is that of a face but for this, rad, is met as the
+// face: beyond a seam the neighbour goes on with it.
+inline constexpr double flat_angle = coplanar;
+// Where a corner crosses the edge between two faces at a small angle, both hold it for a moment: as
+// far as they are at one place (share of the size) with one normal (cosine), they hold it together.
+inline constexpr double same_place = 1e-2, same_normal = 0.95;
+
+// ---- groups ----
+// Boxes of members reach this share of their size farther: a check finds in them whom a member may
+// touch before the next one.  What comes from farther in that time is left to collision checks.
+inline constexpr double contact_margin = 0.1;
+// Between two checks a surface point moves at most this share of its body's size; the slowest
+// checks are 2^most_halvings times rarer than the finest.
+inline constexpr double most_travel = 0.05;
+inline constexpr int most_halvings = 5;
+// Depth that may stay unrepresented to the end of an arc, share of the contact's static depth.
+inline constexpr double unseen_depth = 0.5;
+// A gap below this share of the static depth counts as touch when impulses are passed on: found at
+// the touch, up to rounding.
+inline constexpr double touching = 1e-3;
+
+// ---- regions ----
+// A group of fewer members always gets new arcs whole.
+inline constexpr std::size_t least_divided = 8;
+// What rests at a border wakes where the force on it changes by this share of its weight.
+inline constexpr double wake_share = 0.02;
+// What moves there may miss this share of a step's velocity tolerance, for what is missed is lost
+// to the body's momentum.  Where the tolerance was 0.01 sqrt(g size) a row of 16 cubes ended
+// with 2.8 times its momentum with all of it, with 0.9 % too much with this share (with a tenth 1.0
+// %, at 1.3 times the cost).
+inline constexpr double missed_share = 0.3;
+
+// ---- rest and sleep ----
+// A group is quiet while no surface point is faster than this share, rests when it was so for this
+// long, s, and its speed has fallen to this part of what it was, or below that share.
+inline constexpr double quiet_share = 5e-3, rest_time = 0.2, rest_decay = 0.5, still_share = 1e-7;
+// A member is still while slower than this share; watched for so long, s: the second half's peak
+// must not exceed the first's by more, and the way made by this share of peak times time.
+inline constexpr double sleep_share = 5e-4, sleep_time = 0.5, growth = 1.1, drift = 0.1;
+// Fewer sleepers are not worth a group of their own: a number, and a share of the group.
+inline constexpr std::size_t least_sleepers = 8;
+inline constexpr double least_sleeping_share = 0.25;
+
+// ---- impacts ----
+// Points this close take part in an impact, share of the smaller size over accuracy.
+inline constexpr double touch_per_accuracy = 0.1;
+// So many impacts in quick succession fuse a pair; the interval that makes them quick is that of
+// the contact (soft-impact rule in kernel/impact.cc), or this share of it where nothing presses the
+// pair together: such a pair may knock about in a corner for a while, a true collapse goes on to
+// ever shorter intervals.
+inline constexpr std::uint32_t soft_run = 8;
+inline constexpr double free_run_share = 1e-2;
+
+}  // namespace tw::answer
+
+namespace tw::guard {
+
+// Impulses of one impact between two bodies, and of one that is passed on through a group.  Counted
+// where something still approaches then (impulses_given_up).
+inline constexpr int most_impulses = 200, most_passed_on = 700;
+// Impacts of a pair at one instant, slower than this share of the fusion speed: rounding, they
+// fuse.
+inline constexpr double grazing = 1e-5;
+// More impacts at one instant are a heavy body that comes down on a light one, which impulses would
+// stop too slowly: they fuse.  Counted.
+inline constexpr std::uint32_t most_repeated = 2000;
+// More microsteps at one instant are an error that stops the two.
+inline constexpr std::uint32_t most_microsteps = 100000;
+
+}  // namespace tw::guard
+
+namespace tw::seam {
+
+// Where pieces of the ground meet (collision/manifold.h).  Angles from small to large: normals that
+// are one another's < what is a face's up to its nearest features < a face along an edge; lengths
+// are shares of the size of the bodies in contact.  All change the answer.
+
+// Normals that agree so far are the same, rad; as a cosine.
+inline constexpr double same_angle = 1e-4, same_normal = 1 - 5e-9;
+// Points on a face of the other body have its normal, up to 2 degrees from that of the nearest
+// features and a little more, rad.
+inline constexpr double face_angle = 0.04;
+// A face that slides along an edge of the ground takes its border along, up to this sine of the
+// angle between the two: tilted faces touch it only in passing.
+inline constexpr double along_edge = 0.05;
+// Points closer than this are one, and a point so near to a part is held by it.
+inline constexpr double same_point = 1e-5;
+// What of an edge is so near to a neighbour counts as buried: more than same_point allows.
+inline constexpr double buried_margin = 2e-5;
+// How far from the surface normals are compared, and how far around a point a face is looked at.
+inline constexpr double probe = 0.01;
+// Bodies nearer than this may overlap the neighbours of what they are near to.
+inline constexpr double sunk = 0.01;
+// How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
+inline constexpr double shrinking[] = {0.98, 0.9};
+
+}  // namespace tw::seam

@@ -1,0 +1,131 @@
+// A scene of boxes on a floor and the states before a key: all that contact groups are decided by,
+// without a world, a loop or events.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "groups/check-times.h"
+#include "groups/end-test.h"
+#include "groups/regroup.h"
+
+namespace tw::test {
+
+class SmallScene {
+ public:
+  SceneOptions options;
+  Scene scene{options};
+  StateGraph graph;
+  BroadPhase grid;
+  std::vector<BodyId> unbounded;
+  Surroundings surroundings{scene, grid, unbounded};
+  GroupCounters counters;
+
+  // A fixed half-space z <= 0.
+  BodyId add_floor() {
+    Body& body = add(make_half_space(Vec3::UnitZ(), 0), BodyKind::fixed, Pose());
+    body.unbounded = body.is_fixed_plane = true;
+    body.plane_normal = Vec3::UnitZ();
+    unbounded.push_back(body.id());
+    return body.id();
+  }
+  // A cube of 1 kg, born at time 0.
+  BodyId add_cube(double edge, const Vec3& x, const Vec3& v = Vec3::Zero(),
+                  const Vec3& w = Vec3::Zero(), const Quat& q = Quat::Identity()) {
+    Body& body = add(make_box(Vec3::Constant(edge)), BodyKind::dynamic, {x, q});
+    body.mass = body.info.mass = 1;
+    body.moments = Vec3::Constant(edge * edge / 6);
+    State& state = *graph.head(body.process);
+    state.x = x;
+    state.q = q;
+    state.v = v;
+    state.L = angular_momentum(body, q, w);
+    state.acceleration = options.gravity;
+    return body.id();
+  }
+
+  ProcessId process(BodyId id) const { return scene.process_of(id); }
+  std::vector<ProcessId> processes(const std::vector<BodyId>& ids) const {
+    std::vector<ProcessId> result;
+    for (const BodyId id : ids) insert(result, process(id));
+    return result;
+  }
+  const State& tail(BodyId id) const { return *graph.tail(process(id)); }
+  const Group& group_of(BodyId id) const { return *tail(id).group; }
+  Before before(const Key& key) const { return Before(scene, graph, key); }
+
+  // Regroups after a discontinuity that gives these new arcs, `change`d, and enters what follows.
+  template <class Change>
+  std::vector<Successor> regroup(const Key& key, Cause cause, const std::vector<BodyId>& struck,
+                                 Change change) {
+    std::vector<Successor> given;
+    for (const BodyId id : struck) {
+      given.push_back(make_successor(before(key), process(id), scene.body(id).dynamic()));
+      change(given.back());
+    }
+    const auto all = [](ProcessId) { return true; };
+    auto result = tw::regroup(before(key), surroundings, all, {cause}, given, counters);
+    std::vector<Successor> made = std::move(std::get<Regrouped>(result).successors);
+    enter(key, made);
+    return made;
+  }
+  std::vector<Successor> regroup(const Key& key, Cause cause, const std::vector<BodyId>& struck) {
+    return regroup(key, cause, struck, [](Successor&) {});
+  }
+
+  // The two come to touch, softly.
+  std::vector<Successor> fuse(BodyId a, BodyId b, double when, std::uint32_t microstep = 1) {
+    return regroup({when, microstep, KeyKind::impact, pair_id(a, b)}, Cause::fusion,
+                   {std::min(a, b), std::max(a, b)});
+  }
+  // The check of the group that the body is in, where its arc ends.
+  std::vector<Successor> check(BodyId id, const std::vector<BodyId>& members) {
+    Group& group = *graph.tail(process(id))->group;
+    test_end(scene, surroundings, group, counters);
+    Key key = group_check_key(group, group.next_check);
+    key.id = number(process(members.front()));
+    return regroup(key, Cause::check, members);
+  }
+
+ private:
+  Body& add(const ShapePtr& shape, BodyKind kind, const Pose& pose) {
+    auto body = std::make_unique<Body>();
+    const BodyId id = static_cast<BodyId>(scene.bodies.size());
+    body->info.id = id;
+    body->info.name = "body-" + std::to_string(id);
+    body->info.kind = kind;
+    body->contact = {id, ""};
+    body->shape_P = shape;
+    body->radius = shape->radius_about_origin();
+    body->least_width = shape->least_width();
+    if (kind != BodyKind::dynamic) body->motion = make_fixed_motion(pose);
+    body->process = graph.add_process();
+    scene.first_bodies.push_back(id);
+    scene.contacts.add_body(*body);
+    State* state = graph.append(body->process, {0, 0, KeyKind::birth, id});
+    state->arc_key = state->key;
+    if (shape->bounded()) {
+      Aabb box = shape->bounds(Frame(pose));
+      box.grow(0.2 * body->least_width);
+      grid.place(id, box, kind == BodyKind::fixed);
+    }
+    scene.bodies.push_back(std::move(body));
+    return *scene.bodies.back();
+  }
+
+  void enter(const Key& key, const std::vector<Successor>& successors) {
+    std::vector<State*> ring;
+    for (const Successor& successor : successors) {
+      if (!successor.enters()) continue;
+      State* state = graph.append(successor.process(), key);
+      static_cast<StateData&>(*state) = successor.data;
+      ring.push_back(state);
+    }
+    graph.close_ring(ring);
+  }
+};
+
+}  // namespace tw::test
