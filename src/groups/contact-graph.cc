@@ -139,7 +139,7 @@ void Kernel::match_stretches(Regrouping& work, const NewContactPair& pair,
                              const PairBefore& before_it) const {
   const ContactPair* old = before_it.pair;
   const Group& before = *before_it.group;
-  GroupArc& arc = *before.arc;
+  const GroupArc& arc = *before.arc;
   const double now = before.contact_time(work.key.time);
   const auto size_of = [&](BodyId id) { return bodies[id]->least_width; };
   const double size = std::min(size_of(first_of(pair.id)), size_of(second_of(pair.id)));

@@ -262,6 +262,8 @@ double Kernel::deviation(const Group& group, BodyId id) const {
   const Body& body = *bodies[id];
   const double end = group.arc->reached();
   const GroupSample now = group.arc->evaluate(group.member_of(id), end);
+  // an arc that began at this very instant need not be complete
+  if (!before.group->at_rest) before.group->arc->extend(end);
   const PoseTwist was = evaluate(body, before, end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
@@ -318,7 +320,7 @@ std::vector<BodyId> Kernel::reached_beyond(const Regrouping& work) const {
 void Kernel::discard(const Regrouping& work) {
   for (const auto& group : work.made) {
     if (group->at_rest) continue;
-    const GroupCounts& counts = group->arc->counts();
+    const GroupCounts counts = group->arc->counts();
     counters.integrations += counts.steps;
     counters.implicit_steps += counts.steps;
     counters.rejected_steps += counts.rejected;

@@ -115,7 +115,7 @@ void Kernel::collect_old(Regrouping& work) const {
 void Kernel::carry(Regrouping& work, const PairBefore& old) const {
   const ContactPair& pair = *old.pair;
   const Group& group = *old.group;
-  GroupArc& arc = *group.arc;
+  const GroupArc& arc = *group.arc;
   const double now = group.contact_time(work.key.time);
   const Successor* a = work.successor_of(first_of(pair.id));
   const Successor* b = work.successor_of(second_of(pair.id));
@@ -195,6 +195,7 @@ MotionPtr Kernel::outside_motion(const Regrouping& work, BodyId id) const {
   if (theirs.at_rest) return make_fixed_motion({successor.data.x, successor.data.q});
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
+  theirs.arc->extend(theirs.next_check);
   return theirs.arc->motion(static_cast<int>(successor.data.member), work.key.time,
                             theirs.next_check);
 }
