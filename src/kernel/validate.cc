@@ -121,7 +121,8 @@ std::string Kernel::validate_claims() const {
     if (tail->starts_arc() && tail->key.time > process(*body).claim.time && body->dynamic())
       return "state past the claim: " + body->info.name;
     for (int i = 0; i <= 4; ++i) {
-      const double t = gvt + (process(*body).claim.time - gvt) * (0.25 * i);
+      const double claimed = process(*body).claim.time;
+      const double t = std::min(claimed, gvt + (claimed - gvt) * (0.25 * i));
       if (!std::isfinite(t) || t < gvt) continue;
       const State* s = graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
