@@ -91,13 +91,13 @@ Progress Kernel::process_callback(std::uint32_t number) {
   std::vector<SuccessorView> views;
   views.reserve(successors.size());
   for (Successor& successor : successors)
-    views.emplace_back(successor, key, false, options.gravity);
+    views.emplace_back(successor, key, false, present.settings.gravity);
   std::vector<StateView*> pointers;
   for (SuccessorView& view : views) pointers.push_back(&view);
 
   // the call; its error stops the targets, speculatively
   double next = never;
-  ++counters.callbacks_run;
+  ++present.counters.callbacks_run;
   try {
     const auto answer = callback.def.callback->run(key.time, pointers);
     if (!callback.def.period && answer) {

@@ -79,8 +79,8 @@ std::uint32_t Kernel::make_pair(Body& a, Body& b, const Key& from) {
   pair.place_b = static_cast<std::uint32_t>(second.pairs.size());
   first.pairs.push_back(index);
   second.pairs.push_back(index);
-  ++counters.pairs_made;
-  ++counters.live_pairs;
+  ++present.counters.pairs_made;
+  ++live_pairs_;
   return index;
 }
 
@@ -99,7 +99,7 @@ void Kernel::drop_pair(std::uint32_t index) {
   pair.live = false;
   pair.caches.clear();
   unused_pairs.push_back(index);
-  --counters.live_pairs;
+  --live_pairs_;
 }
 
 void Kernel::schedule_pair(std::uint32_t index, double when) {
@@ -222,7 +222,7 @@ std::optional<Key> Kernel::first_exact_impact(const Body& a, const Body& b, cons
 
 bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
   Pair& pair = pairs[index];
-  ++counters.predictions;
+  ++present.counters.predictions;
   const double impact_time = exact_impact(piece);
   if (impact_time < never) {
     const Key key = impact_key(piece, impact_time);
@@ -246,9 +246,9 @@ bool Kernel::pursue_exact(std::uint32_t index, const Piece& piece) {
 // Overlapping and approaching at the common start is an impact now.  True if one was found.
 bool Kernel::check_common_start(Pair& pair, const Piece& piece) {
   const double start = piece.start_time();
-  ++counters.checks;
+  ++present.counters.checks;
   const double clear = certificate(piece, pair.caches, start, 0);
-  counters.certificates += clear > -never;
+  present.counters.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
   const Separation s = separation_at(piece, start);
@@ -264,9 +264,9 @@ bool Kernel::check_grid_point(Pair& pair, const Piece& piece, double when) {
   const Body& a = *scene.bodies[pair.a];
   const Body& b = *scene.bodies[pair.b];
   const double slack = depth_slack * std::min(a.least_width, b.least_width);
-  ++counters.checks;
+  ++present.counters.checks;
   const double clear = certificate(piece, pair.caches, when, slack);
-  counters.certificates += clear > -never;
+  present.counters.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + check_grid);
   if (clear > when) return false;
 

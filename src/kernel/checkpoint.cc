@@ -12,30 +12,19 @@
 
 namespace tw {
 
-Checkpoint::Checkpoint() = default;
-Checkpoint::~Checkpoint() = default;
-
 std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   require_between_runs("a checkpoint was made");
   // what an interrupt or an observer's error has left undelivered belongs to the time before
   deliver_rest();
   auto result = std::make_shared<Checkpoint>();
   result->owner = this;
-  result->time = time;
-  result->due = due_;
-  result->begun = begun;
-  result->counters = counters;
-  result->hash_sum = hash_sum_;
-  result->hash_count = hash_count_;
-  result->edits = edits_;
-  result->removals = removals_;
-  result->gravity = options.gravity;
+  result->present = present;
+  const Key now = present.key();
   for (const auto& body : scene.bodies) {
-    const Key present = present_key();
-    const State* state = graph.last_before(body->process, present);
+    const State* state = graph.last_before(body->process, now);
     while (state->prev && !state->committed) state = state->prev;
     auto& kept = result->states.emplace_back();
-    for (; state && state->key < present; state = state->next)
+    for (; state && state->key < now; state = state->next)
       kept.push_back({state->key, state->committed, *state});
   }
   for (const CallbackRecord& callback : callbacks) {
@@ -43,9 +32,10 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
     Key next{callback.committed_next, 0, KeyKind::callback,
              static_cast<std::uint64_t>(&callback - callbacks.data())};
     if (callback.def.period)
-      next = first_tick(callback, !begun           ? Key{}
-                                  : due_.inclusive ? Key{time, 0, KeyKind::group_check, 0}
-                                                   : present_key());
+      next = first_tick(callback, !present.begun ? Key{}
+                                  : present.due.inclusive
+                                      ? Key{present.time, 0, KeyKind::group_check, 0}
+                                      : now);
     result->callbacks.push_back({next, callback.committed_next});
   }
   return result;
@@ -56,7 +46,8 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
   TW_REQUIRE(
       checkpoint.states.size() == scene.bodies.size() &&
-          checkpoint.callbacks.size() == callbacks.size() && checkpoint.removals == removals_,
+          checkpoint.callbacks.size() == callbacks.size() &&
+          checkpoint.present.removals == present.removals,
       "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
 
   // empty the graph and the event queue
@@ -72,16 +63,8 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   undone_.clear();
 
   // the committed present
-  time = gvt = checkpoint.time;
-  due_ = checkpoint.due;
-  begun = checkpoint.begun;
-  counters = checkpoint.counters;
-  counters.live_pairs = 0;
-  hash_sum_ = checkpoint.hash_sum;
-  hash_count_ = checkpoint.hash_count;
-  edits_ = checkpoint.edits;
-  options.gravity = checkpoint.gravity;
-  const Key present = present_key();
+  present = checkpoint.present;
+  const Key now = present.key();
   newborn_.clear();
   for (const auto& body : scene.bodies) {
     for (const Checkpoint::Kept& kept : checkpoint.states[body->id()]) {
@@ -90,11 +73,11 @@ void Kernel::restore(const Checkpoint& checkpoint) {
       state->committed = kept.committed;
     }
     const Key first = graph.head(body->process)->key;
-    process(*body).claim = body->fixed() && begun ? last_key : begun ? present : first;
+    process(*body).claim = body->fixed() && present.begun ? last_key : present.begun ? now : first;
     process(*body).lonely_claims = 0;
     // boxes are those of another time until the first claim
     if (!body->fixed()) body->placed = false;
-    if (begun) {
+    if (present.begun) {
       schedule_advance(*body);
       schedule_group_check(body->process);
     } else {
@@ -110,7 +93,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   // frames go on with the first that had not been delivered
   for (SinkRecord& sink : sinks) {
     sink.next_frame = 0;
-    while (due_.reaches(sink.next_time())) ++sink.next_frame;
+    while (present.due.reaches(sink.next_time())) ++sink.next_frame;
   }
 }
 

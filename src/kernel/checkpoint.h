@@ -5,9 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/counters.h"
-#include "kernel/due.h"
-#include "timeline/key.h"
+#include "kernel/present.h"
 #include "timeline/state.h"
 
 namespace tw {
@@ -15,16 +13,8 @@ namespace tw {
 class Kernel;
 
 struct Checkpoint {
-  Checkpoint();
-  ~Checkpoint();
-
   const Kernel* owner = nullptr;
-  double time = 0;
-  Due due;
-  bool begun = false;
-  Counters counters;
-  std::uint64_t hash_sum = 0, hash_count = 0, edits = 0, removals = 0;
-  Vec3 gravity = Vec3::Zero();
+  Present present;
   // by body: the last committed one, and what edits have added to it
   struct Kept {
     Key key;

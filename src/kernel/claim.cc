@@ -65,7 +65,9 @@ void Kernel::make_ready(Body& body, const Key& key) {
 double Kernel::window_end(const Body& body) const {
   const State& tail = *graph.tail(body.process);
   const double start = process(body).claim.time;
-  if (tail.group) return natural_end(tail);
+  const double limit = policy->may_reach(queue, process(body));
+  const double least = std::nextafter(start, never);
+  if (tail.group) return std::max(std::min(natural_end(tail), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process(body).lonely_claims - patience));
@@ -85,15 +87,15 @@ double Kernel::window_end(const Body& body) const {
     const double next = callbacks[number].next.time;
     if (next > start) end = std::min(end, next);
   }
-  return std::max(end, std::nextafter(start, never));
+  return std::max(std::min(end, limit), least);
 }
 
 Aabb Kernel::claimed_box(const Body& body, double end) const {
   Aabb box;
-  const State* state = graph.last_at_or_before_time(body.process, gvt);
+  const State* state = graph.last_at_or_before_time(body.process, present.gvt);
   if (!state) state = graph.head(body.process);
   for (; state; state = state->next) {
-    const double from = std::max(state->key.time, gvt);
+    const double from = std::max(state->key.time, present.gvt);
     const double to = state->next ? std::min(state->next->key.time, end) : end;
     if (to >= from) box.add(swept_bounds(body, *state, from, to));
   }
@@ -104,7 +106,7 @@ Aabb Kernel::claimed_box(const Body& body, double end) const {
 }
 
 void Kernel::claim_window(Body& body) {
-  ++counters.claims;
+  ++present.counters.claims;
   if (const auto& group = graph.tail(body.process)->group; group && !group->end_tested) {
     test_group_end(*group);
   }
@@ -120,12 +122,12 @@ void Kernel::claim_window(Body& body) {
   process(body).claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
     if (!body.unbounded)
-      grid.place(body.id(), claimed_box(body, body.fixed() ? gvt : end), body.fixed());
+      grid.place(body.id(), claimed_box(body, body.fixed() ? present.gvt : end), body.fixed());
     body.placed = true;
     drop_parted_pairs(body);
-    const std::uint64_t candidates = counters.candidates;
+    const std::uint64_t candidates = present.counters.candidates;
     find_partners(body, before);
-    const bool alone = counters.candidates == candidates;
+    const bool alone = present.counters.candidates == candidates;
     process(body).lonely_claims =
         alone ? std::min(process(body).lonely_claims + 1, patience + most_doublings) : 0;
   }
@@ -154,7 +156,7 @@ void Kernel::drop_parted_pairs(Body& body) {
 
 void Kernel::find_partners(Body& body, const Key& claimed_before) {
   const auto consider = [&](BodyId id) {
-    ++counters.candidates;
+    ++present.counters.candidates;
     Body& other = *scene.bodies[id];
     if (body.dynamic() || other.dynamic()) meet(body, other, claimed_before);
   };

@@ -11,6 +11,8 @@
 #include "base/cpu-clock.h"
 #include "base/hash.h"
 #include "kernel/kernel.h"
+#include "timeline/field-words.h"
+#include "timeline/state-fields.h"
 
 namespace tw {
 
@@ -18,16 +20,17 @@ std::uint64_t state_hash(const Body& body, const Key& key, const PoseTwist& poin
                          const StateData& data) {
   const BodyState s = body_state(body, point);
   Hasher h;
-  h.add(std::uint64_t{body.id()});
-  h.add(key.time);
-  h.add(std::uint64_t{key.microstep});
-  h.add(kind_code(key.kind));
-  h.add(key.id);
-  for (int i = 0; i < 3; ++i) h.add(s.position[i]);
-  for (int i = 0; i < 4; ++i) h.add(s.orientation.coeffs()[i]);
-  for (int i = 0; i < 3; ++i) h.add(s.velocity[i]);
-  for (int i = 0; i < 3; ++i) h.add(s.angular_velocity[i]);
-  if (data.slots) h.add(data.slots->hash());
+  const auto add = [&h](auto word) { h.add(word); };
+  add(std::uint64_t{body.id()});
+  each_word(key, add);
+  each_word(s.position, add);
+  each_word(s.orientation, add);
+  each_word(s.velocity, add);
+  each_word(s.angular_velocity, add);
+  for_each_field(data, [&](const char*, FieldUse use, const auto& field) {
+    if constexpr (!std::is_same_v<decltype(field), const std::shared_ptr<Group>&>)
+      if (use == FieldUse::history) each_word(field, add);
+  });
   return h.value();
 }
 
@@ -42,14 +45,15 @@ double Kernel::compute_gvt() const {
 
 // Moves GVT up and commits what it passes, but nothing later than the run's end.
 void Kernel::update_gvt() {
-  ++counters.gvt_computations;
+  ++present.counters.gvt_computations;
   events_since_gvt_ = 0;
   const double least = compute_gvt();
-  TW_ASSERT(least >= gvt, "GVT would fall from " + show(gvt) + " to " + show(least));
+  TW_ASSERT(least >= present.gvt,
+            "GVT would fall from " + show(present.gvt) + " to " + show(least));
   const bool inclusive = least > until_;
   const double limit = std::min(least, until_);
   if (limit == never) return;  // nothing moves and nothing is asked for
-  if (limit > gvt || inclusive) commit(limit, inclusive);
+  if (limit > present.gvt || inclusive) commit(limit, inclusive);
 }
 
 // Everything before `limit` (at it, too, if inclusive) is final.  What is committed is so before
@@ -57,8 +61,10 @@ void Kernel::update_gvt() {
 void Kernel::commit(double limit, bool inclusive) {
   const std::exception_ptr error = error_before(limit, inclusive);
   commit_states(limit, inclusive);
-  gvt = time = limit;
-  due_ = {limit, inclusive};
+  present.gvt = present.time = limit;
+  present.due = {limit, inclusive};
+  // what will not be found again
+  std::erase_if(undone_, [&](const auto& undone) { return undone.second.time < limit; });
   if (error)
     deliver(never);
   else if (delivery_is_worth_it())
@@ -103,31 +109,32 @@ void Kernel::commit_states(double limit, bool inclusive) {
 
 void Kernel::commit_state(State& state) {
   state.committed = true;
-  counters.kinematic_work += state.tally.kinematic_work;
-  counters.max_penetration = std::max(counters.max_penetration, state.tally.depth);
+  present.counters.kinematic_work += state.tally.kinematic_work;
+  present.counters.max_penetration = std::max(present.counters.max_penetration, state.tally.depth);
   // each ring is counted by its member with the least id
   const bool impact = state.key.kind == KeyKind::impact;
   const bool call = state.key.kind == KeyKind::callback && state.changed;
   bool first = impact || call;
   for (const State* r = state.ring; first && r != &state; r = r->ring)
     first = state.process < r->process;
-  if (first && impact) ++counters.collisions;
-  if (first && call) ++counters.callback_changes;
+  if (first && impact) ++present.counters.collisions;
+  if (first && call) ++present.counters.callback_changes;
   if (state.key.kind == KeyKind::callback)
     callbacks[state.key.id].committed_next = state.next_callback;
-  counters.fusions += state.tally.fusions;
-  counters.collisions -= state.tally.fusions;  // their keys are those of impacts
-  counters.fissions += state.tally.fissions;
-  counters.contact_changes += state.tally.contact_changes;
-  counters.impulses_given_up += state.tally.impulses_given_up;
-  counters.declared_soft += state.tally.declared_soft;
-  counters.momentum_dropped += state.tally.momentum_dropped;
+  present.counters.fusions += state.tally.fusions;
+  present.counters.collisions -= state.tally.fusions;  // their keys are those of impacts
+  present.counters.fissions += state.tally.fissions;
+  present.counters.contact_changes += state.tally.contact_changes;
+  present.counters.impulses_given_up += state.tally.impulses_given_up;
+  present.counters.declared_soft += state.tally.declared_soft;
+  present.counters.momentum_dropped += state.tally.momentum_dropped;
   if (state.report && !observers.empty())
     for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
   if (options.hash && state.changed) {
     const Body& body = body_of(state.process);
-    hash_sum_ += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
-    ++hash_count_;
+    present.history.sum +=
+        state_hash(body, state.key, evaluate(body, state, state.key.time), state);
+    ++present.history.count;
   }
 }
 
@@ -139,7 +146,7 @@ bool Kernel::delivery_is_worth_it() const {
   // states wait for their frames: memory
   if (graph.state_count() >= most_waiting_states) return true;
   return std::any_of(sinks.begin(), sinks.end(), [&](const SinkRecord& s) {
-    return (due_.time - s.next_time()) * s.fps >= batch;
+    return (present.due.time - s.next_time()) * s.fps >= batch;
   });
 }
 
@@ -151,14 +158,14 @@ bool Kernel::deliver(double wall_end) {
   struct AddTime {
     Kernel& kernel;
     double start;
-    ~AddTime() { kernel.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
+    ~AddTime() { kernel.present.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
   } add_time{*this, cpu};
 
   do {
     SinkRecord* sink = nullptr;
     for (SinkRecord& s : sinks)
       if (!sink || s.next_time() < sink->next_time()) sink = &s;
-    const bool frame_due = sink && due_.reaches(sink->next_time());
+    const bool frame_due = sink && present.due.reaches(sink->next_time());
     if (!undelivered_.empty() && (!frame_due || undelivered_.front()->time <= sink->next_time())) {
       const std::shared_ptr<const Collision> collision = undelivered_.front();
       while (next_observer_ < observers.size()) {
@@ -185,8 +192,8 @@ void Kernel::deliver_frame(SinkRecord& record) {
     if (!state) continue;
     poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
   }
-  counters.max_penetration =
-      std::max(counters.max_penetration, deepest_contact(scene, states_at(frame_time), frame_time));
+  present.counters.max_penetration = std::max(
+      present.counters.max_penetration, deepest_contact(scene, states_at(frame_time), frame_time));
   const std::shared_ptr<FrameSink> sink = record.sink;
   sink->frame(index, frame_time, poses);
 }
@@ -204,15 +211,15 @@ void Kernel::free_states(double limit) {
 }
 
 std::string Kernel::history_hash() const {
-  std::uint64_t sum = hash_sum_;
+  std::uint64_t sum = present.history.sum;
   for (const auto& body : scene.bodies) {
     if (body->info.removed) continue;
-    const State* state = state_at(body->id(), time);
-    const Key end{time, 0, KeyKind::step, body->id()};
-    sum += state_hash(*body, end, evaluate(*body, *state, time), *state);
+    const State* state = state_at(body->id(), present.time);
+    const Key end{present.time, 0, KeyKind::step, body->id()};
+    sum += state_hash(*body, end, evaluate(*body, *state, present.time), *state);
   }
   std::string bytes;
-  for (const std::uint64_t word : {sum, hash_count_})
+  for (const std::uint64_t word : {sum, present.history.count})
     for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
   return sha256_hex(bytes);
 }

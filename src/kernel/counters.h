@@ -12,7 +12,7 @@ struct Counters : GroupCounters {
   // events, as processed
   std::uint64_t events = 0, events_postponed = 0, claims = 0, checks = 0, certificates = 0,
                 predictions = 0;
-  std::uint64_t candidates = 0, pairs_made = 0, live_pairs = 0, gvt_computations = 0;
+  std::uint64_t candidates = 0, pairs_made = 0, gvt_computations = 0;
   double pair_sum = 0;  // live pairs, summed over processed events: for the average
 
   // rollback

@@ -66,8 +66,9 @@ bool Kernel::await(const Region& region, const Key& key) {
 Progress Kernel::regroup(const Key& key, std::vector<Successor>& successors, Cause cause) {
   const bool between_runs = is_edit(key);
   const Known is_known = [&](ProcessId id) { return between_runs || known(id, key); };
-  auto result = tw::regroup(before(key), surroundings_, is_known,
-                            {cause, observed(CollisionKind::fission)}, successors, counters);
+  auto result =
+      tw::regroup(before(key), surroundings_, is_known, {cause, observed(CollisionKind::fission)},
+                  successors, present.counters);
   if (const Waits* waits = std::get_if<Waits>(&result)) {
     await(waits->region, key);
     return Progress::try_again;
@@ -100,7 +101,7 @@ void Kernel::schedule_group_check(ProcessId id) {
 
 // Finds where the arcs of the group end, before anybody relies on them.
 void Kernel::test_group_end(Group& group) {
-  test_end(scene, surroundings_, group, counters);
+  test_end(scene, surroundings_, group, present.counters);
   for (const ProcessId id : group.members)
     if (graph.tail(id)->group.get() == &group) schedule_group_check(id);
 }
@@ -115,7 +116,7 @@ Progress Kernel::check_group(ProcessId id) {
   }
   const double when = natural_end(tail);
   Key key = group_check_key(*group, when);
-  ++counters.group_checks;
+  ++present.counters.group_checks;
 
   // only after the claims of kinematic bodies, and those of all that take part, have reached its
   // time

@@ -84,7 +84,7 @@ void Kernel::find_impact_points(const Successor& a, const Successor& b) {
   const Frame fa(a.point.q.toRotationMatrix(), a.point.x);
   const Frame fb(b.point.q.toRotationMatrix(), b.point.x);
   touching_points(*body_a.shape_P, fa, *body_b.shape_P, fb,
-                  answer::touch_per_accuracy * options.accuracy * size, contact_points_);
+                  answer::touch_per_accuracy * present.settings.accuracy * size, contact_points_);
   if (!contact_points_.empty()) return;
   const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
   contact_points_.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
@@ -120,7 +120,7 @@ bool Kernel::drop_ghosts(const Successor& a, const Successor& b) {
   const PlacedBody side_a = placed(a), side_b = placed(b);
   manifold_at_seams(*a.body->shape_P, side_a.frame, surroundings_.seam_neighbours(*a.body, ground),
                     *b.body->shape_P, side_b.frame, surroundings_.seam_neighbours(*b.body, ground),
-                    answer::touch_per_accuracy * options.accuracy * size, size, points);
+                    answer::touch_per_accuracy * present.settings.accuracy * size, size, points);
   for (const ManifoldPoint& p : points)
     contact_points_.push_back({p.core_point - p.radius * p.normal,
                                p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, p.pair});
@@ -229,9 +229,9 @@ void Kernel::run_collision_callbacks(const Collision& collision, Successor& a, S
     // the sides in the order given; where both match either way, the body added first comes first
     const bool straight =
         side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
-    SuccessorView view_a(a, collision.key, false, options.gravity);
-    SuccessorView view_b(b, collision.key, false, options.gravity);
-    ++counters.callbacks_run;
+    SuccessorView view_a(a, collision.key, false, present.settings.gravity);
+    SuccessorView view_b(b, collision.key, false, present.settings.gravity);
+    ++present.counters.callbacks_run;
     if (straight)
       def.callback->run(collision, false, view_a, view_b);
     else

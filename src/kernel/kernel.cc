@@ -20,13 +20,15 @@ namespace {
 class RunGuard {
  public:
   explicit RunGuard(Kernel& kernel)
-      : kernel_(kernel), cpu_(thread_cpu_seconds()), output_(kernel.counters.output_cpu_seconds) {
+      : kernel_(kernel),
+        cpu_(thread_cpu_seconds()),
+        output_(kernel.present.counters.output_cpu_seconds) {
     kernel_.running = true;
   }
   ~RunGuard() {
     kernel_.running = false;
-    const double output = kernel_.counters.output_cpu_seconds - output_;
-    kernel_.counters.cpu_seconds += thread_cpu_seconds() - cpu_ - output;
+    const double output = kernel_.present.counters.output_cpu_seconds - output_;
+    kernel_.present.counters.cpu_seconds += thread_cpu_seconds() - cpu_ - output;
   }
   RunGuard(const RunGuard&) = delete;
   RunGuard& operator=(const RunGuard&) = delete;
@@ -47,7 +49,8 @@ Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, 
   return {priority, key, kind, subject};
 }
 
-void Kernel::handle(Event event) {
+void Kernel::process_next() {
+  const Event event = policy->next(queue);
   Progress progress = Progress::done;
   switch (event.kind) {
     case EventKind::advance: claim_window(*scene.bodies[event.subject]); break;
@@ -60,9 +63,9 @@ void Kernel::handle(Event event) {
         pursue(event.subject);
       break;
   }
-  if (progress == Progress::try_again) ++counters.events_postponed;
-  ++counters.events;
-  counters.pair_sum += static_cast<double>(counters.live_pairs);
+  if (progress == Progress::try_again) ++present.counters.events_postponed;
+  ++present.counters.events;
+  present.counters.pair_sum += static_cast<double>(live_pairs_);
   ++events_since_gvt_;
   if (options.check) validate_all();
 }
@@ -71,7 +74,7 @@ void Kernel::handle(Event event) {
 // enough to be cheap.
 bool Kernel::gvt_is_due() const {
   if (options.gvt_interval > 0) return events_since_gvt_ >= options.gvt_interval;
-  const std::size_t scanned = graph.busy().size() + counters.live_pairs;
+  const std::size_t scanned = graph.busy().size() + live_pairs_;
   return events_since_gvt_ >= static_cast<long>(std::max<std::size_t>(64, scanned / 4));
 }
 
@@ -88,7 +91,7 @@ RunStatus Kernel::advance(double until, double slice) {
              "time to run to is " + show(until) + "; expected a finite number of seconds");
   TW_REQUIRE(!running,
              "a run was started inside a callback or observer; expected to be between runs");
-  if (until < time) return RunStatus::finished;
+  if (until < present.time) return RunStatus::finished;
   const RunGuard guard(*this);
   until_ = until;
   begin_run();
@@ -97,13 +100,13 @@ RunStatus Kernel::advance(double until, double slice) {
   if (!deliver(slice_end_)) return RunStatus::slice_over;
   long events = 0;
   while (!finished()) {
-    policy->go_forward(*this);
+    process_next();
     if (gvt_is_due()) update_gvt();
     if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end_)
       return RunStatus::slice_over;
   }
   update_gvt();
-  time = until;
+  present.time = until;
   return deliver(slice_end_) ? RunStatus::finished : RunStatus::slice_over;
 }
 
@@ -119,7 +122,7 @@ bool Kernel::step(double until) {
   until_ = until;
   begin_run();
   if (finished()) return false;
-  policy->go_forward(*this);
+  process_next();
   update_gvt();
   deliver(never);
   return true;
@@ -127,8 +130,8 @@ bool Kernel::step(double until) {
 
 const State* Kernel::state_at(BodyId id, double when) const {
   // between runs nothing but the past counts
-  const State* state = when == time && !running
-                           ? graph.last_before(process_of(id), present_key())
+  const State* state = when == present.time && !running
+                           ? graph.last_before(process_of(id), present.key())
                            : graph.last_at_or_before_time(process_of(id), when);
   while (state && state->error && state->prev) state = state->prev;
   return state ? state : graph.head(process_of(id));
@@ -147,7 +150,7 @@ double Kernel::total_energy(double when) const {
   for (const auto& body : scene.bodies) {
     if (!body->dynamic()) continue;
     const PoseTwist p = point_at(body->id(), when);
-    energy += kinetic_energy(*body, p) - body->mass * options.gravity.dot(p.x);
+    energy += kinetic_energy(*body, p) - body->mass * present.settings.gravity.dot(p.x);
   }
   return energy + elastic_energy(scene, states_at(when), when);
 }

@@ -35,9 +35,9 @@
 #include "groups/regroup.h"
 #include "groups/surroundings.h"
 #include "kernel/checkpoint.h"
-#include "kernel/counters.h"
-#include "kernel/due.h"
 #include "kernel/policy.h"
+#include "kernel/present.h"
+#include "kernel/state-image.h"
 #include "kernel/state-view.h"
 #include "kernel/world.h"
 #include "timeline/arc.h"
@@ -103,10 +103,9 @@ class Kernel {
   // ---- kernel.cc ----
   RunStatus advance(double until, double slice);
   bool step(double until);
-  void handle(Event event);  // for policies
+  void process_next();  // the event that the policy chooses
 
   // ---- reading ----
-  std::uint64_t removals() const { return removals_; }
   PoseTwist point_at(BodyId id, double when) const;
   const State* state_at(BodyId id, double when) const;
   double total_energy(double when) const;
@@ -125,15 +124,12 @@ class Kernel {
   std::string validate_residences() const;
   std::string validate_claims() const;
   void validate_all() const;  // aborts with the message
-  // A checksum of every queue (states, order): for undo tests.
-  std::uint64_t graph_checksum() const;
-  std::uint64_t ring_checksum(const Key& key) const;
-  std::uint64_t state_checksum(const State& state) const;
 
   // ---- data ----
   WorldOptions options;
+  Present present;
   std::unique_ptr<Policy> policy = make_policy("timewarp");
-  Scene scene{options};
+  Scene scene{present.settings};
   std::vector<Process> processes;  // by number
   std::unordered_map<std::string, BodyId> names;
   StateGraph graph;
@@ -147,10 +143,7 @@ class Kernel {
   std::vector<CollisionCallbackDef> collision_callbacks;
   std::vector<ObserverRecord> observers;
   std::vector<SinkRecord> sinks;
-  Counters counters;
-  double time = 0;  // last committed time users see
-  double gvt = 0;
-  bool begun = false;  // the first run has begun
+  std::uint64_t live_pairs_ = 0;
   bool running = false;
 
   // ---- who owns whom ----
@@ -168,7 +161,6 @@ class Kernel {
   void require_no_overlap(const Body& a, const Body& b) const;
   void check_overlaps(Body& body);
   Key edit_key(const std::vector<ProcessId>& concerned);
-  Key present_key() const;
   void edit_together(const std::function<bool(BodyId)>& concerned,
                      const std::function<void(Successor&)>& change);
   void resolve_shape(Body& body, const BodyDef& def);
@@ -285,17 +277,14 @@ class Kernel {
   std::vector<BodyId> newborn_;
   std::deque<std::shared_ptr<const Collision>> undelivered_;  // committed, in time order
   std::size_t next_observer_ = 0;                             // who hears next of the first of them
-  Due due_;                                                   // frames that may be delivered
-  std::uint64_t hash_sum_ = 0, hash_count_ = 0;
-  std::uint64_t edits_ = 0, removals_ = 0;
-  unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
+  unsigned long long queries_before_ = distance_queries;      // of other worlds in this thread
   Random adversary_{0};
-  mutable std::unordered_map<std::uint64_t, ContactParameters>
-      contact_cache_;                            // by contact classes
-  mutable std::vector<BodyId> contact_classes_;  // of each body: the first body of its class
-  mutable std::unordered_map<std::string, BodyId> contact_class_of_material_;
-  mutable unsigned contact_cache_version_ = 0;
-  std::unordered_map<std::uint64_t, std::uint64_t> undone_;  // hash of key -> checksum after
+  // --undo-redo: what was taken back and not found again yet, by what it followed
+  struct Undone {
+    double time;
+    StateImage image;
+  };
+  std::unordered_map<std::uint64_t, Undone> undone_;
   std::vector<ContactPoint> contact_points_;
 };
 

@@ -1,28 +1,63 @@
 // Policies: how the main loop goes forward.
 //
-// A policy decides what is processed next; arcs, checks, rollback, GVT and commit are shared.  It
-// is an object chosen at run time, so that one program can compare them.
+// A policy decides three things: what is processed next, how far a process may claim its motion in
+// one go, and who is rolled back to a discontinuity beside those whom it concerns.  Arcs, checks,
+// rollback, GVT and commit are shared, and no policy changes the answer: the committed history is
+// by definition the one found by always processing the least key (timeline/key.h).
+//
+//   timewarp                   next: least key      reach: never          widen: nobody
+//   retroactive detection      next: least key      reach: step end       widen: everybody
+//   conservative advancement   next: least key      reach: least check    widen: nobody
+//
+// It is an object chosen at run time, so that one program can compare them.
+//
+// Source: the paper, section 6 (the loops it compares timewarp with).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
+
+#include "timeline/event-queue.h"
+#include "timeline/process.h"
 
 namespace tw {
 
-class Kernel;
+// Whom a discontinuity rolls back beside its receivers: they lose what they have from its key on,
+// their claims included.
+class RollbackScope {
+ public:
+  explicit RollbackScope(std::size_t processes) : processes_(processes) {}
+
+  void add(ProcessId process) { added_.push_back(process); }
+  void add_all() {
+    for (std::uint32_t i = 0; i < processes_; ++i) add(ProcessId{i});
+  }
+  const std::vector<ProcessId>& added() const { return added_; }
+
+ private:
+  std::size_t processes_;
+  std::vector<ProcessId> added_;
+};
 
 class Policy {
  public:
   virtual ~Policy() = default;
   virtual const char* name() const = 0;
-  // One step of the loop.  Called only while something is left to do before the run's end.
-  virtual void go_forward(Kernel& kernel) = 0;
+  // The event that is processed next.  The queue is not empty: something is left to do before the
+  // run's end.
+  virtual const Event& next(const EventQueue& queue) = 0;
+  // The time that the process's next window may reach at most, s.  A window is never empty: where
+  // this is not after the present claim, it is the shortest there is.
+  virtual double may_reach(const EventQueue& queue, const Process& process) = 0;
+  // Adds whom else the discontinuity at `key` rolls back.
+  virtual void widen(RollbackScope& scope, const Key& key) = 0;
 };
 
-// "timewarp": the event with the least priority, each body at its own time.  Errors: UserError for
-// any other name.
+// "timewarp": the event with the least priority, each process at its own time, and nobody is rolled
+// back who has nothing to do with it.  Errors: UserError for any other name.
 std::unique_ptr<Policy> make_policy(const std::string& name);
 
 }  // namespace tw

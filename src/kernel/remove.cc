@@ -15,14 +15,14 @@ void Kernel::remove_body(BodyId id) {
   Body& body = *scene.bodies[id];
   TW_REQUIRE(!body.info.removed,
              "body " + body.info.name + " was removed before; expected one that is there");
-  const BodyState last = body_state(body, point_at(id, time));
+  const BodyState last = body_state(body, point_at(id, present.time));
   body.info.removed = true;
-  if (begun) restart_future();
+  if (present.begun) restart_future();
 
   // whoever touches it gets arcs without it
   edit_together(
       [&](BodyId other) {
-        const State& state = before(present_key()).state_of(other);
+        const State& state = before(present.key()).state_of(other);
         if (!state.group || state.error) return false;
         const auto in_contact = state.group->pairs_of(state.member);
         return std::any_of(in_contact.begin(), in_contact.end(), [&](std::uint32_t number) {
@@ -51,8 +51,8 @@ void Kernel::remove_body(BodyId id) {
   if (body.dynamic()) {
     graph.free_before(graph.tail(process_of(id)), release());
     const State& tail = *graph.tail(process_of(id));
-    counters.kinematic_work += kinematic_work_of(tail, time);
-    counters.integration_length += time - tail.arc_time;
+    present.counters.kinematic_work += kinematic_work_of(tail, present.time);
+    present.counters.integration_length += present.time - tail.arc_time;
   }
   graph.clear(process_of(id));
   body.info.kind = BodyKind::fixed;
@@ -62,12 +62,12 @@ void Kernel::remove_body(BodyId id) {
   body.unbounded = body.is_fixed_plane = body.placed = false;
   body.X_BP = body.X_PB = Pose();
   body.motion = make_fixed_motion({last.position, last.orientation});
-  State* state = graph.append(body.process, {time, 0, KeyKind::birth, id});
+  State* state = graph.append(body.process, {present.time, 0, KeyKind::birth, id});
   state->arc_key = state->key;
-  state->arc_time = time;
-  state->committed = begun;
-  process(body).claim = begun ? last_key : state->key;
-  ++removals_;
+  state->arc_time = present.time;
+  state->committed = present.begun;
+  process(body).claim = present.begun ? last_key : state->key;
+  ++present.removals;
 }
 
 }  // namespace tw

@@ -68,14 +68,14 @@ void Kernel::append_successors(const Key& key, std::vector<Successor>& successor
     TW_ASSERT(!state->group || state->group->key == key || state->error,
               "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
     // those of moving groups are counted by steps, when they are done with
-    if (!state->group || state->group->at_rest) ++counters.integrations;
+    if (!state->group || state->group->at_rest) ++present.counters.integrations;
   }
   graph.close_ring(ring);
 }
 
 void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& successors) {
-  TW_ASSERT(key.time >= gvt, show(key) + " lies before GVT " + show(gvt));
-  const std::uint64_t checksum = options.undo_redo ? graph_checksum() : 0;
+  TW_ASSERT(key.time >= present.gvt, show(key) + " lies before GVT " + show(present.gvt));
+  const std::uint64_t checksum = options.undo_redo ? graph_checksum(graph) : 0;
 
   // queues: room for the new states, then the states
   std::vector<Affected> affected;
@@ -83,11 +83,19 @@ void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& success
   for (const Successor& successor : successors)
     if (successor.enters())
       removed += graph.rollback(successor.body->process, key, affected, removal());
+  // whom the policy adds loses nothing that is past: between runs others may have had more
+  // discontinuities at the present time than those whom an edit concerns
+  RollbackScope others(processes.size());
+  policy->widen(others, key);
+  const Key from = std::max(key, present.key());
+  for (const ProcessId process : others.added())
+    removed += graph.rollback(process, from, affected, removal());
   if (removed > 0) {
-    ++counters.rollbacks;
-    counters.states_removed += removed;
-    counters.processes_rolled_back += affected.size();
-    counters.deepest_cascade = std::max<std::uint64_t>(counters.deepest_cascade, affected.size());
+    ++present.counters.rollbacks;
+    present.counters.states_removed += removed;
+    present.counters.processes_rolled_back += affected.size();
+    present.counters.deepest_cascade =
+        std::max<std::uint64_t>(present.counters.deepest_cascade, affected.size());
   }
   append_successors(key, successors);
 
@@ -102,6 +110,7 @@ void Kernel::enter_discontinuity(const Key& key, std::vector<Successor>& success
     else if (arc_changed)
       affected.push_back({successor.process(), key});
   }
+  for (const ProcessId process : others.added()) affected.push_back({process, from});
   treat(affected);
   if (options.undo_redo && removed == 0) undo_and_check(key, checksum);
 }
@@ -155,10 +164,10 @@ void Kernel::note_removed(State& state) {
   double length = std::max(0.0, end - state.key.time);
   // a body at rest claims for ever
   if (!std::isfinite(length)) length = 0;
-  if (stepped(state)) length = count_steps(counters, state);
-  counters.integration_length += length;
-  counters.rollback_length += length;
-  counters.deepest_rollback = std::max(counters.deepest_rollback, length);
+  if (stepped(state)) length = count_steps(present.counters, state);
+  present.counters.integration_length += length;
+  present.counters.rollback_length += length;
+  present.counters.deepest_rollback = std::max(present.counters.deepest_rollback, length);
 }
 
 // A state that GVT has passed: its arc was used up to the next one.
@@ -167,11 +176,11 @@ StateGraph::OnRelease Kernel::release() {
     if (!body_of(state.process).dynamic() || !state.starts_arc()) return;
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
-    if (next) counters.kinematic_work += kinematic_work_of(state, next->key.time);
+    if (next) present.counters.kinematic_work += kinematic_work_of(state, next->key.time);
     if (stepped(state))
-      counters.integration_length += count_steps(counters, state);
+      present.counters.integration_length += count_steps(present.counters, state);
     else if (next)
-      counters.integration_length += next->key.time - state.key.time;
+      present.counters.integration_length += next->key.time - state.key.time;
   };
 }
 
@@ -187,9 +196,10 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
   for (const auto& body : scene.bodies)
     if (const State* s = graph.tail(body->process); s->key == key && s->prev)
       name.add(state_checksum(*s->prev));
-  const std::uint64_t now = ring_checksum(key);
+  StateImage now = image_of_ring(graph, key);
   if (const auto known = undone_.find(name.value()); known != undone_.end()) {
-    TW_ASSERT(known->second == now, "redoing " + show(key) + " gave other states");
+    const std::string difference = now.first_difference(scene, known->second.image);
+    TW_ASSERT(difference.empty(), "redoing " + show(key) + " gave another " + difference);
     undone_.erase(known);
     return;
   }
@@ -200,8 +210,8 @@ void Kernel::undo_and_check(const Key& key, std::uint64_t checksum_before) {
       graph.rollback(body->process, key, affected, removal());
       break;
     }
-  TW_ASSERT(graph_checksum() == checksum_before, "undoing " + show(key) + " left a trace");
-  undone_[name.value()] = now;
+  TW_ASSERT(graph_checksum(graph) == checksum_before, "undoing " + show(key) + " left a trace");
+  undone_[name.value()] = {key.time, std::move(now)};
   treat(affected);
 }
 

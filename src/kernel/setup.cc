@@ -38,7 +38,7 @@ void Kernel::require_between_runs(const char* what) const {
 }
 
 void Kernel::require_before_first_run(const char* what) const {
-  TW_REQUIRE(!begun,
+  TW_REQUIRE(!present.begun,
              std::string(what) + " after the simulation began; expected before the first run");
 }
 
@@ -90,10 +90,10 @@ void Kernel::resolve_shape(Body& body, const BodyDef& def) {
 }
 
 void Kernel::make_birth(Body& body, const BodyDef& def) {
-  const Key key{time, 0, KeyKind::birth, body.id()};
+  const Key key{present.time, 0, KeyKind::birth, body.id()};
   State* state = graph.append(body.process, key);
   state->arc_key = key;
-  state->arc_time = time;
+  state->arc_time = present.time;
   state->slots = def.slots;
   // a stream of its own for every body
   state->random = mix64(options.seed ^ mix64(body.id() + 0x632be59bd9b4e019ull));
@@ -103,8 +103,8 @@ void Kernel::make_birth(Body& body, const BodyDef& def) {
     state->x = def.position + q * body.X_BP.p;
     state->v = def.velocity;
     state->L = angular_momentum(body, state->q, def.angular_velocity);
-    state->acceleration = options.gravity;
-    ++counters.integrations;
+    state->acceleration = present.settings.gravity;
+    ++present.counters.integrations;
   }
   process(body).claim = key;
 }
@@ -135,7 +135,7 @@ BodyId Kernel::add_body(const BodyDef& def) {
   }
   resolve_shape(*body, def);
 
-  if (begun) restart_future();
+  if (present.begun) restart_future();
   processes.push_back({});
   Process& process = processes.back();
   process.id = body->process = graph.add_process();
@@ -154,13 +154,13 @@ BodyId Kernel::add_body(const BodyDef& def) {
 void Kernel::require_no_overlap(const Body& a, const Body& b) const {
   if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !scene.may_collide(a, b)) return;
   const auto frame = [&](const Body& body) {
-    return frame_at(body, *state_at(body.id(), time), time);
+    return frame_at(body, *state_at(body.id(), present.time), present.time);
   };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
   const double allowed = start_depth * std::min(a.least_width, b.least_width);
   if (s.distance >= -allowed) return;
   throw UserError(a.info.name + " and " + b.info.name + " overlap by " + show(-s.distance) +
-                      " m at " + show(time) + " s; expected bodies that at most touch (" +
+                      " m at " + show(present.time) + " s; expected bodies that at most touch (" +
                       show(allowed) + " m), or disable-collisions! for the pair",
                   a.id() > b.id() ? a.info.place : b.info.place);
 }
@@ -170,7 +170,7 @@ void Kernel::require_no_overlap(const Body& a, const Body& b) const {
 void Kernel::check_overlaps(Body& body) {
   if (!body.shape_P) return;
   if (!body.unbounded) {
-    Aabb box = swept_bounds(body, *state_at(body.id(), time), time, time);
+    Aabb box = swept_bounds(body, *state_at(body.id(), present.time), present.time, present.time);
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
     grid.place(body.id(), box, body.fixed());
     grid.overlapping(body.id(),
@@ -191,7 +191,7 @@ void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
                          const ContactSettings& settings) {
   require_between_runs("contact parameters were set");
   scene.contacts.add(a, b, settings);
-  if (!begun) return;
+  if (!present.begun) return;
   restart_future();
   renew_groups();
 }
@@ -215,10 +215,11 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
              "period of callback " + def.name + " is " + show(def.period.value_or(0)) +
                  " s; expected a time from " + show(least_period) + " to " + show(greatest_time) +
                  " s: more ticks could not be counted");
-  TW_REQUIRE(def.period || def.start > time || (!begun && def.start == time),
-             "start of callback " + def.name + " is " + show(def.start) +
-                 "; expected a time after the present (" + show(time) + " s)");
-  if (begun) restart_future();
+  TW_REQUIRE(
+      def.period || def.start > present.time || (!present.begun && def.start == present.time),
+      "start of callback " + def.name + " is " + show(def.start) +
+          "; expected a time after the present (" + show(present.time) + " s)");
+  if (present.begun) restart_future();
 
   const std::uint32_t number = static_cast<std::uint32_t>(callbacks.size());
   callbacks.push_back({});
@@ -227,8 +228,8 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   callback.committed_next = def.start;
   callback.next = {def.start, 0, KeyKind::callback, number};
   // ticks before the present are not made up for
-  const KeyKind present = begun ? KeyKind::group_check : KeyKind::birth;
-  if (def.period) callback.next = first_tick(callback, {time, 0, present, 0});
+  const KeyKind now = present.begun ? KeyKind::group_check : KeyKind::birth;
+  if (def.period) callback.next = first_tick(callback, {present.time, 0, now, 0});
   for (const BodyId id : def.targets) process(*scene.bodies[id]).callbacks.push_back(number);
   schedule_callback(number);
   return number;
@@ -237,12 +238,12 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
 void Kernel::add_collision_callback(const CollisionCallbackDef& def) {
   require_between_runs("a collision callback was added");
   collision_callbacks.push_back(def);
-  if (begun) restart_future();
+  if (present.begun) restart_future();
 }
 
 void Kernel::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
   require_between_runs("an observer was added");
-  if (begun && !observed(kind)) restart_future();
+  if (present.begun && !observed(kind)) restart_future();
   observers.push_back({std::move(observer), kind});
 }
 
@@ -257,8 +258,8 @@ void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
              "frames per second are " + show(fps) + "; expected a positive number");
   TW_REQUIRE(fps <= greatest_rate,
              "frames per second are " + show(fps) + "; expected at most " + show(greatest_rate));
-  SinkRecord record{std::move(sink), fps, static_cast<long>(std::floor(time * fps))};
-  while (record.next_time() < time) ++record.next_frame;
+  SinkRecord record{std::move(sink), fps, static_cast<long>(std::floor(present.time * fps))};
+  while (record.next_time() < present.time) ++record.next_frame;
   sinks.push_back(std::move(record));
 }
 
@@ -272,18 +273,18 @@ void Kernel::remove_frame_sink(const FrameSink* sink) {
 // final; else before everything there: a callback that stopped the run, or an impact that an
 // interrupt left, sees what was changed, and doesn't take it back by coming earlier.
 Key Kernel::edit_key(const std::vector<ProcessId>& concerned) {
-  if (!due_.inclusive) return {time, 0, KeyKind::early_edit, edits_++};
+  if (!present.due.inclusive) return {present.time, 0, KeyKind::early_edit, present.edits++};
   std::uint32_t microstep = 1;
   for (const ProcessId member : concerned)
-    for (const State* s = graph.tail(member); s && s->key.time >= time; s = s->prev)
-      if (s->key.time == time) microstep = std::max(microstep, s->key.microstep + 1);
-  return {time, microstep, KeyKind::edit, edits_++};
+    for (const State* s = graph.tail(member); s && s->key.time >= present.time; s = s->prev)
+      if (s->key.time == present.time) microstep = std::max(microstep, s->key.microstep + 1);
+  return {present.time, microstep, KeyKind::edit, present.edits++};
 }
 
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   require_between_runs("a body was changed");
   Body& body = *scene.bodies[id];
-  const Region region = region_of(before(present_key()), {body.process}, true);
+  const Region region = region_of(before(present.key()), {body.process}, true);
   std::vector<ProcessId> concerned = region.inside;
   concerned.insert(concerned.end(), region.border.begin(), region.border.end());
   const Key key = edit_key(concerned);
@@ -291,11 +292,11 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   successors[0].role = Role::record;
   const Vec3 x_before = successors[0].point.x;
   const Quat q_before = successors[0].point.q;
-  SuccessorView view(successors[0], key, true, options.gravity);
+  SuccessorView view(successors[0], key, true, present.settings.gravity);
   change(view);
   regroup_edited(key, successors);
   enter_discontinuity(key, successors);
-  if (begun &&
+  if (present.begun &&
       (successors[0].point.x != x_before || successors[0].point.q.coeffs() != q_before.coeffs()))
     check_overlaps(body);
 }
@@ -303,9 +304,11 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
 void Kernel::set_gravity(const Vec3& gravity) {
   require_between_runs("gravity was set");
   TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
-  options.gravity = gravity;
+  present.settings.gravity = gravity;
   // a body that is still at its birth needs no discontinuity
-  const auto newborn = [&](BodyId id) { return !begun && !graph.tail(process_of(id))->prev; };
+  const auto newborn = [&](BodyId id) {
+    return !present.begun && !graph.tail(process_of(id))->prev;
+  };
   for (const auto& body : scene.bodies)
     if (body->dynamic() && newborn(body->id())) {
       State* tail = graph.tail(body->process);
@@ -326,7 +329,7 @@ void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
   std::vector<bool> done(processes.size(), false);
   for (const auto& body : scene.bodies) {
     if (!body->dynamic() || done[number(body->process)] || !concerned(body->id())) continue;
-    const std::vector<ProcessId> together = before(present_key()).hanging_together(body->process);
+    const std::vector<ProcessId> together = before(present.key()).hanging_together(body->process);
     const Key key = edit_key(together);
     std::vector<Successor> successors;
     successors.reserve(together.size());
@@ -340,23 +343,16 @@ void Kernel::edit_together(const std::function<bool(BodyId)>& concerned,
   }
 }
 
-// What is below it is past: all that has happened at the present time where that is final, else
-// nothing but what was changed between runs.
-Key Kernel::present_key() const {
-  if (due_.inclusive) return {time, 0xffffffffu, KeyKind::edit, ~0ull};
-  return {time, 0, KeyKind::early_edit, ~0ull};
-}
-
 // Everything after the present time is forgotten and will be found again.
 void Kernel::restart_future() {
   undone_.clear();
-  const Key present = present_key();
+  const Key now = present.key();
   std::vector<Affected> affected;
-  for (const auto& body : scene.bodies) graph.rollback(body->process, present, affected, removal());
+  for (const auto& body : scene.bodies) graph.rollback(body->process, now, affected, removal());
   for (std::uint32_t i = 0; i < pairs.size(); ++i)
     if (pairs[i].live) drop_pair(i);
   std::vector<Affected> all;
-  for (const auto& body : scene.bodies) all.push_back({body->process, present});
+  for (const auto& body : scene.bodies) all.push_back({body->process, now});
   treat(all);
 }
 
@@ -378,7 +374,7 @@ void Kernel::update_cell() {
   int count = 0;
   for (const auto& body : scene.bodies) {
     if (!body->dynamic() || !body->shape_P) continue;
-    space.add(point_at(body->id(), time).x);
+    space.add(point_at(body->id(), present.time).x);
     radii += body->radius;
     ++count;
   }
@@ -403,7 +399,7 @@ void Kernel::begin_run() {
   if (!newborn_.empty()) {
     update_cell();
     for (const BodyId id : newborn_) check_overlaps(*scene.bodies[id]);
-    if (!begun && options.adversary) {
+    if (!present.begun && options.adversary) {
       adversary_ = Random(mix64(options.adversary->seed + 1));
       for (const auto& body : scene.bodies)
         if (options.adversary->some_bodies && adversary_.real() < options.adversary->body_share)
@@ -413,14 +409,14 @@ void Kernel::begin_run() {
           callback.head_start =
               std::max(callback.head_start, process(*scene.bodies[id]).head_start);
     }
-    begun = true;
+    present.begun = true;
     for (const BodyId id : newborn_) claim_window(*scene.bodies[id]);
     newborn_.clear();
   }
-  begun = true;
-  if (!counters.energy_known) {
-    counters.energy_start = total_energy(time);
-    counters.energy_known = true;
+  present.begun = true;
+  if (!present.counters.energy_known) {
+    present.counters.energy_start = total_energy(present.time);
+    present.counters.energy_known = true;
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/hash.h"
 #include "kernel/kernel.h"
 
 namespace tw {
@@ -15,9 +14,9 @@ std::string Kernel::validate_state_graph() const {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
       if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
-      if (s->key.time < gvt && !s->committed && !s->error)
+      if (s->key.time < present.gvt && !s->committed && !s->error)
         return "state before GVT not committed: " + body->info.name + ", " + show(s->key);
-      if (s->committed && s->key.time > gvt) return "committed after GVT: " + show(s->key);
+      if (s->committed && s->key.time > present.gvt) return "committed after GVT: " + show(s->key);
     }
   }
   return "";
@@ -63,7 +62,7 @@ std::string Kernel::validate_pairs() const {
     if (scene.bodies[pair.a]->pairs[pair.place_a] != i ||
         scene.bodies[pair.b]->pairs[pair.place_b] != i)
       return "pair not in its bodies' lists: " + where;
-    if (pair.safe_time() < gvt) return "safe time before GVT: " + where;
+    if (pair.safe_time() < present.gvt) return "safe time before GVT: " + where;
     if (pair.pending) {
       // an impact is valid only below the next keys of both processes
       for (const BodyId id : {pair.a, pair.b}) {
@@ -75,7 +74,7 @@ std::string Kernel::validate_pairs() const {
       if (pair.event == EventQueue::none) return "pending impact without event: " + where;
     }
   }
-  if (live != counters.live_pairs) return "number of live pairs";
+  if (live != live_pairs_) return "number of live pairs";
   return "";
 }
 
@@ -122,8 +121,8 @@ std::string Kernel::validate_claims() const {
       return "state past the claim: " + body->info.name;
     for (int i = 0; i <= 4; ++i) {
       const double claimed = process(*body).claim.time;
-      const double t = std::min(claimed, gvt + (claimed - gvt) * (0.25 * i));
-      if (!std::isfinite(t) || t < gvt) continue;
+      const double t = std::min(claimed, present.gvt + (claimed - present.gvt) * (0.25 * i));
+      if (!std::isfinite(t) || t < present.gvt) continue;
       const State* s = graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
       const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
@@ -139,74 +138,7 @@ std::string Kernel::validate_claims() const {
 void Kernel::validate_all() const {
   for (const auto& broken : {validate_state_graph(), validate_event_queue(), validate_pairs(),
                              validate_residences(), validate_claims()})
-    TW_ASSERT(broken.empty(), broken + " (GVT " + show(gvt) + " s)");
-}
-
-namespace {
-
-void add(Hasher& h, const Vec3& v) {
-  for (int i = 0; i < 3; ++i) h.add(v[i]);
-}
-
-void add_group(Hasher& h, const Group& group) {
-  for (const double time : {group.birth, group.next_check, group.quiet.since, group.quiet.speed,
-                            group.first_step, group.masses.lightest, group.masses.heaviest})
-    h.add(time);
-  h.add(std::uint64_t{group.at_rest} << 2 | std::uint64_t{group.asleep} << 1 |
-        std::uint64_t{group.has_border});
-  for (const ProcessId id : group.members) h.add(std::uint64_t{number(id)});
-  for (const BodyId id : group.outside) h.add(std::uint64_t{id});
-  for (const ContactPair& pair : group.pairs) {
-    h.add(pair.id);
-    h.add(std::uint64_t{pair.first} << 33 | std::uint64_t{pair.count} << 1 |
-          std::uint64_t{pair.has_borne_load});
-  }
-  for (const ContactTag& tag : group.tags) {
-    h.add(pair_id(tag.reference, tag.other));
-    h.add(static_cast<std::uint64_t>(tag.parts));
-    h.add(tag.feature);
-  }
-  for (const double gap : group.gaps) h.add(gap);
-  for (const double end : group.ends) h.add(end);
-  for (const Stillness& stillness : group.stillness) {
-    for (const double number : {stillness.since, stillness.early_peak, stillness.peak})
-      h.add(number);
-    add(h, stillness.x);
-    for (int i = 0; i < 4; ++i) h.add(stillness.q.coeffs()[i]);
-  }
-  for (const GroupContact& c : group.arc->start().contacts) add(h, c.stretch);
-}
-
-}  // namespace
-
-// Every bit of a state that later motion depends on, and of its group, with its first member.
-std::uint64_t Kernel::state_checksum(const State& s) const {
-  Hasher h;
-  h.add(state_hash(body_of(s.process), s.key, {s.x, s.q, s.v, s.L}, s));
-  h.add(s.arc_time);
-  h.add(s.random);
-  h.add(std::uint64_t{s.impacts.count});
-  h.add(s.impacts.last_time);
-  for (int i = 0; i < 3; ++i) h.add(s.force[i]);
-  if (s.group && s.member == 0) {
-    add_group(h, *s.group);
-  }
-  return h.value();
-}
-
-std::uint64_t Kernel::graph_checksum() const {
-  Hasher h;
-  for (const auto& body : scene.bodies)
-    for (const State* s = graph.head(body->process); s; s = s->next) h.add(state_checksum(*s));
-  return h.value();
-}
-
-// Of the latest states that one discontinuity made.
-std::uint64_t Kernel::ring_checksum(const Key& key) const {
-  Hasher h;
-  for (const auto& body : scene.bodies)
-    if (const State* s = graph.tail(body->process); s->key == key) h.add(state_checksum(*s));
-  return h.value();
+    TW_ASSERT(broken.empty(), broken + " (GVT " + show(present.gvt) + " s)");
 }
 
 std::vector<QueuedState> Kernel::state_queue(BodyId id) const {

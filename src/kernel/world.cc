@@ -12,6 +12,7 @@ World::World() : kernel_(std::make_unique<Kernel>()) {}
 World::~World() = default;
 
 const WorldOptions& World::options() const { return kernel_->options; }
+const Vec3& World::gravity() const { return kernel_->present.settings.gravity; }
 
 void World::set_gravity(const Vec3& gravity) {
   TW_REQUIRE(gravity.norm() <= greatest_acceleration, "gravity is " + show(gravity.norm()) +
@@ -24,7 +25,7 @@ void World::set_accuracy(double accuracy) {
   kernel_->require_before_first_run("accuracy was set");
   TW_REQUIRE(accuracy >= 1e-12 && accuracy <= 1e-1,
              "accuracy is " + show(accuracy) + "; expected a relative error from 1e-12 to 0.1");
-  kernel_->options.accuracy = accuracy;
+  kernel_->present.settings.accuracy = accuracy;
 }
 
 void World::set_seed(std::uint64_t seed) {
@@ -56,7 +57,7 @@ void World::set_group_check_rate(double rate) {
                                                      " Hz; expected a rate from 1 to " +
                                                      show(greatest_rate) + " Hz");
   kernel_->require_before_first_run("group-check-rate was set");
-  kernel_->options.group_check_rate = rate;
+  kernel_->present.settings.group_check_rate = rate;
 }
 
 void World::set_adversary(std::optional<AdversaryOptions> adversary) {
@@ -64,9 +65,11 @@ void World::set_adversary(std::optional<AdversaryOptions> adversary) {
   kernel_->options.adversary = adversary;
 }
 
-void World::set_policy(const std::string& policy) {
+void World::set_policy(const std::string& policy) { set_policy(make_policy(policy)); }
+
+void World::set_policy(std::unique_ptr<Policy> policy) {
   kernel_->require_before_first_run("the policy was set");
-  kernel_->policy = make_policy(policy);
+  kernel_->policy = std::move(policy);
 }
 
 BodyId World::add_body(const BodyDef& def) { return kernel_->add_body(def); }
@@ -92,7 +95,7 @@ ContactParameters World::contact_parameters(BodyId a, BodyId b) const {
   return kernel_->scene.contacts.between(a, b);
 }
 
-std::uint64_t World::removals() const { return kernel_->removals(); }
+std::uint64_t World::removals() const { return kernel_->present.removals; }
 void World::remove_body(BodyId id) { kernel_->remove_body(id); }
 
 std::uint64_t World::add_callback(const CallbackDef& def) { return kernel_->add_callback(def); }
@@ -111,7 +114,7 @@ void World::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
 
 void World::remove_frame_sink(const FrameSink* sink) { kernel_->remove_frame_sink(sink); }
 
-double World::time() const { return kernel_->time; }
+double World::time() const { return kernel_->present.time; }
 
 RunStatus World::advance(double until, double slice) {
   TW_REQUIRE(until <= greatest_time,
@@ -123,15 +126,20 @@ bool World::step(double until) { return kernel_->step(until); }
 bool World::running() const { return kernel_->running; }
 
 BodyState World::state(BodyId id) const {
-  return body_state(*kernel_->scene.bodies[id], kernel_->point_at(id, kernel_->time));
+  return body_state(*kernel_->scene.bodies[id], kernel_->point_at(id, kernel_->present.time));
 }
 
 double World::kinetic_energy(BodyId id) const {
-  return tw::kinetic_energy(*kernel_->scene.bodies[id], kernel_->point_at(id, kernel_->time));
+  return tw::kinetic_energy(*kernel_->scene.bodies[id],
+                            kernel_->point_at(id, kernel_->present.time));
 }
 
-Vec3 World::applied_force(BodyId id) const { return kernel_->state_at(id, kernel_->time)->force; }
-SlotsPtr World::slots(BodyId id) const { return kernel_->state_at(id, kernel_->time)->slots; }
+Vec3 World::applied_force(BodyId id) const {
+  return kernel_->state_at(id, kernel_->present.time)->force;
+}
+SlotsPtr World::slots(BodyId id) const {
+  return kernel_->state_at(id, kernel_->present.time)->slots;
+}
 
 void World::edit(BodyId id, const std::function<void(StateView&)>& change) {
   kernel_->edit(id, change);
@@ -141,9 +149,9 @@ std::shared_ptr<const Checkpoint> World::checkpoint() { return kernel_->checkpoi
 void World::restore(const Checkpoint& checkpoint) { kernel_->restore(checkpoint); }
 
 std::vector<QueuedState> World::state_queue(BodyId id) const { return kernel_->state_queue(id); }
-double World::total_energy() const { return kernel_->total_energy(kernel_->time); }
+double World::total_energy() const { return kernel_->total_energy(kernel_->present.time); }
 ContactSurvey World::survey_contacts(double when) const { return kernel_->survey_contacts(when); }
-Vec3 World::total_momentum() const { return kernel_->total_momentum(kernel_->time); }
+Vec3 World::total_momentum() const { return kernel_->total_momentum(kernel_->present.time); }
 
 std::string World::history_hash() const {
   TW_REQUIRE(kernel_->options.hash,

@@ -24,6 +24,7 @@
 namespace tw {
 
 class Kernel;
+class Policy;
 struct Checkpoint;
 
 // How a body comes into the world.  Absent mass properties come from shape and density.
@@ -56,7 +57,8 @@ struct AdversaryOptions {
   bool some_bodies = true;
 };
 
-struct WorldOptions : SceneOptions {
+// How a world is run: the answer depends on the seed alone.
+struct WorldOptions {
   std::uint64_t seed = 0;
   bool hash = false;          // accumulate the hash of the committed history
   bool check = false;         // run every validator after every event
@@ -103,6 +105,7 @@ class World {
 
   // ---- settings; most only before the first run ----
   const WorldOptions& options() const;
+  const Vec3& gravity() const;            // m/s^2, at time()
   void set_gravity(const Vec3& gravity);  // from now on
   void set_accuracy(double accuracy);     // before the first run
   void set_seed(std::uint64_t seed);      // before the first run
@@ -115,6 +118,7 @@ class World {
   void set_adversary(std::optional<AdversaryOptions> adversary);  // before the first run
   // "timewarp" is the only policy so far; others raise UserError.
   void set_policy(const std::string& policy);
+  void set_policy(std::unique_ptr<Policy> policy);  // one of your own: policy.h
 
   // ---- bodies ----
   BodyId add_body(const BodyDef& def);  // born at time()

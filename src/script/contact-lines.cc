@@ -39,7 +39,7 @@ Scale scale_of(const World& world) {
   }
   if (masses.empty()) return {};
   // where nothing weighs anything: as on the ground
-  const double gravity = world.options().gravity.norm();
+  const double gravity = world.gravity().norm();
   return {median(masses) * (gravity > 0 ? gravity : 9.81), median(radii), masses.size()};
 }
 

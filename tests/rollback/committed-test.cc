@@ -159,8 +159,8 @@ TEST(Committed, nothing_before_gvt_is_touched) {
     std::map<std::pair<BodyId, double>, Vec3> committed;
     double gvt = 0;
     while (world.step(2)) {
-      ASSERT_GE(world.kernel().gvt, gvt);
-      gvt = world.kernel().gvt;
+      ASSERT_GE(world.kernel().present.gvt, gvt);
+      gvt = world.kernel().present.gvt;
       for (BodyId id = 0; id < world.body_count(); ++id)
         for (const QueuedState& s : world.state_queue(id)) {
           if (s.key.time < gvt) {

@@ -45,7 +45,7 @@ class KernelTest {
   // Processes what is due up to `time`, least key first, and commits nothing.
   void run_uncommitted(double time) {
     while (!kernel_.queue.empty() && kernel_.queue.top_priority() <= time)
-      kernel_.policy->go_forward(kernel_);
+      kernel_.process_next();
   }
   // Removes the body's states from the key on, as a discontinuity found late would.
   std::size_t roll_back(BodyId id, const Key& key) {
