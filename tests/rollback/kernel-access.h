@@ -64,6 +64,8 @@ class KernelTest {
   }
   const State& tail(BodyId id) const { return *kernel_.graph.tail(kernel_.process_of(id)); }
   std::size_t undelivered() const { return kernel_.undelivered_.size(); }
+  // For breaking what validators look at.
+  State& tail_of(BodyId id) { return *kernel_.graph.tail(kernel_.process_of(id)); }
 
  private:
   Kernel& kernel_;
