@@ -61,10 +61,6 @@ struct Body {
   double plane_offset = 0;
   bool is_fixed_plane = false;
 
-  // ---- where collision detection stands ----
-  std::vector<std::uint32_t> pairs;  // active pair records
-  bool placed = false;               // has claimed: has a box in the hash unless it is unbounded
-
   bool dynamic() const { return info.kind == BodyKind::dynamic; }
   bool fixed() const { return info.kind == BodyKind::fixed; }
   bool kinematic() const { return info.kind == BodyKind::kinematic; }

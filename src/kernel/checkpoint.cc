@@ -1,100 +1,89 @@
 // Checkpoints: the committed present of a world, to come back to.
 //
-// What is committed is a state per body, with what edits have added to it, and the next tick per
-// callback; everything else (claims, pairs, events) is found anew, as after any change.  So a run
-// that goes on from a restored checkpoint commits the same history, bit for bit, as one that was
-// never interrupted.
+// What is committed is the present, a state per body, with what edits have added to it, and the
+// next tick per callback; everything else (claims, pairs, events) is found anew, as after any
+// change.  So a run that goes on from a restored checkpoint commits the same history, bit for bit,
+// as one that was never interrupted.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/checkpoint.h"
 
 #include "kernel/kernel.h"
+#include "kernel/run-guard.h"
 
 namespace tw {
+namespace {
+
+// Of a process, up to a key: the last committed state, and what edits have added to it.
+std::vector<Checkpoint::Kept> kept_states(const StateGraph& graph, ProcessId process,
+                                          const Key& end) {
+  const State* state = graph.last_before(process, end);
+  while (state->prev && !state->committed) state = state->prev;
+  std::vector<Checkpoint::Kept> kept;
+  for (; state && state->key < end; state = state->next)
+    kept.push_back({state->key, state->committed, *state});
+  return kept;
+}
+
+}  // namespace
 
 std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
-  require_between_runs("a checkpoint was made");
+  simulation.require_between_runs("a checkpoint was made");
   // what an interrupt or an observer's error has left undelivered belongs to the time before
-  deliver_rest();
+  {
+    const RunGuard guard(simulation);
+    delivery.deliver(never);
+  }
   auto result = std::make_shared<Checkpoint>();
   result->owner = this;
-  result->present = present;
-  const Key now = present.key();
-  for (const auto& body : scene.bodies) {
-    const State* state = graph.last_before(body->process, now);
-    while (state->prev && !state->committed) state = state->prev;
-    auto& kept = result->states.emplace_back();
-    for (; state && state->key < now; state = state->next)
-      kept.push_back({state->key, state->committed, *state});
-  }
-  for (const CallbackRecord& callback : callbacks) {
-    // the first call that is not committed
-    Key next{callback.committed_next, 0, KeyKind::callback,
-             static_cast<std::uint64_t>(&callback - callbacks.data())};
-    if (callback.def.period)
-      next = first_tick(callback, !present.begun ? Key{}
-                                  : present.due.inclusive
-                                      ? Key{present.time, 0, KeyKind::group_check, 0}
-                                      : now);
-    result->callbacks.push_back({next, callback.committed_next});
-  }
+  result->present = simulation.present;
+  for (const Process& process : simulation.processes)
+    result->states.push_back(kept_states(simulation.graph, process.id, simulation.present.key()));
+  result->callbacks = callbacks.committed_ticks();
   return result;
 }
 
 void Kernel::restore(const Checkpoint& checkpoint) {
-  require_between_runs("a checkpoint was restored");
+  simulation.require_between_runs("a checkpoint was restored");
+  Present& present = simulation.present;
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
   TW_REQUIRE(
-      checkpoint.states.size() == scene.bodies.size() &&
+      checkpoint.states.size() == simulation.processes.size() &&
           checkpoint.callbacks.size() == callbacks.size() &&
           checkpoint.present.removals == present.removals,
       "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
 
   // empty the graph and the event queue
-  for (std::uint32_t i = 0; i < pairs.size(); ++i)
-    if (pairs[i].live) drop_pair(i);
-  for (const auto& body : scene.bodies) {
-    queue.withdraw(process(*body).advance);
-    queue.withdraw(process(*body).group_check);
-    graph.clear(body->process);
+  pairs.drop_all();
+  for (const Process& process : simulation.processes) {
+    claims.withdraw(process.id);
+    simulation.graph.clear(process.id);
   }
-  undelivered_.clear();
-  next_observer_ = 0;
-  undone_.clear();
+  discontinuities.forget_undone();
 
   // the committed present
   present = checkpoint.present;
-  const Key now = present.key();
-  newborn_.clear();
-  for (const auto& body : scene.bodies) {
-    for (const Checkpoint::Kept& kept : checkpoint.states[body->id()]) {
-      State* state = graph.append(body->process, kept.key);
+  for (Process& process : simulation.processes) {
+    for (const Checkpoint::Kept& kept : checkpoint.states[number(process.id)]) {
+      State* state = simulation.graph.append(process.id, kept.key);
       static_cast<StateData&>(*state) = kept.data;
       state->committed = kept.committed;
     }
-    const Key first = graph.head(body->process)->key;
-    process(*body).claim = body->fixed() && present.begun ? last_key : present.begun ? now : first;
-    process(*body).lonely_claims = 0;
-    // boxes are those of another time until the first claim
-    if (!body->fixed()) body->placed = false;
-    if (present.begun) {
-      schedule_advance(*body);
-      schedule_group_check(body->process);
-    } else {
-      newborn_.push_back(body->id());
-    }
   }
-  for (std::uint32_t i = 0; i < callbacks.size(); ++i) {
-    callbacks[i].next = checkpoint.callbacks[i].first;
-    callbacks[i].committed_next = checkpoint.callbacks[i].second;
-    callbacks[i].parked = false;
-    schedule_callback(i);
+
+  // the future: boxes are those of another time until the first claim
+  for (Process& process : simulation.processes) {
+    const Body& body = simulation.body_of(process.id);
+    const Key first = simulation.graph.head(process.id)->key;
+    process.claim = !present.begun ? first : body.fixed() ? last_key : present.key();
+    process.lonely_claims = 0;
+    if (!body.fixed())
+      for (const BodyId id : process.bodies) claims.forget_box(id);
+    if (present.begun) claims.schedule(process.id);
   }
-  // frames go on with the first that had not been delivered
-  for (SinkRecord& sink : sinks) {
-    sink.next_frame = 0;
-    while (present.due.reaches(sink.next_time())) ++sink.next_frame;
-  }
+  bodies.set_newborn(!present.begun);
+  callbacks.restore(checkpoint.callbacks);
+  delivery.restart();
 }
 
 }  // namespace tw

@@ -1,84 +1,90 @@
-// GVT and commit: what lies before GVT is final.
-//
-// GVT is the least of every pair's safe time, every other pending event's time and every moving
-// process's claimed time.  At commit states enter the hash, collisions reach observers and frames
-// their sinks, all in time order and once; then states nobody can ask for are freed.
-//
+// GVT and commit.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
+#include "kernel/commit.h"
 
-#include "base/cpu-clock.h"
-#include "base/hash.h"
-#include "kernel/kernel.h"
-#include "timeline/field-words.h"
-#include "timeline/state-fields.h"
+#include <algorithm>
+
+#include "kernel/active-pairs.h"
+#include "kernel/arc-accounts.h"
+#include "kernel/callback-book.h"
+#include "kernel/delivery.h"
+#include "kernel/reading.h"
+#include "kernel/simulation.h"
+#include "timeline/arc.h"
 
 namespace tw {
 
-std::uint64_t state_hash(const Body& body, const Key& key, const PoseTwist& point,
-                         const StateData& data) {
-  const BodyState s = body_state(body, point);
-  Hasher h;
-  const auto add = [&h](auto word) { h.add(word); };
-  add(std::uint64_t{body.id()});
-  each_word(key, add);
-  each_word(s.position, add);
-  each_word(s.orientation, add);
-  each_word(s.velocity, add);
-  each_word(s.angular_velocity, add);
-  for_each_field(data, [&](const char*, FieldUse use, const auto& field) {
-    if constexpr (!std::is_same_v<decltype(field), const std::shared_ptr<Group>&>)
-      if (use == FieldUse::history) each_word(field, add);
-  });
-  return h.value();
+Commit::Commit(Simulation& simulation, const ActivePairs& pairs, CallbackBook& callbacks,
+               Delivery& delivery)
+    : sim_(simulation),
+      counters_(simulation.present.counters),
+      pairs_(pairs),
+      callbacks_(callbacks),
+      delivery_(delivery) {}
+
+void Commit::begin_run(double until, double wall_end) {
+  until_ = until;
+  wall_end_ = wall_end;
+}
+
+// GVT and commit cost busy processes + pairs; often enough to keep queues and boxes short, rarely
+// enough to be cheap.
+bool Commit::gvt_is_due() const {
+  if (sim_.options.gvt_interval > 0) return events_since_gvt_ >= sim_.options.gvt_interval;
+  const std::size_t scanned = sim_.graph.busy().size() + pairs_.live();
+  return events_since_gvt_ >= static_cast<long>(std::max<std::size_t>(64, scanned / 4));
+}
+
+bool Commit::finished() const {
+  const EventQueue& queue = sim_.queue;
+  if (queue.empty()) return true;
+  return queue.top_priority() > until_ && compute_gvt() > until_;
 }
 
 // Claims, callbacks and known impacts are events at their own time; a pair that is followed on the
 // grid is safe only up to its last check, before its event.
-double Kernel::compute_gvt() const {
-  double least = queue.least_time();
-  for (const Pair& pair : pairs)
-    if (pair.live && !pair.parked) least = std::min(least, pair.safe_time());
+double Commit::compute_gvt() const {
+  double least = sim_.queue.least_time();
+  for (std::uint32_t i = 0; i < pairs_.size(); ++i)
+    if (const Pair& pair = pairs_[i]; pair.live && !pair.parked)
+      least = std::min(least, pair.safe_time());
   return least;
 }
 
-// Moves GVT up and commits what it passes, but nothing later than the run's end.
-void Kernel::update_gvt() {
-  ++present.counters.gvt_computations;
+void Commit::update_gvt() {
+  ++counters_.gvt_computations;
   events_since_gvt_ = 0;
   const double least = compute_gvt();
-  TW_ASSERT(least >= present.gvt,
-            "GVT would fall from " + show(present.gvt) + " to " + show(least));
+  TW_ASSERT(least >= sim_.present.gvt,
+            "GVT would fall from " + show(sim_.present.gvt) + " to " + show(least));
   const bool inclusive = least > until_;
   const double limit = std::min(least, until_);
   if (limit == never) return;  // nothing moves and nothing is asked for
-  if (limit > present.gvt || inclusive) commit(limit, inclusive);
+  if (limit > sim_.present.gvt || inclusive) commit(limit, inclusive);
 }
 
 // Everything before `limit` (at it, too, if inclusive) is final.  What is committed is so before
 // observers hear of it: an error of theirs leaves the world at its last committed time.
-void Kernel::commit(double limit, bool inclusive) {
+void Commit::commit(double limit, bool inclusive) {
   const std::exception_ptr error = error_before(limit, inclusive);
   commit_states(limit, inclusive);
+  Present& present = sim_.present;
   present.gvt = present.time = limit;
   present.due = {limit, inclusive};
-  // what will not be found again
-  std::erase_if(undone_, [&](const auto& undone) { return undone.second.time < limit; });
   if (error)
-    deliver(never);
-  else if (delivery_is_worth_it())
-    deliver(slice_end_);
+    delivery_.deliver(never);
+  else if (delivery_.is_worth_it())
+    delivery_.deliver(wall_end_);
   free_states(limit);
   if (error) std::rethrow_exception(error);
 }
 
 // The error of the first stopped process that GVT passes, null if there is none: then the commit
 // ends where it stopped.
-std::exception_ptr Kernel::error_before(double& limit, bool& inclusive) const {
+std::exception_ptr Commit::error_before(double& limit, bool& inclusive) const {
   const State* first = nullptr;
-  for (const ProcessId process : graph.busy()) {
-    const State* tail = graph.tail(process);
+  for (const ProcessId process : sim_.graph.busy()) {
+    const State* tail = sim_.graph.tail(process);
     if (!tail || !tail->error) continue;
     if (tail->key.time < limit || (inclusive && tail->key.time == limit))
       if (!first || tail->key < first->key) first = tail;
@@ -89,139 +95,64 @@ std::exception_ptr Kernel::error_before(double& limit, bool& inclusive) const {
   return first->error;
 }
 
-void Kernel::commit_states(double limit, bool inclusive) {
+void Commit::commit_states(double limit, bool inclusive) {
   const auto passed = [&](const State* s) {
     return s->key.time < limit || (inclusive && s->key.time == limit);
   };
-  const std::size_t delivered_before = undelivered_.size();
-  for (const ProcessId process : graph.busy()) {
+  for (const ProcessId process : sim_.graph.busy()) {
     // back from the tail to the last committed one, then forward
-    State* state = graph.tail(process);
+    State* state = sim_.graph.tail(process);
     while (state && state->prev && !state->prev->committed) state = state->prev;
     if (!state || state->committed) continue;
     for (; state && passed(state) && !state->error; state = state->next) commit_state(*state);
   }
-  // what one discontinuity tells has one key: in the order told
-  std::stable_sort(undelivered_.begin() + static_cast<std::ptrdiff_t>(delivered_before),
-                   undelivered_.end(),
-                   [](const auto& x, const auto& y) { return x->key < y->key; });
+  delivery_.sort_noted();
 }
 
-void Kernel::commit_state(State& state) {
+void Commit::commit_state(State& state) {
   state.committed = true;
-  present.counters.kinematic_work += state.tally.kinematic_work;
-  present.counters.max_penetration = std::max(present.counters.max_penetration, state.tally.depth);
+  count(state);
+  if (state.key.kind == KeyKind::callback)
+    callbacks_.note_committed(state.key.id, state.next_callback);
+  if (state.report) delivery_.note(state.report);
+  if (sim_.options.hash && state.changed) {
+    const Body& body = sim_.body_of(state.process);
+    HistorySum& history = sim_.present.history;
+    history.sum += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
+    ++history.count;
+  }
+}
+
+void Commit::count(const State& state) {
+  counters_.kinematic_work += state.tally.kinematic_work;
+  counters_.max_penetration = std::max(counters_.max_penetration, state.tally.depth);
   // each ring is counted by its member with the least id
   const bool impact = state.key.kind == KeyKind::impact;
   const bool call = state.key.kind == KeyKind::callback && state.changed;
   bool first = impact || call;
   for (const State* r = state.ring; first && r != &state; r = r->ring)
     first = state.process < r->process;
-  if (first && impact) ++present.counters.collisions;
-  if (first && call) ++present.counters.callback_changes;
-  if (state.key.kind == KeyKind::callback)
-    callbacks[state.key.id].committed_next = state.next_callback;
-  present.counters.fusions += state.tally.fusions;
-  present.counters.collisions -= state.tally.fusions;  // their keys are those of impacts
-  present.counters.fissions += state.tally.fissions;
-  present.counters.contact_changes += state.tally.contact_changes;
-  present.counters.impulses_given_up += state.tally.impulses_given_up;
-  present.counters.declared_soft += state.tally.declared_soft;
-  present.counters.momentum_dropped += state.tally.momentum_dropped;
-  if (state.report && !observers.empty())
-    for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
-  if (options.hash && state.changed) {
-    const Body& body = body_of(state.process);
-    present.history.sum +=
-        state_hash(body, state.key, evaluate(body, state, state.key.time), state);
-    ++present.history.count;
-  }
-}
-
-// Writing frames drives the stepping loop's data out of the processor's caches, so they go in
-// batches: at the latest when the next slice begins or the run ends.
-bool Kernel::delivery_is_worth_it() const {
-  constexpr std::size_t batch = 512, most_waiting_states = 20000;
-  if (undelivered_.size() >= 8 * batch) return true;
-  // states wait for their frames: memory
-  if (graph.state_count() >= most_waiting_states) return true;
-  return std::any_of(sinks.begin(), sinks.end(), [&](const SinkRecord& s) {
-    return (present.due.time - s.next_time()) * s.fps >= batch;
-  });
-}
-
-// Collisions and frames in time order; a collision at a frame's time comes first.  Each observer
-// hears of a collision once, whatever another one or a call before did: what an error keeps from
-// being delivered is delivered by the next call, and a call delivers one thing at least.
-bool Kernel::deliver(double wall_end) {
-  const double cpu = thread_cpu_seconds();
-  struct AddTime {
-    Kernel& kernel;
-    double start;
-    ~AddTime() { kernel.present.counters.output_cpu_seconds += thread_cpu_seconds() - start; }
-  } add_time{*this, cpu};
-
-  do {
-    SinkRecord* sink = nullptr;
-    for (SinkRecord& s : sinks)
-      if (!sink || s.next_time() < sink->next_time()) sink = &s;
-    const bool frame_due = sink && present.due.reaches(sink->next_time());
-    if (!undelivered_.empty() && (!frame_due || undelivered_.front()->time <= sink->next_time())) {
-      const std::shared_ptr<const Collision> collision = undelivered_.front();
-      while (next_observer_ < observers.size()) {
-        const ObserverRecord& record = observers[next_observer_++];
-        if (record.kind == collision->kind) record.observer(*collision);
-      }
-      undelivered_.pop_front();
-      next_observer_ = 0;
-      continue;
-    }
-    if (!frame_due) return true;
-    deliver_frame(*sink);
-  } while (wall_end == never || wall_seconds() < wall_end);
-  return false;
-}
-
-void Kernel::deliver_frame(SinkRecord& record) {
-  const double frame_time = record.next_time();
-  const long index = record.next_frame++;
-  std::vector<BodyPose> poses;
-  for (const auto& body : scene.bodies) {
-    if (body->fixed()) continue;
-    const State* state = graph.last_at_or_before_time(body->process, frame_time);
-    if (!state) continue;
-    poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
-  }
-  present.counters.max_penetration = std::max(
-      present.counters.max_penetration, deepest_contact(scene, states_at(frame_time), frame_time));
-  const std::shared_ptr<FrameSink> sink = record.sink;
-  sink->frame(index, frame_time, poses);
+  if (first && impact) ++counters_.collisions;
+  if (first && call) ++counters_.callback_changes;
+  counters_.fusions += state.tally.fusions;
+  counters_.collisions -= state.tally.fusions;  // their keys are those of impacts
+  counters_.fissions += state.tally.fissions;
+  counters_.contact_changes += state.tally.contact_changes;
+  counters_.impulses_given_up += state.tally.impulses_given_up;
+  counters_.declared_soft += state.tally.declared_soft;
+  counters_.momentum_dropped += state.tally.momentum_dropped;
 }
 
 // Keeps the last state at or before the limit, and what frames that are still due will read.
-void Kernel::free_states(double limit) {
-  for (const SinkRecord& sink : sinks) limit = std::min(limit, sink.next_time());
-  for (const ProcessId process : graph.busy()) {
-    State* keep = graph.last_at_or_before_time(process, limit);
+void Commit::free_states(double limit) {
+  limit = delivery_.first_needed(limit);
+  for (const ProcessId process : sim_.graph.busy()) {
+    State* keep = sim_.graph.last_at_or_before_time(process, limit);
     // ties: an edit at the limit may follow the first of several states there
     while (keep && !keep->committed) keep = keep->prev;
-    if (keep) graph.free_before(keep, release());
+    if (keep) sim_.graph.free_before(keep, count_used(sim_));
   }
-  graph.tidy_busy();
-}
-
-std::string Kernel::history_hash() const {
-  std::uint64_t sum = present.history.sum;
-  for (const auto& body : scene.bodies) {
-    if (body->info.removed) continue;
-    const State* state = state_at(body->id(), present.time);
-    const Key end{present.time, 0, KeyKind::step, body->id()};
-    sum += state_hash(*body, end, evaluate(*body, *state, present.time), *state);
-  }
-  std::string bytes;
-  for (const std::uint64_t word : {sum, present.history.count})
-    for (int i = 0; i < 8; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
-  return sha256_hex(bytes);
+  sim_.graph.tidy_busy();
 }
 
 }  // namespace tw

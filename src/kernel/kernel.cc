@@ -1,174 +1,155 @@
 // The main loop: least key first, GVT every so often, until everything up to the end is committed.
 //
-// What comes next is the policy's choice (policy.h).  The adversary scheduler gives events or
-// bodies a random head start: they are taken out of order, which makes rollbacks common; the
-// committed history must not change.
+// What comes next is the policy's choice (policy.h).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/kernel.h"
 
-#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/cpu-clock.h"
+#include "kernel/reading.h"
+#include "kernel/run-guard.h"
+#include "kernel/validate.h"
 
 namespace tw {
-namespace {
 
-// Marks the kernel as running, and adds up its CPU time, delivery to sinks excluded.
-class RunGuard {
- public:
-  explicit RunGuard(Kernel& kernel)
-      : kernel_(kernel),
-        cpu_(thread_cpu_seconds()),
-        output_(kernel.present.counters.output_cpu_seconds) {
-    kernel_.running = true;
+// ---- between runs ----
+
+void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
+                         const ContactSettings& settings) {
+  simulation.require_between_runs("contact parameters were set");
+  simulation.scene.contacts.add(a, b, settings);
+  if (!simulation.present.begun) return;
+  discontinuities.restart_future();
+  editing.renew_groups();
+}
+
+std::uint64_t Kernel::add_callback(const CallbackDef& def) {
+  simulation.require_between_runs("a callback was added");
+  callbacks.require_possible(def);
+  if (simulation.present.begun) discontinuities.restart_future();
+  return callbacks.add(def);
+}
+
+void Kernel::add_collision_callback(const CollisionCallbackDef& def) {
+  simulation.require_between_runs("a collision callback was added");
+  impacts.add_callback(def);
+  if (simulation.present.begun) discontinuities.restart_future();
+}
+
+void Kernel::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
+  simulation.require_between_runs("an observer was added");
+  if (simulation.present.begun && !delivery.observed(kind)) discontinuities.restart_future();
+  delivery.add_observer(std::move(observer), kind);
+}
+
+void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
+  simulation.require_between_runs("a frame sink was added");
+  delivery.add_sink(std::move(sink), fps);
+}
+
+void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
+  const bool moved = editing.edit(id, change);
+  if (moved && simulation.present.begun) bodies.check_overlaps(simulation.body(id));
+}
+
+// ---- the loop ----
+
+Progress Kernel::process(const Event& event) {
+  switch (event.kind) {
+    case EventKind::advance: claims.claim_window(simulation.body(event.subject)); break;
+    case EventKind::callback: return callback_events.process(event.subject);
+    case EventKind::group_check: return groups.check(ProcessId{event.subject});
+    case EventKind::pair:
+      if (pairs[event.subject].pending) return impacts.process(event.subject);
+      checks.pursue(event.subject);
+      break;
   }
-  ~RunGuard() {
-    kernel_.running = false;
-    const double output = kernel_.present.counters.output_cpu_seconds - output_;
-    kernel_.present.counters.cpu_seconds += thread_cpu_seconds() - cpu_ - output;
-  }
-  RunGuard(const RunGuard&) = delete;
-  RunGuard& operator=(const RunGuard&) = delete;
-
- private:
-  Kernel& kernel_;
-  double cpu_, output_;
-};
-
-}  // namespace
-
-Kernel::Kernel() = default;
-
-Event Kernel::make_event(const Key& key, EventKind kind, std::uint32_t subject, double head_start) {
-  double priority = key.time - head_start;
-  if (options.adversary && options.adversary->every_event)
-    priority -= options.adversary->head_start * adversary_.real();
-  return {priority, key, kind, subject};
+  return Progress::done;
 }
 
 void Kernel::process_next() {
-  const Event event = policy->next(queue);
-  Progress progress = Progress::done;
-  switch (event.kind) {
-    case EventKind::advance: claim_window(*scene.bodies[event.subject]); break;
-    case EventKind::callback: progress = process_callback(event.subject); break;
-    case EventKind::group_check: progress = check_group(ProcessId{event.subject}); break;
-    case EventKind::pair:
-      if (pairs[event.subject].pending)
-        progress = process_impact(event.subject);
-      else
-        pursue(event.subject);
-      break;
-  }
-  if (progress == Progress::try_again) ++present.counters.events_postponed;
-  ++present.counters.events;
-  present.counters.pair_sum += static_cast<double>(live_pairs_);
-  ++events_since_gvt_;
-  if (options.check) validate_all();
+  const Event event = simulation.policy->next(simulation.queue);
+  Counters& counters = simulation.present.counters;
+  if (process(event) == Progress::try_again) ++counters.events_postponed;
+  ++counters.events;
+  counters.pair_sum += static_cast<double>(pairs.live());
+  commit.note_event();
+  if (simulation.options.check) validate_all();
 }
 
-// GVT and commit cost busy processes + pairs; often enough to keep queues and boxes short, rarely
-// enough to be cheap.
-bool Kernel::gvt_is_due() const {
-  if (options.gvt_interval > 0) return events_since_gvt_ >= options.gvt_interval;
-  const std::size_t scanned = graph.busy().size() + live_pairs_;
-  return events_since_gvt_ >= static_cast<long>(std::max<std::size_t>(64, scanned / 4));
-}
-
-// Everything up to the end is final when nothing that could still change it is left.
-bool Kernel::finished() {
-  if (queue.empty() || queue.top_priority() > until_) {
-    if (compute_gvt() > until_) return true;
+// Those that came since the last run claim first; what stopped somebody is tried again.
+void Kernel::begin_run() {
+  discontinuities.retry_errors();
+  Present& present = simulation.present;
+  if (bodies.any_newborn()) {
+    claims.measure_spacing();
+    bodies.check_newborn();
+    if (!present.begun && simulation.options.adversary) {
+      simulation.adversary.begin(*simulation.options.adversary);
+      simulation.adversary.choose(simulation.processes);
+      callbacks.take_head_starts();
+    }
+    present.begun = true;
+    bodies.claim_newborn();
   }
-  return queue.empty();
+  present.begun = true;
+  if (!present.counters.energy_known) {
+    present.counters.energy_start = total_energy(simulation, present.time);
+    present.counters.energy_known = true;
+  }
 }
 
 RunStatus Kernel::advance(double until, double slice) {
   TW_REQUIRE(std::isfinite(until),
              "time to run to is " + show(until) + "; expected a finite number of seconds");
-  TW_REQUIRE(!running,
+  TW_REQUIRE(!simulation.running,
              "a run was started inside a callback or observer; expected to be between runs");
-  if (until < present.time) return RunStatus::finished;
-  const RunGuard guard(*this);
-  until_ = until;
+  if (until < simulation.present.time) return RunStatus::finished;
+  const RunGuard guard(simulation);
   begin_run();
 
-  slice_end_ = slice < never ? wall_seconds() + slice : never;
-  if (!deliver(slice_end_)) return RunStatus::slice_over;
+  const double wall_end = slice < never ? wall_seconds() + slice : never;
+  commit.begin_run(until, wall_end);
+  if (!delivery.deliver(wall_end)) return RunStatus::slice_over;
   long events = 0;
-  while (!finished()) {
+  while (!commit.finished()) {
     process_next();
-    if (gvt_is_due()) update_gvt();
-    if (slice < never && (++events & 7) == 0 && wall_seconds() > slice_end_)
+    if (commit.gvt_is_due()) commit.update_gvt();
+    if (slice < never && (++events & 7) == 0 && wall_seconds() > wall_end)
       return RunStatus::slice_over;
   }
-  update_gvt();
-  present.time = until;
-  return deliver(slice_end_) ? RunStatus::finished : RunStatus::slice_over;
-}
-
-void Kernel::deliver_rest() {
-  const RunGuard guard(*this);
-  deliver(never);
+  commit.update_gvt();
+  simulation.present.time = until;
+  return delivery.deliver(wall_end) ? RunStatus::finished : RunStatus::slice_over;
 }
 
 bool Kernel::step(double until) {
-  TW_REQUIRE(!running,
+  TW_REQUIRE(!simulation.running,
              "a step was made inside a callback or observer; expected to be between runs");
-  const RunGuard guard(*this);
-  until_ = until;
+  const RunGuard guard(simulation);
   begin_run();
-  if (finished()) return false;
+  commit.begin_run(until, never);
+  if (commit.finished()) return false;
   process_next();
-  update_gvt();
-  deliver(never);
+  commit.update_gvt();
+  delivery.deliver(never);
   return true;
 }
 
-const State* Kernel::state_at(BodyId id, double when) const {
-  // between runs nothing but the past counts
-  const State* state = when == present.time && !running
-                           ? graph.last_before(process_of(id), present.key())
-                           : graph.last_at_or_before_time(process_of(id), when);
-  while (state && state->error && state->prev) state = state->prev;
-  return state ? state : graph.head(process_of(id));
+// ---- looking ----
+
+StatisticsTable Kernel::statistics() const {
+  return statistics_of(simulation, delivery, distance_queries - queries_before_);
 }
 
-PoseTwist Kernel::point_at(BodyId id, double when) const {
-  return evaluate(*scene.bodies[id], *state_at(id, when), when);
-}
-
-StateOf Kernel::states_at(double when) const {
-  return [this, when](BodyId id) -> const State& { return *state_at(id, when); };
-}
-
-double Kernel::total_energy(double when) const {
-  double energy = 0;
-  for (const auto& body : scene.bodies) {
-    if (!body->dynamic()) continue;
-    const PoseTwist p = point_at(body->id(), when);
-    energy += kinetic_energy(*body, p) - body->mass * present.settings.gravity.dot(p.x);
-  }
-  return energy + elastic_energy(scene, states_at(when), when);
-}
-
-ContactSurvey Kernel::survey_contacts(double when) const {
-  return tw::survey_contacts(scene, states_at(when), when);
-}
-
-// Nothing is computed in worlds without kinematic bodies.
-double Kernel::kinematic_work_of(const State& state, double until) const {
-  return kinematic.empty() ? 0 : contact_work(scene, state, until);
-}
-
-Vec3 Kernel::total_momentum(double when) const {
-  Vec3 sum = Vec3::Zero();
-  for (const auto& body : scene.bodies)
-    if (body->dynamic()) sum += body->mass * point_at(body->id(), when).v;
-  return sum;
+void Kernel::validate_all() const {
+  for (const auto& broken :
+       {validate_state_graph(simulation), validate_event_queue(simulation, pairs, callbacks),
+        validate_pairs(simulation, pairs), validate_residences(simulation),
+        validate_claims(simulation, claims)})
+    TW_ASSERT(broken.empty(), broken + " (GVT " + show(simulation.present.gvt) + " s)");
 }
 
 }  // namespace tw

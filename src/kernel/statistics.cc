@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
-#include "collision/separation.h"
-#include "kernel/kernel.h"
+#include "kernel/arc-accounts.h"
+#include "kernel/delivery.h"
+#include "kernel/reading.h"
+#include "kernel/simulation.h"
+#include "kernel/statistics.h"
 
 namespace tw {
 namespace {
@@ -22,13 +25,17 @@ std::int64_t peak_resident_bytes() {
 
 }  // namespace
 
-StatisticsTable Kernel::statistics() const {
+StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
+                              std::uint64_t distance_queries_made) {
+  const Scene& scene = simulation.scene;
+  const StateGraph& graph = simulation.graph;
+  const Present& present = simulation.present;
+  const Counters& counters = present.counters;
   std::int64_t moving = 0;
   for (const auto& body : scene.bodies) moving += !body->fixed();
 
   // arcs that still stand count up to the present
-  double length = present.counters.integration_length,
-         kinematic_work = present.counters.kinematic_work;
+  double length = counters.integration_length, kinematic_work = counters.kinematic_work;
   std::uint64_t kinematic_arcs = 0;
   std::uint64_t steps = 0, factorizations = 0;  // of groups that still stand
   for (const auto& body : scene.bodies) {
@@ -42,7 +49,7 @@ StatisticsTable Kernel::statistics() const {
       const State* next = s->next;
       while (next && !next->starts_arc()) next = next->next;
       const double until = std::min(present.time, next ? next->key.time : present.time);
-      kinematic_work += kinematic_work_of(*s, until);
+      kinematic_work += kinematic_work_of(simulation, *s, until);
       if (s->group && !s->group->at_rest) {
         const GroupArc& arc = *s->group->arc;
         length += arc.reached() - arc.start().time;
@@ -57,70 +64,67 @@ StatisticsTable Kernel::statistics() const {
   }
 
   const double bodies_moving = static_cast<double>(std::max<std::int64_t>(1, moving));
-  const std::uint64_t integrations = present.counters.integrations + kinematic_arcs + steps;
-  const std::uint64_t discontinuities = present.counters.collisions + present.counters.fusions +
-                                        present.counters.fissions +
-                                        present.counters.callback_changes;
-  const double fps = sinks.empty() ? 30 : sinks.front().fps;
-  const double frames = std::max(1.0, present.time * fps);
+  const std::uint64_t integrations = counters.integrations + kinematic_arcs + steps;
+  const std::uint64_t discontinuities =
+      counters.collisions + counters.fusions + counters.fissions + counters.callback_changes;
+  const double frames = std::max(1.0, present.time * delivery.fps());
 
   return {
       {"duration", present.time},
-      {"frames", sinks.empty() ? std::int64_t{0} : std::int64_t{sinks.front().next_frame}},
+      {"frames", std::int64_t{delivery.frames()}},
       {"bodies_moving", moving},
       {"bodies_total", whole(scene.bodies.size() - present.removals)},
       {"discontinuities", whole(discontinuities)},
-      {"collisions", whole(present.counters.collisions)},
-      {"fusions", whole(present.counters.fusions)},
-      {"fissions", whole(present.counters.fissions)},
-      {"callback_changes", whole(present.counters.callback_changes)},
-      {"contact_changes", whole(present.counters.contact_changes)},
+      {"collisions", whole(counters.collisions)},
+      {"fusions", whole(counters.fusions)},
+      {"fissions", whole(counters.fissions)},
+      {"callback_changes", whole(counters.callback_changes)},
+      {"contact_changes", whole(counters.contact_changes)},
       {"avg_time_between_discontinuities",
        ratio(present.time, static_cast<double>(discontinuities))},
       {"avg_integration_step", ratio(length, static_cast<double>(integrations))},
       {"integrations", whole(integrations)},
       {"integration_per_moving_body", length / bodies_moving},
-      {"rollback_per_moving_body", present.counters.rollback_length / bodies_moving},
-      {"rollbacks", whole(present.counters.rollbacks)},
-      {"states_rolled_back", whole(present.counters.states_removed)},
-      {"deepest_rollback", present.counters.deepest_rollback},
-      {"largest_cascade", whole(present.counters.deepest_cascade)},
-      {"cpu_seconds", present.counters.cpu_seconds},
-      {"cpu_seconds_per_frame", present.counters.cpu_seconds / frames},
-      {"events", whole(present.counters.events)},
-      {"events_postponed", whole(present.counters.events_postponed)},
-      {"claims", whole(present.counters.claims)},
-      {"candidates", whole(present.counters.candidates)},
-      {"predictions", whole(present.counters.predictions)},
-      {"checks", whole(present.counters.checks)},
-      {"certificates", whole(present.counters.certificates)},
-      {"active_pairs_avg",
-       ratio(present.counters.pair_sum, static_cast<double>(present.counters.events))},
-      {"distance_queries", static_cast<std::int64_t>(distance_queries - queries_before_)},
-      {"callbacks_run", whole(present.counters.callbacks_run)},
-      {"groups", whole(present.counters.groups)},
-      {"group_checks", whole(present.counters.group_checks)},
-      {"largest_group_bodies", whole(present.counters.largest_group_bodies)},
-      {"largest_group_contacts", whole(present.counters.largest_group_contacts)},
-      {"early_ends", whole(present.counters.early_ends)},
-      {"manifolds", whole(present.counters.manifolds)},
-      {"implicit_steps", whole(present.counters.implicit_steps + steps)},
-      {"rejected_steps", whole(present.counters.rejected_steps)},
-      {"factorizations", whole(present.counters.factorizations + factorizations)},
-      {"gvt_computations", whole(present.counters.gvt_computations)},
+      {"rollback_per_moving_body", counters.rollback_length / bodies_moving},
+      {"rollbacks", whole(counters.rollbacks)},
+      {"states_rolled_back", whole(counters.states_removed)},
+      {"deepest_rollback", counters.deepest_rollback},
+      {"largest_cascade", whole(counters.deepest_cascade)},
+      {"cpu_seconds", counters.cpu_seconds},
+      {"cpu_seconds_per_frame", counters.cpu_seconds / frames},
+      {"events", whole(counters.events)},
+      {"events_postponed", whole(counters.events_postponed)},
+      {"claims", whole(counters.claims)},
+      {"candidates", whole(counters.candidates)},
+      {"predictions", whole(counters.predictions)},
+      {"checks", whole(counters.checks)},
+      {"certificates", whole(counters.certificates)},
+      {"active_pairs_avg", ratio(counters.pair_sum, static_cast<double>(counters.events))},
+      {"distance_queries", whole(distance_queries_made)},
+      {"callbacks_run", whole(counters.callbacks_run)},
+      {"groups", whole(counters.groups)},
+      {"group_checks", whole(counters.group_checks)},
+      {"largest_group_bodies", whole(counters.largest_group_bodies)},
+      {"largest_group_contacts", whole(counters.largest_group_contacts)},
+      {"early_ends", whole(counters.early_ends)},
+      {"manifolds", whole(counters.manifolds)},
+      {"implicit_steps", whole(counters.implicit_steps + steps)},
+      {"rejected_steps", whole(counters.rejected_steps)},
+      {"factorizations", whole(counters.factorizations + factorizations)},
+      {"gvt_computations", whole(counters.gvt_computations)},
       {"peak_states", whole(graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},
-      {"max_penetration", present.counters.max_penetration},
-      {"impulses_given_up", whole(present.counters.impulses_given_up)},
-      {"impacts_declared_soft", whole(present.counters.declared_soft)},
-      {"momentum_dropped", present.counters.momentum_dropped},
+      {"max_penetration", counters.max_penetration},
+      {"impulses_given_up", whole(counters.impulses_given_up)},
+      {"impacts_declared_soft", whole(counters.declared_soft)},
+      {"momentum_dropped", counters.momentum_dropped},
       {"kinematic_work", kinematic_work},
       {"energy_start",
-       present.counters.energy_known ? present.counters.energy_start : total_energy(present.time)},
-      {"energy_end", total_energy(present.time)},
-      {"policy", std::string(policy->name())},
+       counters.energy_known ? counters.energy_start : total_energy(simulation, present.time)},
+      {"energy_end", total_energy(simulation, present.time)},
+      {"policy", std::string(simulation.policy->name())},
       {"accuracy", present.settings.accuracy},
-      {"seed", static_cast<std::int64_t>(options.seed)},
+      {"seed", static_cast<std::int64_t>(simulation.options.seed)},
   };
 }
 

@@ -14,4 +14,11 @@ namespace tw {
 using StatisticsTable =
     std::vector<std::pair<std::string, std::variant<std::int64_t, double, std::string>>>;
 
+class Delivery;
+struct Simulation;
+
+// `distance_queries_made`: by this world.
+StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
+                              std::uint64_t distance_queries_made);
+
 }  // namespace tw

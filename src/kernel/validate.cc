@@ -1,39 +1,47 @@
-// Validators: the kernel's invariants as functions, run after every event under --check.
+// Validators.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/validate.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/kernel.h"
+#include "kernel/active-pairs.h"
+#include "kernel/callback-book.h"
+#include "kernel/claims.h"
+#include "kernel/simulation.h"
+#include "timeline/arc.h"
 
 namespace tw {
 
-std::string Kernel::validate_state_graph() const {
-  if (std::string broken = graph.validate(); !broken.empty()) return broken;
-  for (const auto& body : scene.bodies) {
-    for (const State* s = graph.head(body->process); s; s = s->next) {
+std::string validate_state_graph(const Simulation& simulation) {
+  if (std::string broken = simulation.graph.validate(); !broken.empty()) return broken;
+  for (const auto& body : simulation.scene.bodies) {
+    for (const State* s = simulation.graph.head(body->process); s; s = s->next) {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
       if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
-      if (s->key.time < present.gvt && !s->committed && !s->error)
+      if (s->key.time < simulation.present.gvt && !s->committed && !s->error)
         return "state before GVT not committed: " + body->info.name + ", " + show(s->key);
-      if (s->committed && s->key.time > present.gvt) return "committed after GVT: " + show(s->key);
+      if (s->committed && s->key.time > simulation.present.gvt)
+        return "committed after GVT: " + show(s->key);
     }
   }
   return "";
 }
 
-std::string Kernel::validate_event_queue() const {
-  if (!queue.validate()) return "heap order or handles of the event queue";
-  for (const EventQueue::Handle handle : queue.handles()) {
-    const Event& event = queue.event(handle);
+std::string validate_event_queue(const Simulation& simulation, const ActivePairs& pairs,
+                                 const CallbackBook& callbacks) {
+  if (!simulation.queue.validate()) return "heap order or handles of the event queue";
+  for (const EventQueue::Handle handle : simulation.queue.handles()) {
+    const Event& event = simulation.queue.event(handle);
     switch (event.kind) {
       case EventKind::advance:
-        if (process(*scene.bodies[event.subject]).advance != handle)
+        if (simulation.process(simulation.body(event.subject)).advance != handle)
           return "advance event of nobody";
         break;
       case EventKind::group_check: {
-        const State* tail = graph.tail(process_of(event.subject));
-        if (process(*scene.bodies[event.subject]).group_check != handle)
+        const State* tail = simulation.graph.tail(simulation.process_of(event.subject));
+        if (simulation.process(simulation.body(event.subject)).group_check != handle)
           return "group check of nobody";
         if (!tail->group || tail->group->at_rest) return "group check of a dead group";
         break;
@@ -50,23 +58,22 @@ std::string Kernel::validate_event_queue() const {
   return "";
 }
 
-std::string Kernel::validate_pairs() const {
+std::string validate_pairs(const Simulation& simulation, const ActivePairs& pairs) {
   std::size_t live = 0;
   for (std::uint32_t i = 0; i < pairs.size(); ++i) {
     const Pair& pair = pairs[i];
     if (!pair.live) continue;
     ++live;
     const std::string where =
-        scene.bodies[pair.a]->info.name + " and " + scene.bodies[pair.b]->info.name;
+        simulation.body(pair.a).info.name + " and " + simulation.body(pair.b).info.name;
     if (!(pair.a < pair.b)) return "ids out of order: " + where;
-    if (scene.bodies[pair.a]->pairs[pair.place_a] != i ||
-        scene.bodies[pair.b]->pairs[pair.place_b] != i)
+    if (pairs.of(pair.a)[pair.place_a] != i || pairs.of(pair.b)[pair.place_b] != i)
       return "pair not in its bodies' lists: " + where;
-    if (pair.safe_time() < present.gvt) return "safe time before GVT: " + where;
+    if (pair.safe_time() < simulation.present.gvt) return "safe time before GVT: " + where;
     if (pair.pending) {
       // an impact is valid only below the next keys of both processes
       for (const BodyId id : {pair.a, pair.b}) {
-        const State* s = graph.last_before(process_of(id), pair.impact);
+        const State* s = simulation.graph.last_before(simulation.process_of(id), pair.impact);
         const State* next = s ? s->next : nullptr;
         while (next && !next->starts_arc()) next = next->next;
         if (next && next->key <= pair.impact) return "pending impact past an arc's end: " + where;
@@ -74,15 +81,15 @@ std::string Kernel::validate_pairs() const {
       if (pair.event == EventQueue::none) return "pending impact without event: " + where;
     }
   }
-  if (live != live_pairs_) return "number of live pairs";
+  if (live != pairs.live()) return "number of live pairs";
   return "";
 }
 
 // Each dynamic body has one residence: the states of a group stand in its members' queues, all of
 // them.
-std::string Kernel::validate_residences() const {
-  for (const auto& body : scene.bodies) {
-    for (const State* s = graph.head(body->process); s; s = s->next) {
+std::string validate_residences(const Simulation& simulation) {
+  for (const auto& body : simulation.scene.bodies) {
+    for (const State* s = simulation.graph.head(body->process); s; s = s->next) {
       if (!s->group || s->error) continue;
       const std::string where = body->info.name + ", " + show(s->key);
       const Group& group = *s->group;
@@ -94,59 +101,46 @@ std::string Kernel::validate_residences() const {
       if (s->starts_arc() && s->member == 0)
         for (const ContactPair& pair : group.pairs)
           for (const BodyId id : {first_of(pair.id), second_of(pair.id)})
-            if (!group.contains(process_of(id)) &&
+            if (!group.contains(simulation.process_of(id)) &&
                 std::find(group.outside.begin(), group.outside.end(), id) == group.outside.end())
               return "linked to a group and neither in it nor outside: " +
-                     scene.bodies[id]->info.name;
+                     simulation.body(id).info.name;
       if (s->committed || s->key != group.key) continue;
       for (const ProcessId other : group.members) {
-        const State* t = graph.last_at_or_before(other, s->key);
+        const State* t = simulation.graph.last_at_or_before(other, s->key);
         if (!t || t->group != s->group) return "a member is elsewhere: " + where;
       }
     }
-    const State* tail = graph.tail(body->process);
+    const State* tail = simulation.graph.tail(body->process);
     const bool waits = tail->group && !tail->error && !tail->group->at_rest;
-    if (waits && process(*body).group_check == EventQueue::none)
+    if (waits && simulation.process(*body).group_check == EventQueue::none)
       return "a group without a check: " + body->info.name;
   }
   return "";
 }
 
 // Boxes hold the bodies from GVT to their claims (sampled), and nobody has states past a claim.
-std::string Kernel::validate_claims() const {
-  for (const auto& body : scene.bodies) {
-    if (body->fixed() || !body->placed || body->unbounded) continue;
-    const State* tail = graph.tail(body->process);
-    if (tail->starts_arc() && tail->key.time > process(*body).claim.time && body->dynamic())
+std::string validate_claims(const Simulation& simulation, const Claims& claims) {
+  for (const auto& body : simulation.scene.bodies) {
+    if (body->fixed() || !claims.placed(body->id()) || body->unbounded) continue;
+    const State* tail = simulation.graph.tail(body->process);
+    if (tail->starts_arc() && tail->key.time > simulation.process(*body).claim.time &&
+        body->dynamic())
       return "state past the claim: " + body->info.name;
     for (int i = 0; i <= 4; ++i) {
-      const double claimed = process(*body).claim.time;
-      const double t = std::min(claimed, present.gvt + (claimed - present.gvt) * (0.25 * i));
-      if (!std::isfinite(t) || t < present.gvt) continue;
-      const State* s = graph.last_at_or_before_time(body->process, t);
+      const double gvt = simulation.present.gvt, claimed = simulation.process(*body).claim.time;
+      const double t = std::min(claimed, gvt + (claimed - gvt) * (0.25 * i));
+      if (!std::isfinite(t) || t < gvt) continue;
+      const State* s = simulation.graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
       const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
-      const Aabb& box = grid.box(body->id());
+      const Aabb& box = simulation.grid.box(body->id());
       if (!box.contains(there.lo) || !box.contains(there.hi))
         return "box does not hold " + body->info.name + " at " + show(t) + " s";
     }
   }
-  if (!grid.consistent()) return "spatial hash";
+  if (!simulation.grid.consistent()) return "spatial hash";
   return "";
-}
-
-void Kernel::validate_all() const {
-  for (const auto& broken : {validate_state_graph(), validate_event_queue(), validate_pairs(),
-                             validate_residences(), validate_claims()})
-    TW_ASSERT(broken.empty(), broken + " (GVT " + show(present.gvt) + " s)");
-}
-
-std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
-  std::vector<QueuedState> result;
-  for (const State* s = graph.head(process_of(id)); s; s = s->next)
-    result.push_back({s->key, s->committed,
-                      body_state(*scene.bodies[id], evaluate(*scene.bodies[id], *s, s->key.time))});
-  return result;
 }
 
 }  // namespace tw

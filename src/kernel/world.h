@@ -13,11 +13,10 @@
 
 #include "base/error.h"
 #include "dynamics/contact-parameters.h"
-#include "dynamics/motion.h"
 #include "dynamics/scene.h"
-#include "geometry/shape.h"
 #include "groups/contact-survey.h"
-#include "kernel/callback.h"
+#include "kernel/definitions.h"
+#include "kernel/options.h"
 #include "kernel/statistics.h"
 #include "timeline/key.h"
 
@@ -26,63 +25,6 @@ namespace tw {
 class Kernel;
 class Policy;
 struct Checkpoint;
-
-// How a body comes into the world.  Absent mass properties come from shape and density.
-struct BodyDef {
-  std::string name;                     // empty: body-N with N the body's id
-  ShapePtr shape;                       // null: touches nothing; then mass and inertia are needed
-  std::optional<double> density;        // kg/m^3, default 1000
-  std::optional<double> mass;           // kg; scales the shape's inertia
-  std::optional<Mat3> inertia;          // kg m^2 about the centre of mass, body axes
-  std::optional<Vec3> center_of_mass;   // body frame, m
-  Vec3 position = Vec3::Zero();         // of the body frame's origin
-  Quat orientation = Quat::Identity();  // normalised here; zero is an error
-  Vec3 velocity = Vec3::Zero();         // of the centre of mass
-  Vec3 angular_velocity = Vec3::Zero();
-  bool fixed = false;
-  MotionPtr motion;  // makes the body kinematic; excludes `fixed`
-  std::string material;
-  SlotsPtr slots;             // null: no slots
-  std::optional<Vec3> color;  // sRGB 0..1
-  bool visible = true;
-  Place place;  // of the form that made it
-};
-
-// Test modes of the scheduler (kernel.md): the committed history must not depend on them.
-struct AdversaryOptions {
-  std::uint64_t seed = 0;
-  double head_start = 0;     // s: events are taken as if up to this much earlier
-  double body_share = 0.3;   // share of bodies with a head start of their own
-  bool every_event = false;  // every event draws a fresh head start
-  bool some_bodies = true;
-};
-
-// How a world is run: the answer depends on the seed alone.
-struct WorldOptions {
-  std::uint64_t seed = 0;
-  bool hash = false;          // accumulate the hash of the committed history
-  bool check = false;         // run every validator after every event
-  bool undo_redo = false;     // test mode: undo every discontinuity and redo it
-  long gvt_interval = 0;      // events between computations of GVT; 0: automatic
-  double window_cells = 0.7;  // claimed window, in cells of travel
-  std::optional<AdversaryOptions> adversary;
-};
-
-struct CallbackDef {
-  std::vector<BodyId> targets;
-  std::shared_ptr<Callback> callback;
-  double start = 0;
-  std::optional<double> period;  // absent: the callback returns its next time
-  std::string name;              // for messages
-  Place place;
-};
-
-struct CollisionCallbackDef {
-  ContactSide a, b;
-  std::shared_ptr<CollisionCallback> callback;
-  std::string name;
-  Place place;
-};
 
 enum class RunStatus {
   finished,   // everything up to and including `until` is committed and observed

@@ -159,8 +159,8 @@ TEST(Committed, nothing_before_gvt_is_touched) {
     std::map<std::pair<BodyId, double>, Vec3> committed;
     double gvt = 0;
     while (world.step(2)) {
-      ASSERT_GE(world.kernel().present.gvt, gvt);
-      gvt = world.kernel().present.gvt;
+      ASSERT_GE(world.kernel().simulation.present.gvt, gvt);
+      gvt = world.kernel().simulation.present.gvt;
       for (BodyId id = 0; id < world.body_count(); ++id)
         for (const QueuedState& s : world.state_queue(id)) {
           if (s.key.time < gvt) {
@@ -197,7 +197,7 @@ TEST(Committed, memory_is_bounded) {
   while (collisions() < many) world.advance(world.time() + 20);
   EXPECT_LE(count_of(world.statistics(), "peak_states"), 2 * states);
   EXPECT_LE(world.kernel().pairs.size(), 2 * pairs);
-  EXPECT_LE(world.kernel().graph.state_count(), 300u);
+  EXPECT_LE(world.kernel().simulation.graph.state_count(), 300u);
   RecordProperty("peak_states", static_cast<int>(count_of(world.statistics(), "peak_states")));
 }
 
@@ -210,7 +210,7 @@ TEST(Committed, memory_is_bounded_with_callbacks_and_rollbacks) {
   const std::int64_t states = count_of(world.statistics(), "peak_states");
   world.advance(long_tests() ? 2000 : 200);
   EXPECT_LE(count_of(world.statistics(), "peak_states"), 3 * states);
-  EXPECT_LE(world.kernel().graph.state_count(), 400u);
+  EXPECT_LE(world.kernel().simulation.graph.state_count(), 400u);
 }
 
 }  // namespace

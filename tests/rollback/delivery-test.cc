@@ -29,7 +29,7 @@ TEST(Delivery, error_of_an_observer_leaves_the_world_at_its_committed_time) {
     world.add_collision_observer([failing](const Collision& c) { (*failing)(c); });
     EXPECT_THROW(world.advance(1000), UserError);
     EXPECT_LT(world.time(), 1000) << "the error came from the last delivery";
-    EXPECT_EQ(world.time(), world.kernel().present.gvt);
+    EXPECT_EQ(world.time(), world.kernel().simulation.present.gvt);
     change(world);
     const double later = world.time() + 0.5;
     EXPECT_NO_THROW(world.advance(later));

@@ -26,7 +26,7 @@ struct Stack {
     ball = add_ball(world, 0.1, {2, 0, 0.15}, {0, 0.3, 0});
   }
   bool at_rest(BodyId id) {
-    const State* s = world.kernel().state_at(id, world.time());
+    const State* s = state_at(world.kernel().simulation, id, world.time());
     return s->group && s->group->at_rest;
   }
   World world;
@@ -238,8 +238,8 @@ TEST(GroupCheckpoints, run_from_a_checkpoint_in_a_heap_is_the_same) {
       for (const double past : {when + 0.1, scene.duration}) {
         world.advance(past);
         world.restore(*checkpoint);
-        EXPECT_EQ(world.kernel().validate_event_queue(), "");
-        EXPECT_EQ(world.kernel().validate_residences(), "");
+        EXPECT_EQ(KernelTest(world).validate_event_queue(), "");
+        EXPECT_EQ(validate_residences(world.kernel().simulation), "");
       }
       world.advance(scene.duration);
       EXPECT_EQ(world.history_hash(), expected) << "at " << when << ", seed " << seed;

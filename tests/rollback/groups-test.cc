@@ -108,7 +108,7 @@ TEST(Groups, figure_4_fusions_collisions_and_fissions_come_in_order) {
       EXPECT_EQ(members_of(*s->group), Members{scene.far});
     }
   }
-  EXPECT_EQ(scene.world.kernel().validate_residences(), "");
+  EXPECT_EQ(validate_residences(scene.world.kernel().simulation), "");
 }
 
 // From every discontinuity of every member: what is removed is what hangs on it, and the run that
@@ -118,7 +118,7 @@ TEST(Groups, figure_4_with_forced_rollbacks_at_each_stage_ends_in_the_same_state
   KernelTest reference(expected.world);
   reference.begin();
   reference.run_uncommitted(figure_end);
-  const std::uint64_t checksum = graph_checksum(expected.world.kernel().graph);
+  const std::uint64_t checksum = graph_checksum(expected.world.kernel().simulation.graph);
   std::vector<std::pair<BodyId, Key>> stages;
   for (const BodyId id : {expected.a, expected.b, expected.c}) {
     const auto states = reference.states(id);
@@ -135,7 +135,7 @@ TEST(Groups, figure_4_with_forced_rollbacks_at_each_stage_ends_in_the_same_state
     KernelTest kernel(scene.world);
     kernel.begin();
     kernel.run_uncommitted(figure_end);
-    ASSERT_EQ(graph_checksum(scene.world.kernel().graph), checksum);
+    ASSERT_EQ(graph_checksum(scene.world.kernel().simulation.graph), checksum);
 
     const std::set<Name> before = names_in(scene.world);
     const State* first = nullptr;
@@ -150,12 +150,12 @@ TEST(Groups, figure_4_with_forced_rollbacks_at_each_stage_ends_in_the_same_state
     std::set_difference(before.begin(), before.end(), gone.begin(), gone.end(),
                         std::inserter(left, left.end()));
     EXPECT_EQ(names_in(scene.world), left) << show(key);
-    EXPECT_EQ(scene.world.kernel().validate_residences(), "") << show(key);
-    EXPECT_EQ(scene.world.kernel().validate_state_graph(), "") << show(key);
-    EXPECT_EQ(scene.world.kernel().validate_event_queue(), "") << show(key);
+    EXPECT_EQ(validate_residences(scene.world.kernel().simulation), "") << show(key);
+    EXPECT_EQ(validate_state_graph(scene.world.kernel().simulation), "") << show(key);
+    EXPECT_EQ(KernelTest(scene.world).validate_event_queue(), "") << show(key);
 
     kernel.run_uncommitted(figure_end);
-    EXPECT_EQ(graph_checksum(scene.world.kernel().graph), checksum) << show(key);
+    EXPECT_EQ(graph_checksum(scene.world.kernel().simulation.graph), checksum) << show(key);
     scene.world.advance(figure_end + 0.2);
     EXPECT_EQ(scene.world.history_hash(), history) << show(key);
   }
@@ -207,7 +207,7 @@ TEST(Groups, long_runs_keep_few_states) {
   scene.fill(world);
   world.advance(scene.duration);
   EXPECT_LT(count_of(world.statistics(), "peak_states"), 2500);
-  EXPECT_LT(world.kernel().graph.state_count(), 300u);
+  EXPECT_LT(world.kernel().simulation.graph.state_count(), 300u);
   EXPECT_GT(count_of(world.statistics(), "groups"), 500);
 }
 
@@ -264,7 +264,8 @@ TEST(Groups, hard_impact_on_a_member_leaves_the_group_living) {
   const BodyId ball = add_ball(world, 0.05, {-1, 0, 0.3}, {4, 0, 0.75});
   KernelTest kernel(world);
   kernel.begin();
-  while (kernel.tail(ball).key.kind != KeyKind::impact && world.kernel().queue.top_priority() < 1)
+  while (kernel.tail(ball).key.kind != KeyKind::impact &&
+         world.kernel().simulation.queue.top_priority() < 1)
     world.kernel().process_next();
   const State& struck = kernel.tail(ball);
   ASSERT_EQ(struck.key.kind, KeyKind::impact);

@@ -206,7 +206,7 @@ TEST(LateDiscoveryDeathTest, discontinuity_before_gvt_is_an_internal_error) {
   kernel.begin();
   for (const BodyId id : {a, b}) kernel.claim_up_to(id, 1.5);
   ASSERT_TRUE(kernel.pair(a, b) && kernel.pair(a, b)->pending);
-  world.kernel().present.gvt = 1.125;
+  world.kernel().simulation.present.gvt = 1.125;
   EXPECT_DEATH(kernel.process_impact(a, b), "lies before GVT");
 }
 

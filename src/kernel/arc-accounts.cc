@@ -1,0 +1,67 @@
+// What arcs that are done with add to the statistics.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/arc-accounts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "groups/contact-survey.h"
+#include "kernel/simulation.h"
+
+namespace tw {
+namespace {
+
+// A stepped arc counts as far as it was computed, and every step as an integration, once a group.
+double count_steps(Counters& counters, const State& state) {
+  const GroupArc& arc = *state.group->arc;
+  if (state.member == 0) {
+    counters.integrations += arc.counts().steps;
+    counters.implicit_steps += arc.counts().steps;
+    counters.rejected_steps += arc.counts().rejected;
+    counters.factorizations += arc.counts().factorizations;
+    counters.force_evaluations += arc.counts().evaluations;
+  }
+  return arc.reached() - arc.start().time;
+}
+
+bool stepped(const State& state) { return state.group && !state.group->at_rest; }
+
+}  // namespace
+
+StateGraph::OnRelease count_discarded(Simulation& simulation) {
+  return [&simulation](State& state) {
+    Counters& counters = simulation.present.counters;
+    const Body& body = simulation.body_of(state.process);
+    if (!body.dynamic() || !state.starts_arc()) return;
+    const double end =
+        std::min(simulation.process(body).claim.time, state.next ? state.next->key.time : never);
+    double length = std::max(0.0, end - state.key.time);
+    // a body at rest claims for ever
+    if (!std::isfinite(length)) length = 0;
+    if (stepped(state)) length = count_steps(counters, state);
+    counters.integration_length += length;
+    counters.rollback_length += length;
+    counters.deepest_rollback = std::max(counters.deepest_rollback, length);
+  };
+}
+
+StateGraph::OnRelease count_used(Simulation& simulation) {
+  return [&simulation](State& state) {
+    Counters& counters = simulation.present.counters;
+    if (!simulation.body_of(state.process).dynamic() || !state.starts_arc()) return;
+    const State* next = state.next;
+    while (next && !next->starts_arc()) next = next->next;
+    if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
+    if (stepped(state))
+      counters.integration_length += count_steps(counters, state);
+    else if (next)
+      counters.integration_length += next->key.time - state.key.time;
+  };
+}
+
+// Nothing is computed in worlds without kinematic bodies.
+double kinematic_work_of(const Simulation& simulation, const State& state, double until) {
+  return simulation.kinematic.empty() ? 0 : contact_work(simulation.scene, state, until);
+}
+
+}  // namespace tw

@@ -1,0 +1,19 @@
+// What arcs that are done with add to the statistics: how long they were, and the work of kinematic
+// bodies along them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "timeline/state-graph.h"
+
+namespace tw {
+
+struct Simulation;
+
+// For states that a rollback removes: a discarded arc counts up to its claimed time.
+StateGraph::OnRelease count_discarded(Simulation& simulation);
+// For states that GVT has passed: an arc was used up to the next one.
+StateGraph::OnRelease count_used(Simulation& simulation);
+// By kinematic bodies on the state's process along its arc up to a time, J.
+double kinematic_work_of(const Simulation& simulation, const State& state, double until);
+
+}  // namespace tw

@@ -1,0 +1,179 @@
+// Bodies that come and go between runs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/bodies.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+#include "collision/separation.h"
+#include "kernel/active-pairs.h"
+#include "kernel/arc-accounts.h"
+#include "kernel/callback-book.h"
+#include "kernel/claims.h"
+#include "kernel/discontinuities.h"
+#include "kernel/editing.h"
+#include "kernel/make-body.h"
+#include "kernel/reading.h"
+#include "kernel/simulation.h"
+#include "timeline/arc.h"
+
+namespace tw {
+namespace {
+
+// Bodies may overlap by this share of the smaller size when they come into the world: touching.
+constexpr double start_depth = 1e-6;
+
+}  // namespace
+
+Bodies::Bodies(Simulation& simulation, ActivePairs& pairs, CallbackBook& callbacks, Claims& claims,
+               Discontinuities& discontinuities, Editing& editing)
+    : sim_(simulation),
+      pairs_(pairs),
+      callbacks_(callbacks),
+      claims_(claims),
+      discontinuities_(discontinuities),
+      editing_(editing) {}
+
+std::optional<BodyId> Bodies::find(const std::string& name) const {
+  const auto found = names_.find(name);
+  if (found == names_.end()) return std::nullopt;
+  return found->second;
+}
+
+// ---- coming ----
+
+BodyId Bodies::add(const BodyDef& def) {
+  sim_.require_between_runs("a body was added");
+  Scene& scene = sim_.scene;
+  const BodyId id = static_cast<BodyId>(scene.bodies.size());
+  const std::string name = def.name.empty() ? "body-" + std::to_string(id) : def.name;
+  TW_REQUIRE(!names_.contains(name),
+             "name " + name + " is taken; expected a name no other body has");
+  std::unique_ptr<Body> body = make_body(def, id, name);
+
+  Present& present = sim_.present;
+  if (present.begun) discontinuities_.restart_future();
+  body->process = sim_.graph.add_process();
+  Process& process = sim_.processes.emplace_back();
+  process.id = body->process;
+  process.bodies = {id};
+  State& state = *sim_.graph.append(body->process, {present.time, 0, KeyKind::birth, id});
+  make_birth(*body, def, present.settings.gravity, state);
+  // a stream of its own for every body
+  state.random = mix64(sim_.options.seed ^ mix64(id + 0x632be59bd9b4e019ull));
+  process.claim = state.key;
+  present.counters.integrations += body->dynamic();
+
+  scene.first_bodies.push_back(id);
+  newborn_.push_back(id);
+  names_[name] = id;
+  if (body->unbounded) sim_.unbounded.push_back(id);
+  if (body->kinematic()) sim_.kinematic.push_back(id);
+  scene.contacts.add_body(*body);
+  scene.bodies.push_back(std::move(body));
+  return id;
+}
+
+void Bodies::check_newborn() {
+  for (const BodyId id : newborn_) check_overlaps(sim_.body(id));
+}
+
+void Bodies::claim_newborn() {
+  for (const BodyId id : newborn_) claims_.claim_window(sim_.body(id));
+  newborn_.clear();
+}
+
+void Bodies::set_newborn(bool all) {
+  newborn_.clear();
+  if (!all) return;
+  for (const auto& body : sim_.scene.bodies) newborn_.push_back(body->id());
+}
+
+void Bodies::require_no_overlap(const Body& a, const Body& b) const {
+  if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !sim_.scene.may_collide(a, b))
+    return;
+  const auto frame = [&](const Body& body) {
+    return frame_at(body, *state_at(sim_, body.id(), sim_.present.time), sim_.present.time);
+  };
+  const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
+  const double allowed = start_depth * std::min(a.least_width, b.least_width);
+  if (s.distance >= -allowed) return;
+  throw UserError(a.info.name + " and " + b.info.name + " overlap by " + show(-s.distance) +
+                      " m at " + show(sim_.present.time) +
+                      " s; expected bodies that at most touch (" + show(allowed) +
+                      " m), or disable-collisions! for the pair",
+                  a.id() > b.id() ? a.info.place : b.info.place);
+}
+
+// The body's box at the present time against all others that have one: a newborn body later in line
+// looks back.
+void Bodies::check_overlaps(const Body& body) {
+  if (!body.shape_P) return;
+  if (!body.unbounded) {
+    Aabb box = swept_bounds(body, *state_at(sim_, body.id(), sim_.present.time), sim_.present.time,
+                            sim_.present.time);
+    box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
+    sim_.grid.place(body.id(), box, body.fixed());
+    sim_.grid.overlapping(body.id(),
+                          [&](BodyId other) { require_no_overlap(sim_.body(other), body); });
+    for (const BodyId other : sim_.unbounded)
+      if (claims_.boxes_overlap(body, sim_.body(other))) require_no_overlap(sim_.body(other), body);
+    return;
+  }
+  for (const auto& other : sim_.scene.bodies)
+    if (other->id() != body.id() && (other->unbounded || sim_.grid.contains(other->id())) &&
+        claims_.boxes_overlap(body, *other))
+      require_no_overlap(*other, body);
+}
+
+// ---- going ----
+
+void Bodies::remove(BodyId id) {
+  sim_.require_between_runs("a body was removed");
+  Body& body = *sim_.scene.bodies[id];
+  TW_REQUIRE(!body.info.removed,
+             "body " + body.info.name + " was removed before; expected one that is there");
+  const BodyState last = body_state(body, point_at(sim_, id, sim_.present.time));
+  body.info.removed = true;
+  if (sim_.present.begun) discontinuities_.restart_future();
+  editing_.let_go_of(id);
+
+  callbacks_.end_all_of(id);
+  pairs_.drop_all_of(id);
+  claims_.withdraw(body.process);
+  claims_.forget_box(id);
+  if (sim_.grid.contains(id)) sim_.grid.remove(id);
+  std::erase(sim_.unbounded, id);
+  std::erase(sim_.kinematic, id);
+  std::erase(newborn_, id);
+  names_.erase(body.info.name);
+  bury(body, last);
+  ++sim_.present.removals;
+}
+
+void Bodies::bury(Body& body, const BodyState& last) {
+  StateGraph& graph = sim_.graph;
+  Present& present = sim_.present;
+  // its last arc counts up to the present
+  if (body.dynamic()) {
+    graph.free_before(graph.tail(body.process), count_used(sim_));
+    const State& tail = *graph.tail(body.process);
+    present.counters.kinematic_work += kinematic_work_of(sim_, tail, present.time);
+    present.counters.integration_length += present.time - tail.arc_time;
+  }
+  graph.clear(body.process);
+  body.info.kind = BodyKind::fixed;
+  body.info.shape = nullptr;
+  body.info.visible = false;
+  body.shape_P = nullptr;
+  body.unbounded = body.is_fixed_plane = false;
+  body.X_BP = body.X_PB = Pose();
+  body.motion = make_fixed_motion({last.position, last.orientation});
+  State* state = graph.append(body.process, {present.time, 0, KeyKind::birth, body.id()});
+  state->arc_key = state->key;
+  state->arc_time = present.time;
+  state->committed = present.begun;
+  sim_.process(body).claim = present.begun ? last_key : state->key;
+}
+
+}  // namespace tw

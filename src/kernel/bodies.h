@@ -1,0 +1,57 @@
+// Bodies that come and go between runs.
+//
+// Numbers of bodies are parts of keys and places in lists, so a removed body stays as what touches
+// nothing: fixed where it was last, without a shape, in no box, no list and no sum.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "kernel/definitions.h"
+
+namespace tw {
+
+class ActivePairs;
+class CallbackBook;
+class Claims;
+class Discontinuities;
+class Editing;
+struct Simulation;
+
+class Bodies {
+ public:
+  Bodies(Simulation& simulation, ActivePairs& pairs, CallbackBook& callbacks, Claims& claims,
+         Discontinuities& discontinuities, Editing& editing);
+
+  BodyId add(const BodyDef& def);
+  void remove(BodyId id);
+  std::optional<BodyId> find(const std::string& name) const;
+
+  // Those that came since the last run: UserError if one overlaps another, then they claim.
+  bool any_newborn() const { return !newborn_.empty(); }
+  void check_newborn();
+  void claim_newborn();
+  // After the body was placed elsewhere: UserError if it overlaps another.
+  void check_overlaps(const Body& body);
+  // As before the first run: all have just come.  Else: nobody has.
+  void set_newborn(bool all);
+
+ private:
+  void require_no_overlap(const Body& a, const Body& b) const;
+  void bury(Body& body, const BodyState& last);
+
+  Simulation& sim_;
+  ActivePairs& pairs_;
+  CallbackBook& callbacks_;
+  Claims& claims_;
+  Discontinuities& discontinuities_;
+  Editing& editing_;
+  std::unordered_map<std::string, BodyId> names_;
+  std::vector<BodyId> newborn_;
+};
+
+}  // namespace tw

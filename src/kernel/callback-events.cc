@@ -1,0 +1,99 @@
+// What the loop does for callbacks.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/callback-events.h"
+
+#include <vector>
+
+#include "groups/region.h"
+#include "groups/regroup.h"
+#include "kernel/callback-book.h"
+#include "kernel/discontinuities.h"
+#include "kernel/group-events.h"
+#include "kernel/simulation.h"
+#include "kernel/state-view.h"
+
+namespace tw {
+
+CallbackEvents::CallbackEvents(Simulation& simulation, CallbackBook& book,
+                               Discontinuities& discontinuities, GroupEvents& groups)
+    : sim_(simulation),
+      counters_(simulation.present.counters),
+      book_(book),
+      discontinuities_(discontinuities),
+      groups_(groups) {}
+
+Progress CallbackEvents::process(std::uint32_t number) {
+  const CallbackRecord& callback = book_[number];
+  const Key key = callback.next;
+
+  // only after the targets' claims have reached its time; a stopped target parks it
+  for (const BodyId id : callback.def.targets)
+    if (const State& tail = *sim_.graph.tail(sim_.process_of(id)); tail.error && tail.key < key) {
+      book_.park(number);
+      return Progress::done;
+    }
+  std::vector<ProcessId> struck;
+  for (const BodyId id : callback.def.targets) {
+    if (!groups_.await(sim_.process_of(id), key)) return Progress::try_again;
+    if (sim_.body(id).dynamic()) insert(struck, sim_.process_of(id));
+  }
+  if (!groups_.await(region_of(sim_.before(key), struck, false), key)) return Progress::try_again;
+  if (!(callback.next == key)) return Progress::try_again;
+
+  // drafts that carry the old arcs, and views of them
+  std::vector<Successor> successors;
+  for (const BodyId id : callback.def.targets)
+    successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));
+  std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
+  for (Successor& successor : successors) {
+    successor.role = Role::record;
+    before.push_back({successor.data.slots, successor.data.random});
+  }
+  std::vector<SuccessorView> views;
+  views.reserve(successors.size());
+  for (Successor& successor : successors)
+    views.emplace_back(successor, key, false, sim_.present.settings.gravity);
+  std::vector<StateView*> pointers;
+  for (SuccessorView& view : views) pointers.push_back(&view);
+
+  // the call; its error stops the targets, speculatively
+  double next = never;
+  ++counters_.callbacks_run;
+  try {
+    const auto answer = callback.def.callback->run(key.time, pointers);
+    if (!callback.def.period && answer) {
+      if (!(*answer > key.time))
+        throw UserError("callback " + callback.def.name + " at " + show(key.time) +
+                            " s returned the next time " + show(*answer) +
+                            "; expected a later time or #f",
+                        callback.def.place);
+      // only now: a queue holds no time that is past or not a number
+      next = *answer;
+    }
+  } catch (const Interrupted&) {
+    throw;
+  } catch (...) {
+    for (Successor& successor : successors) successor.data.error = std::current_exception();
+  }
+
+  bool any_changed = false;
+  for (std::size_t i = 0; i < successors.size(); ++i) {
+    StateData& data = successors[i].data;
+    any_changed = any_changed || successors[i].starts_arc() || data.slots != before[i].first ||
+                  data.random != before[i].second;
+    data.next_callback = next;
+  }
+  for (Successor& successor : successors) successor.data.changed = any_changed;
+  if (successors.front().data.error)
+    discontinuities_.stop_group_mates(key, successors);
+  else if (touches_groups(successors) &&
+           groups_.regroup(key, successors, Cause::callback) == Progress::try_again)
+    return Progress::try_again;
+
+  // the next call, then the states (a rollback through them rewinds it again)
+  book_.move_on(number, next);
+  discontinuities_.enter(key, successors);
+  return Progress::done;
+}
+
+}  // namespace tw

@@ -1,0 +1,38 @@
+// What the loop does for callbacks: what they see, and what remains of them in the graph.
+//
+// Every target gets a state of the callback's key, all in one ring, also those that were only read:
+// a *record* that carries the old arc along where the motion did not change.  So a callback runs
+// again exactly when one of its targets is rolled back below it.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/counters.h"
+#include "kernel/progress.h"
+
+namespace tw {
+
+class CallbackBook;
+class Discontinuities;
+class GroupEvents;
+struct Simulation;
+
+class CallbackEvents {
+ public:
+  CallbackEvents(Simulation& simulation, CallbackBook& book, Discontinuities& discontinuities,
+                 GroupEvents& groups);
+
+  // The call that is due.
+  Progress process(std::uint32_t number);
+
+ private:
+  Simulation& sim_;
+  Counters& counters_;
+  CallbackBook& book_;
+  Discontinuities& discontinuities_;
+  GroupEvents& groups_;
+};
+
+}  // namespace tw

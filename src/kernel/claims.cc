@@ -1,0 +1,239 @@
+// Claims.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/claims.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "groups/check-times.h"
+#include "groups/end-test.h"
+#include "kernel/active-pairs.h"
+#include "kernel/callback-book.h"
+#include "kernel/pair-checks.h"
+#include "kernel/reading.h"
+#include "kernel/simulation.h"
+#include "timeline/arc.h"
+
+namespace tw {
+namespace {
+
+// Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
+constexpr double box_inflation = 1e-9;
+
+// A body that claims and finds nobody several times in a row claims longer windows, each twice the
+// one before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
+constexpr int patience = 3;
+constexpr int most_doublings = 20;
+
+// The longest window, s: a body that hardly moves need not claim again for long.
+constexpr double longest_window = 8;
+
+// Solid half-space n.x <= offset against a box: its lowest corner along n.
+bool plane_overlaps(const Body& plane, const Aabb& box) {
+  const Vec3& n = plane.plane_normal;
+  double lowest = 0;
+  for (int i = 0; i < 3; ++i) lowest += std::min(n[i] * box.lo[i], n[i] * box.hi[i]);
+  return lowest <= plane.plane_offset;
+}
+
+}  // namespace
+
+Claims::Claims(Simulation& simulation, ActivePairs& pairs, PairChecks& checks,
+               const CallbackBook& callbacks)
+    : sim_(simulation),
+      counters_(simulation.present.counters),
+      pairs_(pairs),
+      checks_(checks),
+      callbacks_(callbacks) {}
+
+void Claims::schedule_advance(const Body& body) {
+  // a member waits for the group check where its arc ends
+  if (body.fixed() ||
+      sim_.process(body).claim.time >= natural_end(*sim_.graph.tail(body.process))) {
+    sim_.queue.withdraw(sim_.process(body).advance);
+    return;
+  }
+  // after callbacks of that instant, which may start a new arc, and before its impacts
+  const Key key{sim_.process(body).claim.time, 0, KeyKind::group_check, body.id()};
+  sim_.schedule(sim_.process(body).advance, key, EventKind::advance, body.id(),
+                sim_.process(body).head_start);
+}
+
+bool Claims::reach(const Body& body, const Key& key) const {
+  return body.fixed() || key < sim_.process(body).claim;
+}
+
+void Claims::fall_back(ProcessId id, const Key& key) {
+  Process& process = sim_.processes[number(id)];
+  process.claim = std::min(process.claim, key);
+  schedule(id);
+}
+
+void Claims::schedule(ProcessId process) {
+  schedule_advance(sim_.body_of(process));
+  schedule_group_check(process);
+}
+
+void Claims::withdraw(ProcessId id) {
+  sim_.queue.withdraw(sim_.processes[number(id)].advance);
+  sim_.queue.withdraw(sim_.processes[number(id)].group_check);
+}
+
+// Every member of a moving group waits for the end of its arc; who comes first acts for all.
+void Claims::schedule_group_check(ProcessId id) {
+  Process& waiting = sim_.processes[number(id)];
+  const State* tail = sim_.graph.tail(id);
+  const double end = tail && !tail->error ? natural_end(*tail) : never;
+  if (end == never) {
+    sim_.queue.withdraw(waiting.group_check);
+    return;
+  }
+  Key key = group_check_key(*tail->group, end);
+  key.id = number(id);
+  sim_.schedule(waiting.group_check, key, EventKind::group_check, number(id), waiting.head_start);
+}
+
+// Finds where the arcs of the group end, before anybody relies on them.
+void Claims::test_group_end(Group& group) {
+  test_end(sim_.scene, sim_.surroundings, group, counters_);
+  for (const ProcessId id : group.members)
+    if (sim_.graph.tail(id)->group.get() == &group) schedule_group_check(id);
+}
+
+double Claims::window_end(const Body& body) const {
+  const State& tail = *sim_.graph.tail(body.process);
+  const double start = sim_.process(body).claim.time;
+  const double limit = sim_.policy->may_reach(sim_.queue, sim_.process(body));
+  const double least = std::nextafter(start, never);
+  if (tail.group) return std::max(std::min(natural_end(tail), limit), least);
+
+  // the time to travel window_cells of a cell: v s + a s^2/2 = distance
+  const double growth = std::ldexp(1.0, std::max(0, sim_.process(body).lonely_claims - patience));
+  const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
+  double speed = 0, pull = 0;
+  if (body.dynamic()) {
+    speed = (tail.v + (start - tail.arc_time) * tail.acceleration).norm();
+    pull = tail.acceleration.norm();
+  } else {
+    speed = body.motion->speed_bound(start, start + longest_window);
+  }
+  const double root = std::sqrt(speed * speed + 2 * pull * distance);
+  double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
+
+  // the next callback ends the arc as we know it
+  for (const std::uint32_t number : sim_.process(body).callbacks) {
+    const double next = callbacks_[number].next.time;
+    if (next > start) end = std::min(end, next);
+  }
+  return std::max(std::min(end, limit), least);
+}
+
+Aabb Claims::claimed_box(const Body& body, double end) const {
+  Aabb box;
+  const State* state = sim_.graph.last_at_or_before_time(body.process, sim_.present.gvt);
+  if (!state) state = sim_.graph.head(body.process);
+  for (; state; state = state->next) {
+    const double from = std::max(state->key.time, sim_.present.gvt);
+    const double to = state->next ? std::min(state->next->key.time, end) : end;
+    if (to >= from) box.add(swept_bounds(body, *state, from, to));
+  }
+  if (const State& tail = *sim_.graph.tail(body.process); tail.group && !tail.group->at_rest)
+    box.grow(answer::contact_margin * body.least_width);
+  box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
+  return box;
+}
+
+void Claims::claim_window(const Body& body) {
+  ++counters_.claims;
+  if (const auto& group = sim_.graph.tail(body.process)->group; group && !group->end_tested) {
+    test_group_end(*group);
+  }
+  const Key before = sim_.process(body).claim;
+  if (sim_.graph.tail(body.process)->error ||
+      sim_.process(body).claim.time >= natural_end(*sim_.graph.tail(body.process))) {
+    // a stopped process moves no further, a member of a group not past the next check
+    sim_.queue.withdraw(sim_.process(body).advance);
+    return;
+  }
+
+  const double end = body.fixed() ? never : window_end(body);
+  sim_.process(body).claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
+  if (body.shape_P) {
+    if (!body.unbounded)
+      sim_.grid.place(body.id(), claimed_box(body, body.fixed() ? sim_.present.gvt : end),
+                      body.fixed());
+    if (placed_.size() <= body.id()) placed_.resize(body.id() + 1);
+    placed_[body.id()] = true;
+    drop_parted_pairs(body);
+    const std::uint64_t candidates = counters_.candidates;
+    find_partners(body, before);
+    const bool alone = counters_.candidates == candidates;
+    sim_.process(body).lonely_claims =
+        alone ? std::min(sim_.process(body).lonely_claims + 1, patience + most_doublings) : 0;
+  }
+  schedule_advance(body);
+}
+
+bool Claims::boxes_overlap(const Body& a, const Body& b) const {
+  if (a.unbounded && b.unbounded) return true;
+  if (a.unbounded || b.unbounded) {
+    const Body& plane = a.unbounded ? a : b;
+    const Body& other = a.unbounded ? b : a;
+    return !plane.is_fixed_plane || plane_overlaps(plane, sim_.grid.box(other.id()));
+  }
+  return sim_.grid.box(a.id()).overlaps(sim_.grid.box(b.id()));
+}
+
+// Both boxes now reach from GVT to the lesser claim; disjoint boxes mean: free until then.
+void Claims::drop_parted_pairs(const Body& body) {
+  for (std::size_t i = pairs_.of(body.id()).size(); i-- > 0;) {
+    const std::uint32_t index = pairs_.of(body.id())[i];
+    const Pair& pair = pairs_[index];
+    if (!pair.pending && !boxes_overlap(sim_.body(pair.a), sim_.body(pair.b))) pairs_.drop(index);
+  }
+}
+
+void Claims::find_partners(const Body& body, const Key& claimed_before) {
+  const auto consider = [&](BodyId id) {
+    ++counters_.candidates;
+    const Body& other = sim_.body(id);
+    if (body.dynamic() || other.dynamic()) meet(body, other, claimed_before);
+  };
+  if (body.unbounded) {
+    for (const auto& other : sim_.scene.bodies)
+      if (placed(other->id()) && other->id() != body.id() && boxes_overlap(body, *other))
+        consider(other->id());
+    return;
+  }
+  sim_.grid.overlapping(body.id(), consider);
+  const Aabb& box = sim_.grid.box(body.id());
+  for (const BodyId id : sim_.unbounded) {
+    const Body& other = sim_.body(id);
+    if (placed(id) && (!other.is_fixed_plane || plane_overlaps(other, box))) consider(id);
+  }
+}
+
+void Claims::meet(const Body& body, const Body& other, const Key& claimed_before) {
+  if (sim_.scene.contacts.may_disable() && !sim_.scene.may_collide(body, other)) return;
+  checks_.meet(body, other, std::min(claimed_before, sim_.process(other).claim));
+}
+
+// Typical spacing of moving bodies: (volume / number)^(1/3), at least their size.
+void Claims::measure_spacing() {
+  Aabb space;
+  double radii = 0;
+  int count = 0;
+  for (const auto& body : sim_.scene.bodies) {
+    if (!body->dynamic() || !body->shape_P) continue;
+    space.add(point_at(sim_, body->id(), sim_.present.time).x);
+    radii += body->radius;
+    ++count;
+  }
+  if (count == 0) return;
+  const double width = 2 * radii / count;
+  const Vec3 extent = space.size().cwiseMax(Vec3::Constant(width));
+  cell_ = std::max(width, std::cbrt(extent.prod() / count));
+}
+
+}  // namespace tw

@@ -1,0 +1,53 @@
+// How bodies and callbacks come into a world: what a scene says of them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/motion.h"
+#include "geometry/shape.h"
+#include "kernel/callback.h"
+
+namespace tw {
+
+// How a body comes into the world.  Absent mass properties come from shape and density.
+struct BodyDef {
+  std::string name;                     // empty: body-N with N the body's id
+  ShapePtr shape;                       // null: touches nothing; then mass and inertia are needed
+  std::optional<double> density;        // kg/m^3, default 1000
+  std::optional<double> mass;           // kg; scales the shape's inertia
+  std::optional<Mat3> inertia;          // kg m^2 about the centre of mass, body axes
+  std::optional<Vec3> center_of_mass;   // body frame, m
+  Vec3 position = Vec3::Zero();         // of the body frame's origin
+  Quat orientation = Quat::Identity();  // normalised here; zero is an error
+  Vec3 velocity = Vec3::Zero();         // of the centre of mass
+  Vec3 angular_velocity = Vec3::Zero();
+  bool fixed = false;
+  MotionPtr motion;  // makes the body kinematic; excludes `fixed`
+  std::string material;
+  SlotsPtr slots;             // null: no slots
+  std::optional<Vec3> color;  // sRGB 0..1
+  bool visible = true;
+  Place place;  // of the form that made it
+};
+
+struct CallbackDef {
+  std::vector<BodyId> targets;
+  std::shared_ptr<Callback> callback;
+  double start = 0;
+  std::optional<double> period;  // absent: the callback returns its next time
+  std::string name;              // for messages
+  Place place;
+};
+
+struct CollisionCallbackDef {
+  ContactSide a, b;
+  std::shared_ptr<CollisionCallback> callback;
+  std::string name;
+  Place place;
+};
+
+}  // namespace tw

@@ -1,0 +1,114 @@
+// Changes between runs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/editing.h"
+
+#include <algorithm>
+
+#include "groups/region.h"
+#include "groups/regroup.h"
+#include "kernel/discontinuities.h"
+#include "kernel/group-events.h"
+#include "kernel/simulation.h"
+#include "kernel/state-view.h"
+
+namespace tw {
+
+// Of an edit that concerns these.  After whatever they have done at this instant, where that is
+// final; else before everything there: a callback that stopped the run, or an impact that an
+// interrupt left, sees what was changed, and doesn't take it back by coming earlier.
+Key Editing::edit_key(const std::vector<ProcessId>& concerned) {
+  if (!sim_.present.due.inclusive)
+    return {sim_.present.time, 0, KeyKind::early_edit, sim_.present.edits++};
+  std::uint32_t microstep = 1;
+  for (const ProcessId member : concerned)
+    for (const State* s = sim_.graph.tail(member); s && s->key.time >= sim_.present.time;
+         s = s->prev)
+      if (s->key.time == sim_.present.time) microstep = std::max(microstep, s->key.microstep + 1);
+  return {sim_.present.time, microstep, KeyKind::edit, sim_.present.edits++};
+}
+
+bool Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
+  sim_.require_between_runs("a body was changed");
+  const Body& body = sim_.body(id);
+  const Region region = region_of(sim_.before(sim_.present.key()), {body.process}, true);
+  std::vector<ProcessId> concerned = region.inside;
+  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
+  const Key key = edit_key(concerned);
+  std::vector<Successor> successors{make_successor(sim_.before(key), body.process, false)};
+  successors[0].role = Role::record;
+  const Vec3 x_before = successors[0].point.x;
+  const Quat q_before = successors[0].point.q;
+  SuccessorView view(successors[0], key, true, sim_.present.settings.gravity);
+  change(view);
+  groups_.regroup_edited(key, successors);
+  discontinuities_.enter(key, successors);
+  return successors[0].point.x != x_before || successors[0].point.q.coeffs() != q_before.coeffs();
+}
+
+void Editing::set_gravity(const Vec3& gravity) {
+  sim_.require_between_runs("gravity was set");
+  TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
+  sim_.present.settings.gravity = gravity;
+  // a body that is still at its birth needs no discontinuity
+  const auto newborn = [&](BodyId id) {
+    return !sim_.present.begun && !sim_.graph.tail(sim_.process_of(id))->prev;
+  };
+  for (const auto& body : sim_.scene.bodies)
+    if (body->dynamic() && newborn(body->id())) {
+      State* tail = sim_.graph.tail(body->process);
+      tail->acceleration = gravity + tail->force / body->mass;
+    }
+  edit_together([&](BodyId id) { return !newborn(id); },
+                [&](Successor& successor) {
+                  successor.data.acceleration =
+                      gravity + successor.data.force / successor.body->mass;
+                });
+}
+
+// Gives new arcs, changed by `change`, to all dynamic bodies that are `concerned` and to those that
+// hang together with them: one edit for all that hang together, so that no group is made in between
+// whose members are half changed.
+void Editing::edit_together(const std::function<bool(BodyId)>& concerned,
+                            const std::function<void(Successor&)>& change) {
+  std::vector<bool> done(sim_.processes.size(), false);
+  for (const auto& body : sim_.scene.bodies) {
+    if (!body->dynamic() || done[number(body->process)] || !concerned(body->id())) continue;
+    const std::vector<ProcessId> together =
+        sim_.before(sim_.present.key()).hanging_together(body->process);
+    const Key key = edit_key(together);
+    std::vector<Successor> successors;
+    successors.reserve(together.size());
+    for (const ProcessId process : together) {
+      done[number(process)] = true;
+      successors.push_back(make_successor(sim_.before(key), process, true));
+      change(successors.back());
+    }
+    groups_.regroup_edited(key, successors);
+    discontinuities_.enter(key, successors);
+  }
+}
+
+void Editing::renew_groups() {
+  edit_together(
+      [&](BodyId id) {
+        const State* tail = sim_.graph.tail(sim_.process_of(id));
+        return tail->group && !tail->error;
+      },
+      [](Successor&) {});
+}
+
+void Editing::let_go_of(BodyId id) {
+  edit_together(
+      [&](BodyId other) {
+        const State& state = sim_.before(sim_.present.key()).state_of(other);
+        if (!state.group || state.error) return false;
+        const auto in_contact = state.group->pairs_of(state.member);
+        return std::any_of(in_contact.begin(), in_contact.end(), [&](std::uint32_t number) {
+          const std::uint64_t pair = state.group->pairs[number].id;
+          return first_of(pair) == id || second_of(pair) == id;
+        });
+      },
+      [](Successor&) {});
+}
+
+}  // namespace tw

@@ -1,0 +1,43 @@
+// Changes between runs: one body, or all that hang together with some.
+//
+// A change is a discontinuity at the present time; what is committed stays.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "kernel/callback.h"
+#include "timeline/successor.h"
+
+namespace tw {
+
+class Discontinuities;
+class GroupEvents;
+struct Simulation;
+
+class Editing {
+ public:
+  Editing(Simulation& simulation, Discontinuities& discontinuities, GroupEvents& groups)
+      : sim_(simulation), discontinuities_(discontinuities), groups_(groups) {}
+
+  // `change` gets a view of the body.  True: it was placed elsewhere.
+  bool edit(BodyId id, const std::function<void(StateView&)>& change);
+  void set_gravity(const Vec3& gravity);
+  // All groups take what was set since, and wake.
+  void renew_groups();
+  // Whoever touches the body gets an arc without it.
+  void let_go_of(BodyId id);
+
+ private:
+  Key edit_key(const std::vector<ProcessId>& concerned);
+  void edit_together(const std::function<bool(BodyId)>& concerned,
+                     const std::function<void(Successor&)>& change);
+
+  Simulation& sim_;
+  Discontinuities& discontinuities_;
+  GroupEvents& groups_;
+};
+
+}  // namespace tw

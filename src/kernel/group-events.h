@@ -1,0 +1,52 @@
+// What the loop does for contact groups: waiting until arcs are known, regrouping, group checks.
+//
+// The decisions are those of groups/, functions of what stands before a key; here are the claims
+// and events around them.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "groups/regroup.h"
+#include "kernel/counters.h"
+#include "kernel/progress.h"
+
+namespace tw {
+
+class Claims;
+class Delivery;
+class Discontinuities;
+struct Simulation;
+
+class GroupEvents {
+ public:
+  GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
+              const Delivery& delivery);
+
+  // Claims windows of a process until its arcs are known to `key`.  False: something else comes
+  // first, perhaps; whoever asked has done nothing, and is asked again when its event is due once
+  // more.
+  bool await(ProcessId id, const Key& key);
+  bool await(const Region& region, const Key& key);
+  // The groups that follow a discontinuity that changed some of the successors; adds those of all
+  // others that take part.
+  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
+  // After an edit between runs.
+  void regroup_edited(const Key& key, std::vector<Successor>& successors);
+  // The check where the arc of a group's member ends.
+  Progress check(ProcessId id);
+
+ private:
+  bool own_check_before(ProcessId id, const Key& key) const;
+  bool claims_reach(ProcessId id, const Key& key) const;
+  bool known(ProcessId id, const Key& key) const;
+
+  Simulation& sim_;
+  Counters& counters_;
+  Claims& claims_;
+  Discontinuities& discontinuities_;
+  const Delivery& delivery_;
+};
+
+}  // namespace tw

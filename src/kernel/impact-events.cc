@@ -1,0 +1,97 @@
+// What the loop does for impacts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/impact-events.h"
+
+#include "groups/region.h"
+#include "groups/regroup.h"
+#include "kernel/active-pairs.h"
+#include "kernel/delivery.h"
+#include "kernel/discontinuities.h"
+#include "kernel/group-events.h"
+#include "kernel/impact.h"
+#include "kernel/simulation.h"
+#include "kernel/state-view.h"
+
+namespace tw {
+
+ImpactEvents::ImpactEvents(Simulation& simulation, const ActivePairs& pairs,
+                           Discontinuities& discontinuities, GroupEvents& groups,
+                           const Delivery& delivery)
+    : sim_(simulation),
+      counters_(simulation.present.counters),
+      pairs_(pairs),
+      discontinuities_(discontinuities),
+      groups_(groups),
+      delivery_(delivery) {}
+
+bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
+  if (delivery_.observed(CollisionKind::collision)) return true;
+  for (const CollisionCallbackDef& def : callbacks_)
+    if (match_specificity(def.a, def.b, a.contact, b.contact)) return true;
+  return false;
+}
+
+// Every callback that matches, in order of registration.
+void ImpactEvents::run_callbacks(const Collision& collision, Successor& a, Successor& b) {
+  for (const CollisionCallbackDef& def : callbacks_) {
+    if (!match_specificity(def.a, def.b, a.body->contact, b.body->contact)) continue;
+    // the sides in the order given; where both match either way, the body added first comes first
+    const bool straight =
+        side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
+    SuccessorView view_a(a, collision.key, false, sim_.present.settings.gravity);
+    SuccessorView view_b(b, collision.key, false, sim_.present.settings.gravity);
+    ++counters_.callbacks_run;
+    if (straight)
+      def.callback->run(collision, false, view_a, view_b);
+    else
+      def.callback->run(collision, true, view_b, view_a);
+  }
+}
+
+Progress ImpactEvents::process(std::uint32_t index) {
+  const Key key = pairs_[index].impact;
+  const Body& body_a = sim_.body(pairs_[index].a);
+  const Body& body_b = sim_.body(pairs_[index].b);
+
+  // only after the claims of the receivers, and of those they touch, have reached its time
+  std::vector<ProcessId> struck;
+  bool all_known = true;
+  for (const Body* body : {&body_a, &body_b}) {
+    if (body->dynamic()) insert(struck, body->process);
+    all_known = groups_.await(body->process, key) && all_known;
+  }
+  if (!all_known || !groups_.await(region_of(sim_.before(key), struck, false), key))
+    return Progress::try_again;
+
+  std::vector<Successor> successors;
+  successors.push_back(make_successor(sim_.before(key), body_a.process, body_a.dynamic()));
+  successors.push_back(make_successor(sim_.before(key), body_b.process, body_b.dynamic()));
+  const Wanted wanted{wants_collision(body_a, body_b), delivery_.observed(CollisionKind::fusion)};
+  const auto [soft, collision] =
+      compute_impact(sim_.scene, sim_.surroundings, key, wanted, successors[0], successors[1]);
+
+  // callbacks see the drafts; their errors stop the receivers, speculatively
+  if (collision && collision->kind == CollisionKind::collision && !successors[0].data.error &&
+      !callbacks_.empty()) {
+    try {
+      run_callbacks(*collision, successors[0], successors[1]);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (...) {
+      successors[0].data.error = successors[1].data.error = std::current_exception();
+    }
+  }
+  if (collision)
+    (successors[0].enters() ? successors[0] : successors[1]).data.report =
+        std::make_shared<const Report>(Report{*collision});
+  if (successors[0].data.error)
+    discontinuities_.stop_group_mates(key, successors);
+  else if ((soft || successors[0].data.group || successors[1].data.group) &&
+           groups_.regroup(key, successors, soft ? Cause::fusion : Cause::impact) ==
+               Progress::try_again)
+    return Progress::try_again;
+  discontinuities_.enter(key, successors);
+  return Progress::done;
+}
+
+}  // namespace tw

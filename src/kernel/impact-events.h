@@ -1,0 +1,42 @@
+// What the loop does for impacts, and the callbacks that see them.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "kernel/counters.h"
+#include "kernel/definitions.h"
+#include "kernel/progress.h"
+#include "timeline/successor.h"
+
+namespace tw {
+
+class ActivePairs;
+class Delivery;
+class Discontinuities;
+class GroupEvents;
+struct Simulation;
+
+class ImpactEvents {
+ public:
+  ImpactEvents(Simulation& simulation, const ActivePairs& pairs, Discontinuities& discontinuities,
+               GroupEvents& groups, const Delivery& delivery);
+
+  void add_callback(const CollisionCallbackDef& def) { callbacks_.push_back(def); }
+  // The pending impact of an active pair.
+  Progress process(std::uint32_t pair);
+
+ private:
+  bool wants_collision(const Body& a, const Body& b) const;
+  void run_callbacks(const Collision& collision, Successor& a, Successor& b);
+
+  Simulation& sim_;
+  Counters& counters_;
+  const ActivePairs& pairs_;
+  Discontinuities& discontinuities_;
+  GroupEvents& groups_;
+  const Delivery& delivery_;
+  std::vector<CollisionCallbackDef> callbacks_;
+};
+
+}  // namespace tw

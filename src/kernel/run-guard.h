@@ -1,0 +1,31 @@
+// Marks a simulation as running, and adds up its CPU time, delivery to sinks excluded.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "base/cpu-clock.h"
+#include "kernel/simulation.h"
+
+namespace tw {
+
+class RunGuard {
+ public:
+  explicit RunGuard(Simulation& simulation)
+      : sim_(simulation),
+        cpu_(thread_cpu_seconds()),
+        output_(simulation.present.counters.output_cpu_seconds) {
+    sim_.running = true;
+  }
+  ~RunGuard() {
+    sim_.running = false;
+    Counters& counters = sim_.present.counters;
+    counters.cpu_seconds += thread_cpu_seconds() - cpu_ - (counters.output_cpu_seconds - output_);
+  }
+  RunGuard(const RunGuard&) = delete;
+  RunGuard& operator=(const RunGuard&) = delete;
+
+ private:
+  Simulation& sim_;
+  double cpu_, output_;
+};
+
+}  // namespace tw

@@ -1,0 +1,21 @@
+// When a world may be changed.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/simulation.h"
+
+#include <string>
+
+#include "base/error.h"
+
+namespace tw {
+
+void Simulation::require_between_runs(const char* what) const {
+  TW_REQUIRE(!running,
+             std::string(what) + " inside a callback or observer; expected to be between runs");
+}
+
+void Simulation::require_before_first_run(const char* what) const {
+  TW_REQUIRE(!present.begun,
+             std::string(what) + " after the simulation began; expected before the first run");
+}
+
+}  // namespace tw
