@@ -100,7 +100,7 @@ bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBo
 void match_stretches(Regrouping& work, const ContactPair& pair, const PairBefore& before_it) {
   const ContactPair* old = before_it.pair;
   const Group& before = *before_it.owner;
-  GroupArc& arc = *before.arc;
+  const GroupArc& arc = *before.arc;
   const double now = before.contact_time(work.now());
   const Body& body_a = work.scene().body(pair.a());
   const Body& body_b = work.scene().body(pair.b());

@@ -97,7 +97,7 @@ double unseen_touch(const PairOnArc& pair, double allowed) {
 }
 
 // When a contact that was open closes faster than `slow`; `never` if it does not.
-double fast_touch(GroupArc& arc, int contact, double first, double last, double slow) {
+double fast_touch(const GroupArc& arc, int contact, double first, double last, double slow) {
   if (!(first > 0 && last < 0)) return never;
   const auto gap = [&](double t) { return arc.contact_force(contact, t).gap; };
   const double when = find_root(gap, arc.start().time, arc.reached(), first, last).left;

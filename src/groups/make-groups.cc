@@ -49,6 +49,7 @@ MotionPtr outside_motion(const Regrouping& work, BodyId id) {
   if (theirs.at_rest) return make_fixed_motion({successor.data.x, successor.data.q});
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
+  theirs.arc->extend(theirs.next_check);
   return theirs.arc->motion(static_cast<int>(successor.data.member), work.now(), theirs.next_check);
 }
 

@@ -55,6 +55,8 @@ double deviation(const Before& before, const Group& group, const Body& body) {
   if (!old.group) return never;
   const double end = group.arc->reached();
   const GroupSample now = group.arc->evaluate(group.member_of(body.process), end);
+  // an arc that began at this very instant need not be complete
+  if (!old.group->at_rest) old.group->arc->extend(end);
   const PoseTwist was = evaluate(body, old, end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }

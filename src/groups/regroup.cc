@@ -18,7 +18,7 @@ namespace {
 void count_discarded(const Regrouping& work, GroupCounters& counters) {
   for (const auto& group : work.made) {
     if (group->at_rest) continue;
-    const GroupCounts& counts = group->arc->counts();
+    const GroupCounts counts = group->arc->counts();
     counters.integrations += counts.steps;
     counters.implicit_steps += counts.steps;
     counters.rejected_steps += counts.rejected;

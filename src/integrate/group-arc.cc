@@ -1,4 +1,4 @@
-// Arcs of contact groups: extended on demand, looked at anywhere.
+// Arcs of contact groups: extended, and looked at wherever they are known.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "integrate/group-arc.h"
 
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/error.h"
 #include "integrate/group-stepper.h"
 
 namespace tw {
@@ -16,7 +17,6 @@ struct GroupArc::Data {
   GroupStepper stepper;
   const GroupSystem& system;
   const GroupRecord& record;
-  GroupCounts counts;
   std::string failure;
   int failed_contact = -1;
   const std::uint64_t serial = next_serial();  // no two arcs of a program share one
@@ -32,7 +32,20 @@ struct GroupArc::Data {
         system(stepper.system()),
         record(stepper.record()) {}
 
-  double at(double time) const { return std::clamp(time, start.time, record.reached()); }
+  // Whether all that there will ever be is there.
+  bool complete() const { return record.reached() >= start.end || !failure.empty(); }
+  // A time on the arc.
+  double at(double time) const {
+    TW_ASSERT(time <= record.reached() || complete(),
+              "an arc completed to " + show(record.reached()) + " s was looked at at " +
+                  show(time) + " s");
+    return std::clamp(time, start.time, record.reached());
+  }
+  // Whether there is a step to look at: an arc of no length, or that failed at once, has none.
+  bool has_steps() const {
+    TW_ASSERT(record.steps() > 0 || complete(), "an arc was looked at before its first step");
+    return record.steps() > 0;
+  }
   // kinematics of all slots at a time that is reached
   void set_bodies(double time, GroupScratch& s) const;
   void set_slot(int slot, double time, GroupScratch& s) const;
@@ -102,10 +115,7 @@ const std::string& GroupArc::failure() const { return data_->failure; }
 int GroupArc::failed_contact() const { return data_->failed_contact; }
 double GroupArc::next_step() const { return data_->stepper.next_step(); }
 
-const GroupCounts& GroupArc::counts() const {
-  data_->counts = data_->stepper.counts();
-  return data_->counts;
-}
+GroupCounts GroupArc::counts() const { return data_->stepper.counts(); }
 
 bool GroupArc::extend(double time) {
   Data& d = *data_;
@@ -115,8 +125,7 @@ bool GroupArc::extend(double time) {
   return d.record.reached() >= to;
 }
 
-GroupSample GroupArc::evaluate(int member, double time) {
-  extend(time);
+GroupSample GroupArc::evaluate(int member, double time) const {
   const double at = data_->at(time);
   GroupSample sample;
   sample.x = data_->record.position(member, at);
@@ -126,17 +135,15 @@ GroupSample GroupArc::evaluate(int member, double time) {
   return sample;
 }
 
-void GroupArc::pose(int member, double time, Vec3& x, Quat& q) {
-  extend(time);
+void GroupArc::pose(int member, double time, Vec3& x, Quat& q) const {
   const double at = data_->at(time);
   x = data_->record.position(member, at);
   q = data_->record.attitude(member, at);
 }
 
-void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) {
+void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) const {
   // at the start too the rates are those of a step
-  extend(std::max(time, std::nextafter(data_->start.time, data_->start.end)));
-  if (data_->record.steps() > 0) return data_->record.pose_rates(member, data_->at(time), dx, w);
+  if (data_->has_steps()) return data_->record.pose_rates(member, data_->at(time), dx, w);
   const GroupSample sample = evaluate(member, time);
   dx = sample.v;
   w = sample.w;
@@ -151,9 +158,10 @@ static GroupBounds standing_bounds(const GroupSample& start) {
   return bounds;
 }
 
-GroupBounds GroupArc::bounds(int member, double from, double to) {
-  extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
-  if (data_->record.steps() > 0) {
+GroupBounds GroupArc::bounds(int member, double from, double to) const {
+  // at the instant at which it begins an arc is known before its first step
+  const bool begins = to <= data_->start.time && data_->record.steps() == 0;
+  if (!begins && data_->has_steps()) {
     // a body is asked for the same stretch by each of its neighbours: the last answers are kept
     struct Kept {
       std::uint64_t arc = 0;
@@ -172,9 +180,9 @@ GroupBounds GroupArc::bounds(int member, double from, double to) {
   return standing_bounds(evaluate(member, from));
 }
 
-double GroupArc::step_end(double time) {
-  // also where `time` is as far as the arc has come: the step that begins there
-  extend(std::nextafter(std::max(time, data_->start.time), data_->start.end));
+double GroupArc::step_end(double time) const {
+  TW_ASSERT(time < reached() || data_->complete(),
+            "the step from " + show(time) + " s on is not completed");
   const double from = data_->at(time);
   const GroupRecord& record = data_->record;
   const int step = record.step_from(from);
@@ -225,14 +233,13 @@ class MemberMotion final : public Motion {
 
 }  // namespace
 
-MotionPtr GroupArc::motion(int member, double from, double to) {
-  extend(std::max(to, std::nextafter(data_->start.time, data_->start.end)));
-  const GroupSample start = data_->record.steps() > 0 ? GroupSample() : evaluate(member, from);
+MotionPtr GroupArc::motion(int member, double from, double to) const {
+  const GroupSample start = data_->has_steps() ? GroupSample() : evaluate(member, from);
+  data_->at(to);
   return std::make_shared<MemberMotion>(data_->record.stretch_of(member, data_->at(from)), start);
 }
 
-Vec3 GroupArc::stretch(int contact, double time) {
-  extend(time);
+Vec3 GroupArc::stretch(int contact, double time) const {
   const ContactPlace place =
       data_->system.contact_packs().places[static_cast<std::size_t>(contact)];
   const LaneVec s = data_->record.stretch(place.pack, data_->at(time));
@@ -264,8 +271,7 @@ const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) c
   return kept;
 }
 
-ContactForce GroupArc::contact_force(int contact, double time) {
-  extend(time);
+ContactForce GroupArc::contact_force(int contact, double time) const {
   const Data& d = *data_;
   const ContactPlace place = d.system.contact_packs().places[static_cast<std::size_t>(contact)];
   const Data::KeptPack& kept = d.pack_at(place.pack, d.at(time));
@@ -310,8 +316,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
 // step was made of is known as a whole, m dv - F h; the difference is shared out by the normal
 // forces.
 double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, double from,
-                         double to) {
-  extend(to);
+                         double to) const {
   const Data& d = *data_;
   const GroupMember& body = d.start.members[static_cast<std::size_t>(member)];
   double work = 0;
@@ -340,8 +345,7 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
   return work;
 }
 
-double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) {
-  extend(time);
+double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) const {
   const Data& d = *data_;
   const double at = d.at(time);
   GroupScratch& s = d.stepper.scratch();

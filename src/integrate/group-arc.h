@@ -17,8 +17,9 @@
 // Cost (2 shared Xeon cores): a step of one body with four contacts 2.4 us, of 10 bodies with 40
 // contacts 31, of 64 bodies with 452 contacts 350; construction 0.8, 8, 60.
 //
-// An arc is a function of its GroupStart alone, bit for bit: it does not matter when, how often or
-// in which pieces it is extended or looked at.
+// An arc is a function of its GroupStart alone, bit for bit: it does not matter when or in which
+// pieces it is extended.  Completing it and looking at it are two things: what looks never
+// integrates, and to look past what was completed is a mistake.
 //
 // Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.7; doc/numerics.md.
 // Frames: members by their principal frames P at the centre of mass, outside bodies by the frame
@@ -139,35 +140,37 @@ class GroupArc : public Counted<GroupArc> {
   const std::string& failure() const;
   int failed_contact() const;  // index, or -1
 
-  // All of the following extend the arc as far as needed and clamp `time` to what could be reached.
-  GroupSample evaluate(int member, double time);
+  // All of the following look only: a time must not lie past what was completed.  Beyond its end,
+  // and where it failed, an arc stands still.
+  GroupSample evaluate(int member, double time) const;
   // Position and attitude alone: cheaper.
-  void pose(int member, double time, Vec3& x, Quat& q);
+  void pose(int member, double time, Vec3& x, Quat& q) const;
   // Rates of the pose's interpolant itself, continuous in time (differ from v and w by the
   // integration error, and at the ends of steps by rounding): for bounds.
-  void pose_rates(int member, double time, Vec3& dx, Vec3& w);
-  GroupBounds bounds(int member, double from, double to);
-  // The end of the step that holds `time`: beyond it bounds may be much wider.
-  double step_end(double time);
+  void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
+  GroupBounds bounds(int member, double from, double to) const;
+  // The end of the step that holds `time`, or begins there: beyond it bounds may be much wider.
+  double step_end(double time) const;
   // What the member's centre of mass and principal frame do over [from, to], as a motion with the
   // same bits: a copy of that stretch, which keeps nothing else of the arc.  Beyond the stretch it
   // stands.
-  MotionPtr motion(int member, double from, double to);
-  Vec3 stretch(int contact, double time);  // a's frame
-  ContactForce contact_force(int contact, double time);
+  MotionPtr motion(int member, double from, double to) const;
+  Vec3 stretch(int contact, double time) const;  // a's frame
+  ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside
   // bodies that it meets there, J: force times the outside body's own speed where it acts.
   // `contacts`: all of the member's.
-  double work_on(int member, std::span<const WorkingContact> contacts, double from, double to);
+  double work_on(int member, std::span<const WorkingContact> contacts, double from,
+                 double to) const;
   // Of normal springs, and of stretches as far as friction holds them, J; `counted`: which
   // contacts.
-  double elastic_energy(double time, const std::vector<bool>& counted);
-  double elastic_energy(double time) {
+  double elastic_energy(double time, const std::vector<bool>& counted) const;
+  double elastic_energy(double time) const {
     return elastic_energy(time, std::vector<bool>(start().contacts.size(), true));
   }
   // The step that the controller would take after the arc's end, s: for the next arc's first_step.
   double next_step() const;
-  const GroupCounts& counts() const;
+  GroupCounts counts() const;
 
  private:
   struct Data;

@@ -215,7 +215,6 @@ void Claims::find_partners(const Body& body, const Key& claimed_before) {
 }
 
 void Claims::meet(const Body& body, const Body& other, const Key& claimed_before) {
-  const Scene& scene = sim_.scene;
   if (sim_.scene.contacts.may_disable() && !sim_.scene.may_collide(body, other)) return;
   checks_.meet(body, other, std::min(claimed_before, sim_.process(other).claim));
 }

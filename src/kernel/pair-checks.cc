@@ -291,6 +291,9 @@ void PairChecks::pursue(std::uint32_t index) {
         return;
       }
     }
+    // what was replaced at the instant at which it began no claim has completed
+    for (const State* state : {piece.a, piece.b})
+      if (moves_in_group(*state)) state->group->arc->extend(state->group->arc->start().end);
     const bool exact = predicted_exactly(piece);
     if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, until)) return;
   }

@@ -128,9 +128,9 @@ std::string validate_claims(const Simulation& simulation, const Claims& claims) 
         body->dynamic())
       return "state past the claim: " + body->info.name;
     for (int i = 0; i <= 4; ++i) {
-      const double t = simulation.present.gvt +
-                       (simulation.process(*body).claim.time - simulation.present.gvt) * (0.25 * i);
-      if (!std::isfinite(t) || t < simulation.present.gvt) continue;
+      const double gvt = simulation.present.gvt, claimed = simulation.process(*body).claim.time;
+      const double t = std::min(claimed, gvt + (claimed - gvt) * (0.25 * i));
+      if (!std::isfinite(t) || t < gvt) continue;
       const State* s = simulation.graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
       const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));

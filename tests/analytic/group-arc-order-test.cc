@@ -34,7 +34,7 @@ GroupStart run_with_fixed_steps(GroupStart start, int steps) {
     start.time = i * h;
     start.end = (i + 1) * h;
     start.first_step = 2 * h;
-    GroupArc arc(start);
+    CompleteArc arc(start);
     arc.extend(start.end);
     EXPECT_EQ(arc.counts().steps, 1u);
     for (std::size_t k = 0; k < start.members.size(); ++k) {
@@ -149,7 +149,7 @@ TEST(GroupArc, a_free_body_tumbles_as_in_closed_form) {
   const FreeRotation exact(m.moments, m.q, m.L);
   for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
     start.position_tolerance = start.velocity_tolerance = tolerance;
-    GroupArc arc(start);
+    CompleteArc arc(start);
     for (int i = 0; i <= 200; ++i) {
       const double time = 0.01 * i;
       Quat q;
@@ -173,7 +173,7 @@ TEST(GroupArc, balls_rolling_off_each_other_keep_their_energy) {
   start.end = 0.3;
   start.position_tolerance = 1e-9;
   start.velocity_tolerance = 1e-8;
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const auto energy = [&](double time) {
     double sum = arc.elastic_energy(time);
     for (int i = 0; i < 2; ++i) {

@@ -22,6 +22,11 @@ inline ContactConstants constants(double mass, double size, double mu,
 // Gravity in the frame of a plane that falls towards +x.
 inline Vec3 slope_gravity(double angle) { return g * Vec3(std::sin(angle), 0, -std::cos(angle)); }
 
+// An arc that can be looked at anywhere.
+struct CompleteArc : GroupArc {
+  explicit CompleteArc(GroupStart given) : GroupArc(std::move(given)) { extend(start().end); }
+};
+
 inline GroupStart on_the_ground(double end) {
   GroupStart start;
   start.end = end;

@@ -14,7 +14,7 @@ constexpr double twenty = 20 * pi / 180;
 TEST(GroupArc, a_block_sinks_to_the_depth_that_carries_its_weight) {
   GroupStart start = cube_on_slope(0, 0.5, 0.2, 3);
   start.members[0].x.z() += 1e-5;
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const double depth = 0.1 - arc.evaluate(0, 3).x.z();
   const ContactConstants c = constants(1, 0.2, 0.5);
   const double r = depth / c.hardening;
@@ -32,7 +32,7 @@ TEST(GroupArc, small_bounces_have_the_frequency_of_the_tangent_stiffness) {
   start.end = 10 * 2 * pi / omega;
   start.position_tolerance = 1e-6 * amplitude;
   start.velocity_tolerance = 1e-6 * amplitude * omega;
-  GroupArc arc(start);
+  CompleteArc arc(start);
   for (int i = 0; i <= 20; ++i) {
     const double time = i * start.end / 20.5;
     EXPECT_NEAR(arc.evaluate(0, time).x.z() - (0.1 - depth), amplitude * std::cos(omega * time),
@@ -43,7 +43,7 @@ TEST(GroupArc, small_bounces_have_the_frequency_of_the_tangent_stiffness) {
 // Positions from one second on, when the block has found its pitch and its stretches.
 TEST(GroupArc, anchored_block_slides_down_with_g_sin_minus_mu_cos) {
   GroupStart start = cube_on_slope(twenty, 0.3, 0.2, 3);
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const double a = g * (std::sin(twenty) - 0.3 * std::cos(twenty));
   const ContactConstants& c = start.contacts[0].law;
   const GroupSample first = arc.evaluate(0, 1);
@@ -57,7 +57,7 @@ TEST(GroupArc, anchored_block_slides_down_with_g_sin_minus_mu_cos) {
 }
 
 TEST(GroupArc, smooth_block_slides_down_with_the_tail_of_the_arc_tangent) {
-  GroupArc arc(cube_on_slope(twenty, 0.3, 0.2, 3, FrictionLaw::smooth));
+  CompleteArc arc(cube_on_slope(twenty, 0.3, 0.2, 3, FrictionLaw::smooth));
   // friction falls short of mu N by the share 2 v0/(pi v), v = v1 + a t to first order: the speed
   // gains mu g cos (2 v0/pi) ln(v/v1)/a more
   const double a = g * (std::sin(twenty) - 0.3 * std::cos(twenty));
@@ -70,7 +70,7 @@ TEST(GroupArc, anchored_block_below_the_friction_angle_comes_to_rest) {
   GroupStart start = cube_on_slope(twenty, 0.5, 0.2, 4);
   start.position_tolerance = 1e-8;
   start.velocity_tolerance = 1e-7;
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const GroupSample settled = arc.evaluate(0, 2), later = arc.evaluate(0, 4);
   EXPECT_LT(later.v.norm(), 1e-12);
   EXPECT_LT((later.x - settled.x).norm(), 1e-12);
@@ -80,14 +80,14 @@ TEST(GroupArc, anchored_block_below_the_friction_angle_comes_to_rest) {
 }
 
 TEST(GroupArc, smooth_block_creeps_at_the_terminal_speed) {
-  GroupArc arc(cube_on_slope(twenty, 0.5, 0.2, 4, FrictionLaw::smooth));
+  CompleteArc arc(cube_on_slope(twenty, 0.5, 0.2, 4, FrictionLaw::smooth));
   const double speed = 1e-4 * std::tan(pi / 2 * std::tan(twenty) / 0.5);
   EXPECT_NEAR(arc.evaluate(0, 4).v.x(), speed, 1e-6 * speed);
 }
 
 TEST(GroupArc, a_ball_rolls_down_with_five_sevenths_of_g_sin) {
   for (const FrictionLaw law : {FrictionLaw::anchored, FrictionLaw::smooth}) {
-    GroupArc arc(ball_on_slope(twenty, 0.5, 0.1, 2, law));
+    CompleteArc arc(ball_on_slope(twenty, 0.5, 0.1, 2, law));
     const double a = 5.0 / 7 * g * std::sin(twenty);
     const GroupSample end = arc.evaluate(0, 2);
     EXPECT_NEAR(end.v.x() / (2 * a), 1, 1e-4);
@@ -99,7 +99,7 @@ TEST(GroupArc, a_sliding_ball_ends_rolling_at_five_sevenths_of_its_speed) {
   for (const FrictionLaw law : {FrictionLaw::anchored, FrictionLaw::smooth}) {
     GroupStart start = ball_on_slope(0, 0.3, 0.1, 3, law);
     start.members[0].v = Vec3(2, 1, 0);
-    GroupArc arc(start);
+    CompleteArc arc(start);
     const GroupSample end = arc.evaluate(0, 3);
     EXPECT_NEAR(end.v.x() / (2 * 5.0 / 7), 1, 1e-4);
     EXPECT_NEAR(end.v.y() / (5.0 / 7), 1, 1e-4);
@@ -112,7 +112,7 @@ TEST(GroupArc, a_rolling_ball_keeps_its_speed_and_height) {
   start.members[0].v = Vec3(1, 0, 0);
   // the contact point is one radius below the centre, whatever the depth
   start.members[0].L = Vec3(0, start.members[0].moments[0] / 0.1, 0);
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const GroupSample end = arc.evaluate(0, 5);
   EXPECT_NEAR(end.v.x(), 1, 1e-9);
   EXPECT_NEAR(end.x.x(), 5, 1e-9);
@@ -134,7 +134,7 @@ TEST(GroupArc, a_block_on_an_accelerating_belt_goes_with_it) {
   };
   GroupStart start = cube_on_slope(0, 0.5, 0.2, 1);
   start.outside = {std::make_shared<Belt>()};
-  GroupArc arc(start);
+  CompleteArc arc(start);
   const GroupSample end = arc.evaluate(0, 1);
   EXPECT_NEAR(end.v.x(), 1, 1e-6);
   // behind by the stretch that carries m a, 6.4e-6 m, and the pitch

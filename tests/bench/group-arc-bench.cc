@@ -66,7 +66,7 @@ void print_costs() {
   std::puts(
       "| group | bodies | contacts | construction us | us a step tried |\n|---|---|---|---|---|");
   for (const Scene& scene : scenes()) {
-    GroupArc arc(scene.start);
+    CompleteArc arc(scene.start);
     arc.extend(scene.start.end);
     const double tries = static_cast<double>(arc.counts().steps + arc.counts().rejected);
     const double construction = best_time(scene.start, false), whole = best_time(scene.start, true);
@@ -84,13 +84,13 @@ void print_errors(Scene scene) {
   GroupStart exact = scene.start;
   exact.position_tolerance = 1e-10;
   exact.velocity_tolerance = 1e-9;
-  GroupArc reference(exact);
+  CompleteArc reference(exact);
   const std::pair<double, double> tolerances[] = {{1e-4, 1e-3}, {1e-5, 1e-3}, {1e-5, 1e-4},
                                                   {1e-6, 1e-4}, {1e-6, 1e-5}, {1e-7, 1e-6}};
   for (const auto& [position, velocity] : tolerances) {
     scene.start.position_tolerance = position;
     scene.start.velocity_tolerance = velocity;
-    GroupArc arc(scene.start);
+    CompleteArc arc(scene.start);
     const double error = largest_error(arc, reference);
     std::printf("| %.0e, %.0e | %llu + %llu | %.3g | %.1e |\n", position, velocity,
                 static_cast<unsigned long long>(arc.counts().steps),

@@ -68,6 +68,10 @@ class KernelTest {
     return tw::validate_event_queue(kernel_.simulation, kernel_.pairs, kernel_.callbacks);
   }
   std::size_t undelivered() const { return kernel_.delivery.undelivered(); }
+  // For breaking what validators look at.
+  State& tail_of(BodyId id) {
+    return *kernel_.simulation.graph.tail(kernel_.simulation.process_of(id));
+  }
 
  private:
   Kernel& kernel_;

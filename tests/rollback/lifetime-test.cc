@@ -5,6 +5,7 @@
 #include "groups/group.h"
 #include "support/heap-scenes.h"
 #include "support/schedule.h"
+#include "support/stability-scenes.h"
 
 namespace tw::test {
 namespace {
@@ -24,6 +25,28 @@ TEST(Lifetime, groups_of_the_past_go) {
     EXPECT_LE(most, 13);
   }
   EXPECT_EQ(Group::alive(), before);
+}
+
+// A heap in which balls and drums roll on, so that groups follow each other without end: no more of
+// them stand in its second half than in the first, and each has one arc.
+TEST(Lifetime, groups_stay_few_in_a_heap_that_never_rests) {
+  const std::int64_t groups = Group::alive(), arcs = GroupArc::alive();
+  {
+    World world;
+    heap_scene(20, 1, true, 0.2, 0).fill(world);
+    std::int64_t most_early = 0, most_late = 0;
+    for (int i = 1; i <= 100; ++i) {
+      world.advance(0.1 * i);
+      const std::int64_t now = Group::alive() - groups;
+      (i <= 50 ? most_early : most_late) = std::max(i <= 50 ? most_early : most_late, now);
+      EXPECT_EQ(GroupArc::alive() - arcs, now);
+    }
+    EXPECT_GT(count_of(world.statistics(), "groups"), 1000);
+    EXPECT_LE(most_early, 20);
+    EXPECT_LE(most_late, most_early);
+  }
+  EXPECT_EQ(Group::alive(), groups);
+  EXPECT_EQ(GroupArc::alive(), arcs);
 }
 
 }  // namespace
