@@ -279,7 +279,7 @@ PlacedBody Kernel::placed(const Successor& successor) const {
 }
 
 PlacedBody Kernel::placed_outside(const Body& body, double when) const {
-  return PlacedBody(body, evaluate(body, *graph.head(body.process), when));
+  return PlacedBody(body, graph.head(body.process)->trajectory().at(when));
 }
 
 // The fixed bodies near a moving one: they bury each other's edges.

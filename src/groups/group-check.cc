@@ -53,7 +53,7 @@ Key Kernel::group_check_key(const Group& group, double when) const {
 // Every member of a moving group waits for the end of its arc; who comes first acts for all.
 void Kernel::schedule_group_check(Body& body) {
   const State* tail = graph.tail(body.process);
-  const double end = tail && !tail->error ? natural_end(*tail) : never;
+  const double end = tail && !tail->error ? tail->trajectory().end() : never;
   if (end == never) {
     queue.withdraw(process(body).group_check);
     return;
@@ -203,7 +203,7 @@ void Kernel::process_group_check(BodyId id) {
     schedule_group_checks(*group);
     return;
   }
-  const double when = natural_end(tail);
+  const double when = tail.trajectory().end();
   Key key = group_check_key(*group, when);
   ++counters.group_checks;
 

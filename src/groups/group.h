@@ -3,7 +3,8 @@
 // A Group is made by the discontinuity that gives its members new arcs (fusion, group check, impact
 // on a member, a callback that changed one); its members' states share it.  Its arc is integrated
 // when it is first looked at, which is a function of the group alone; then the end test says where
-// its members' arcs really end (next_check, ends), once.  Nothing else of it changes.
+// its members' arcs really end (next_check, and of each GroupArc::end), once.  Nothing else of it
+// changes.
 //
 // Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs
 // are constant until something touches one of them.
@@ -50,7 +51,7 @@ struct Group : Counted<Group> {
   Key key;           // of the discontinuity that made it
   double birth = 0;  // when this set of members came together, s
   double next_check = never;
-  bool end_tested = false;  // next_check and ends are as end-test.cc found them
+  bool end_tested = false;  // next_check and the ends of the arc are as end-test.cc found them
   bool at_rest = false;
   bool asleep = false;                    // at rest for the time being (stillness.cc)
   double quiet_since = never;             // s: slow, and nothing slips; `never`: not so
@@ -67,8 +68,7 @@ struct Group : Counted<Group> {
   std::vector<ContactTag> tags;      // of arc->start().contacts
   std::vector<double> gaps;          // m, of arc->start().contacts, at the start
   std::vector<Stillness> stillness;  // of each member
-  std::vector<double> ends;          // of each member's arc, s; empty: all at next_check
-  std::unique_ptr<GroupArc> arc;
+  std::shared_ptr<GroupArc> arc;
 
   // Its place among the members; -1: it is none.
   int member_of(std::uint32_t body) const {
@@ -92,7 +92,7 @@ struct Group : Counted<Group> {
   // When its contacts are looked at for what holds at `when`: resting ones at their start alone.
   double contact_time(double when) const { return at_rest ? arc->start().time : when; }
   // Where the arc of a member ends by itself, s.
-  double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
+  double end(std::uint32_t member) const { return arc->end(static_cast<int>(member)); }
 };
 
 using Groups = std::vector<std::shared_ptr<Group>>;

@@ -28,7 +28,7 @@ double Kernel::contact_work(const State& state, double until) const {
   }
   if (!any) return 0;
   return group.arc->work_on(static_cast<int>(state.member), all, group.arc->start().time,
-                            std::min(until, natural_end(state)));
+                            std::min(until, state.trajectory().end()));
 }
 
 }  // namespace tw

@@ -213,7 +213,7 @@ void Kernel::complete(Region& region, const Key& key, bool whole) const {
 bool Kernel::own_check_before(BodyId id, const Key& key) const {
   if (!bodies[id]->dynamic()) return false;
   const State& tail = *graph.tail(process_of(id));
-  if (tail.error || natural_end(tail) != key.time) return false;
+  if (tail.error || tail.trajectory().end() != key.time) return false;
   Key check = group_check_key(*tail.group, key.time);
   check.id = id;
   return tail.key < check && check < key;
@@ -236,7 +236,7 @@ bool Kernel::await(BodyId id, const Key& key) {
   }
   while (!body.fixed() && !known() && !graph.tail(process_of(id))->error) {
     all_known = false;
-    if (process(body).claim.time < natural_end(*graph.tail(process_of(id)))) {
+    if (process(body).claim.time < graph.tail(process_of(id))->trajectory().end()) {
       claim_window(body);
       continue;
     }
@@ -264,7 +264,7 @@ double Kernel::deviation(const Group& group, BodyId id) const {
   const GroupSample now = group.arc->evaluate(group.member_of(id), end);
   // an arc that began at this very instant need not be complete
   if (!before.group->at_rest) before.group->arc->extend(end);
-  const PoseTwist was = evaluate(body, before, end);
+  const PoseTwist was = before.trajectory().at(end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
 

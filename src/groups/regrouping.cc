@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "groups/tolerances.h"
+#include "integrate/member-trajectory.h"
+#include "integrate/standing.h"
 #include "kernel/kernel.h"
 
 namespace tw {
@@ -186,18 +188,18 @@ void Kernel::share_ground_stiffness(const std::vector<NewContact*>& points, Body
 }
 
 // The motion of a body that a group meets.
-MotionPtr Kernel::outside_motion(const Regrouping& work, BodyId id) const {
+TrajectoryPtr Kernel::outside_motion(const Regrouping& work, BodyId id) const {
   if (!bodies[id]->dynamic()) return bodies[id]->motion;
   const Successor& successor = *work.successor_of(id);
   // laid to rest by this discontinuity, or, seen from there, what goes on: it is not asked for long
-  if (work.changes(&successor)) return make_fixed_motion({successor.point.x, successor.point.q});
+  if (work.changes(&successor)) return make_standing({successor.point.x, successor.point.q});
   const Group& theirs = *successor.data.group;
-  if (theirs.at_rest) return make_fixed_motion({successor.data.x, successor.data.q});
+  if (theirs.at_rest) return successor.data.follows;
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
   theirs.arc->extend(theirs.next_check);
-  return theirs.arc->motion(static_cast<int>(successor.data.member), work.key.time,
-                            theirs.next_check);
+  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.key.time,
+                             theirs.next_check);
 }
 
 // Bodies, outside bodies and contacts as the integrator wants them.
@@ -250,7 +252,7 @@ void Kernel::start_arc_of(Group& group, Regrouping& work) const {
   for (const ContactPair& pair : group.pairs)
     for (const BodyId id : {first_of(pair.id), second_of(pair.id)}) index_of(id);
   start.first_step = group.first_step;
-  group.arc = std::make_unique<GroupArc>(std::move(start));
+  group.arc = std::make_shared<GroupArc>(std::move(start));
 }
 
 void Group::index_pairs() {
@@ -417,9 +419,15 @@ void Kernel::finish(Regrouping& work) {
     if (!work.changes(&successor)) continue;
     const std::size_t root = components.root(i);
     successor.data.group = made[root];
+    successor.data.member = 0;
+    if (!held[i]) continue;
     const auto& members = groups[root];
     const auto at = std::lower_bound(members.begin(), members.end(), successor.body->id());
-    successor.data.member = held[i] ? static_cast<std::uint32_t>(at - members.begin()) : 0;
+    successor.data.member = static_cast<std::uint32_t>(at - members.begin());
+    successor.data.follows =
+        made[root]->at_rest
+            ? make_resting({successor.data.x, successor.data.q})
+            : member_trajectory(made[root]->arc, static_cast<int>(successor.data.member));
   }
 }
 

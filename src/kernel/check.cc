@@ -38,9 +38,7 @@ const State* next_arc(const State* state) {
   return state;
 }
 
-bool moves_in_group(const State& state) {
-  return state.group && !state.group->at_rest && !state.error;
-}
+bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
 
 Key key_or_last(const State* state) { return state ? state->key : last_key; }
 
@@ -149,7 +147,7 @@ Piece Kernel::piece_at(BodyId a, BodyId b, const Key& from) const {
   if (!piece.b) piece.b = graph.head(process_of(b));
   piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
   piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
-  const double natural = std::min(natural_end(*piece.a), natural_end(*piece.b));
+  const double natural = std::min(piece.a->trajectory().end(), piece.b->trajectory().end());
   if (natural < piece.end.time) {
     piece.end = {natural, 0, KeyKind::birth, 0};
     piece.ends_naturally = true;

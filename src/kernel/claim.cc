@@ -39,7 +39,7 @@ bool plane_overlaps(const Body& plane, const Aabb& box) {
 
 void Kernel::schedule_advance(Body& body) {
   // a member waits for the group check where its arc ends
-  if (body.fixed() || process(body).claim.time >= natural_end(*graph.tail(body.process))) {
+  if (body.fixed() || process(body).claim.time >= graph.tail(body.process)->trajectory().end()) {
     queue.withdraw(process(body).advance);
     return;
   }
@@ -56,24 +56,26 @@ bool Kernel::ready(const Body& body, const Key& key) const {
 // Claims windows until `key` lies before the claim.
 void Kernel::make_ready(Body& body, const Key& key) {
   while (!ready(body, key) && !graph.tail(body.process)->error &&
-         process(body).claim.time < natural_end(*graph.tail(body.process)))
+         process(body).claim.time < graph.tail(body.process)->trajectory().end())
     claim_window(body);
 }
 
 double Kernel::window_end(const Body& body) const {
   const State& tail = *graph.tail(body.process);
   const double start = process(body).claim.time;
-  if (tail.group) return natural_end(tail);
+  const Trajectory& trajectory = tail.trajectory();
+  const Parabola* path = trajectory.ballistic();
+  if (!path && !body.kinematic()) return trajectory.end();
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process(body).lonely_claims - patience));
   const double distance = options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
-  if (body.dynamic()) {
-    speed = (tail.v + (start - tail.arc_time) * tail.acceleration).norm();
-    pull = tail.acceleration.norm();
+  if (path) {
+    speed = path->velocity(start).norm();
+    pull = path->acceleration.norm();
   } else {
-    speed = body.motion->speed_bound(start, start + longest_window);
+    speed = trajectory.bounds(start, start + longest_window).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
   double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
@@ -93,9 +95,9 @@ Aabb Kernel::claimed_box(const Body& body, double end) const {
   for (; state; state = state->next) {
     const double from = std::max(state->key.time, gvt);
     const double to = state->next ? std::min(state->next->key.time, end) : end;
-    if (to >= from) box.add(swept_bounds(body, *state, from, to));
+    if (to >= from) box.add(swept_bounds(body, state->trajectory(), from, to));
   }
-  if (const State& tail = *graph.tail(body.process); tail.group && !tail.group->at_rest)
+  if (const State& tail = *graph.tail(body.process); tail.trajectory().stepped())
     box.grow(contact_margin * body.least_width);
   box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
@@ -109,7 +111,7 @@ void Kernel::claim_window(Body& body) {
   }
   const Key before = process(body).claim;
   if (graph.tail(body.process)->error ||
-      process(body).claim.time >= natural_end(*graph.tail(body.process))) {
+      process(body).claim.time >= graph.tail(body.process)->trajectory().end()) {
     // a stopped process moves no further, a member of a group not past the next check
     queue.withdraw(process(body).advance);
     return;

@@ -123,7 +123,7 @@ void Kernel::commit_state(State& state) {
     for (const Collision& report : *state.report) undelivered_.emplace_back(state.report, &report);
   if (options.hash && state.changed) {
     const Body& body = body_of(state.process);
-    hash_sum_ += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
+    hash_sum_ += state_hash(body, state.key, state.trajectory().at(state.key.time), state);
     ++hash_count_;
   }
 }
@@ -180,7 +180,7 @@ void Kernel::deliver_frame(SinkRecord& record) {
     if (body->fixed()) continue;
     const State* state = graph.last_at_or_before_time(body->process, frame_time);
     if (!state) continue;
-    poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
+    poses.push_back({body->id(), body_state(*body, state->trajectory().at(frame_time))});
   }
   counters.max_penetration = std::max(counters.max_penetration, deepest_contact(frame_time));
   const std::shared_ptr<FrameSink> sink = record.sink;
@@ -205,7 +205,7 @@ std::string Kernel::history_hash() const {
     if (body->info.removed) continue;
     const State* state = state_at(body->id(), time);
     const Key end{time, 0, KeyKind::step, body->id()};
-    sum += state_hash(*body, end, evaluate(*body, *state, time), *state);
+    sum += state_hash(*body, end, state->trajectory().at(time), *state);
   }
   std::string bytes;
   for (const std::uint64_t word : {sum, hash_count_})

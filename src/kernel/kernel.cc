@@ -133,7 +133,7 @@ const State* Kernel::state_at(BodyId id, double when) const {
 }
 
 PoseTwist Kernel::point_at(BodyId id, double when) const {
-  return evaluate(*bodies[id], *state_at(id, when), when);
+  return state_at(id, when)->trajectory().at(when);
 }
 
 double Kernel::total_energy(double when) const {

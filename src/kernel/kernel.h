@@ -247,7 +247,7 @@ class Kernel {
   // Cuts the drafts into groups and isolated bodies.
   void finish(Regrouping& work);
   std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<BodyId>& members);
-  MotionPtr outside_motion(const Regrouping& work, BodyId id) const;
+  TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) const;
   void start_arc_of(Group& group, Regrouping& work) const;
   void share_stiffness(Regrouping& work) const;
   void share_ground_stiffness(const std::vector<NewContact*>& points, BodyId mover) const;

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
+#include "integrate/standing.h"
 #include "kernel/kernel.h"
 
 namespace tw {
@@ -61,10 +62,11 @@ void Kernel::remove_body(BodyId id) {
   body.shape_P = nullptr;
   body.unbounded = body.is_fixed_plane = body.placed = false;
   body.X_BP = body.X_PB = Pose();
-  body.motion = make_fixed_motion({last.position, last.orientation});
+  body.motion = make_standing({last.position, last.orientation});
   State* state = graph.append(body.process, {time, 0, KeyKind::birth, id});
   state->arc_key = state->key;
   state->arc_time = time;
+  state->follows = body.motion;
   state->committed = begun;
   process(body).claim = begun ? last_key : state->key;
   ++removals_;

@@ -46,7 +46,6 @@ inline void take_velocities(Successor& successor, const Resolved& after) {
   successor.data.v = successor.point.v = after.v;
   successor.point.w = after.w;
   successor.data.L = angular_momentum(*successor.body, successor.point.q, after.w);
-  successor.data.rotation_ready = false;
 }
 
 }  // namespace tw

@@ -19,7 +19,7 @@ Successor Kernel::make_successor(const Body& body, const Key& key, bool new_arc)
   TW_ASSERT(state, "no state of " + body.info.name + " before " + show(key));
   Successor successor;
   successor.body = &body;
-  successor.point = evaluate(body, *state, key.time);
+  successor.point = state->trajectory().at(key.time);
   successor.data = *state;
   successor.data.changed = true;
   successor.data.next_callback = never;
@@ -80,6 +80,8 @@ void Kernel::append_successors(const Key& key, std::vector<Successor>& successor
       successor.data.arc_key = key;
       successor.role = Role::new_arc;
     }
+    const bool flies = successor.starts_arc() && successor.body->dynamic() && !successor.data.group;
+    if (flies) let_fly(*successor.body, successor.data);
     State* state = graph.append(successor.process(), key);
     static_cast<StateData&>(*state) = std::move(successor.data);
     ring.push_back(state);
@@ -87,7 +89,7 @@ void Kernel::append_successors(const Key& key, std::vector<Successor>& successor
     TW_ASSERT(!state->group || state->group->key == key || state->error,
               "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
     // those of moving groups are counted by steps, when they are done with
-    if (!state->group || state->group->at_rest) ++counters.integrations;
+    if (!state->trajectory().stepped()) ++counters.integrations;
   }
   graph.close_ring(ring);
 }
@@ -138,7 +140,8 @@ void Kernel::treat(const std::vector<Affected>& affected) {
   for (const Affected& t : affected) {
     Body& body = body_of(t.process);
     for (const std::uint32_t index : body.pairs) reset_pair(index, t.least_removed);
-    for (const std::uint32_t number : process(body).callbacks) rewind_callback(number, t.least_removed);
+    for (const std::uint32_t number : process(body).callbacks)
+      rewind_callback(number, t.least_removed);
   }
 }
 
@@ -148,20 +151,16 @@ StateGraph::OnRelease Kernel::removal() {
 
 namespace {
 
-// A stepped arc counts as far as it was computed, and every step as an integration, once a group.
-double count_steps(Counters& counters, const State& state) {
-  const GroupArc& arc = *state.group->arc;
-  if (state.member == 0) {
-    counters.integrations += arc.counts().steps;
-    counters.implicit_steps += arc.counts().steps;
-    counters.rejected_steps += arc.counts().rejected;
-    counters.factorizations += arc.counts().factorizations;
-    counters.force_evaluations += arc.counts().evaluations;
-  }
-  return arc.reached() - arc.start().time;
+// A stepped arc counts as far as it was computed, and every step as an integration.
+double count_steps(Counters& counters, const Trajectory& trajectory) {
+  const Effort effort = trajectory.effort();
+  counters.integrations += effort.steps;
+  counters.implicit_steps += effort.steps;
+  counters.rejected_steps += effort.rejected;
+  counters.factorizations += effort.factorizations;
+  counters.force_evaluations += effort.evaluations;
+  return effort.length;
 }
-
-bool stepped(const State& state) { return state.group && !state.group->at_rest; }
 
 }  // namespace
 
@@ -173,7 +172,7 @@ void Kernel::note_removed(State& state) {
   double length = std::max(0.0, end - state.key.time);
   // a body at rest claims for ever
   if (!std::isfinite(length)) length = 0;
-  if (stepped(state)) length = count_steps(counters, state);
+  if (state.trajectory().stepped()) length = count_steps(counters, state.trajectory());
   counters.integration_length += length;
   counters.rollback_length += length;
   counters.deepest_rollback = std::max(counters.deepest_rollback, length);
@@ -186,8 +185,8 @@ StateGraph::OnRelease Kernel::release() {
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
     if (next) counters.kinematic_work += contact_work(state, next->key.time);
-    if (stepped(state))
-      counters.integration_length += count_steps(counters, state);
+    if (state.trajectory().stepped())
+      counters.integration_length += count_steps(counters, state.trajectory());
     else if (next)
       counters.integration_length += next->key.time - state.key.time;
   };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/standing.h"
 #include "kernel/kernel.h"
 
 namespace tw {
@@ -84,9 +85,8 @@ void Kernel::resolve_shape(Body& body, const BodyDef& def) {
     body.plane_normal = frame.R * part.normal;
     body.plane_offset = part.offset + body.plane_normal.dot(frame.p);
   }
-  TW_REQUIRE(
-      !body.unbounded || !body.motion || body.motion->angular_speed_bound(-never, never) == 0,
-      body.info.name + " is a half-space that turns; expected a motion without rotation");
+  TW_REQUIRE(!body.unbounded || !body.motion || body.motion->bounds(-never, never).turn == 0,
+             body.info.name + " is a half-space that turns; expected a motion without rotation");
 }
 
 void Kernel::make_birth(Body& body, const BodyDef& def) {
@@ -104,7 +104,10 @@ void Kernel::make_birth(Body& body, const BodyDef& def) {
     state->v = def.velocity;
     state->L = angular_momentum(body, state->q, def.angular_velocity);
     state->acceleration = options.gravity;
+    let_fly(body, *state);
     ++counters.integrations;
+  } else {
+    state->follows = body.motion;
   }
   process(body).claim = key;
 }
@@ -122,7 +125,7 @@ BodyId Kernel::add_body(const BodyDef& def) {
   if (def.fixed || def.motion) {
     body->info.kind = def.fixed ? BodyKind::fixed : BodyKind::kinematic;
     body->motion = def.motion;
-    if (def.fixed) body->motion = make_fixed_motion({def.position, def.orientation.normalized()});
+    if (def.fixed) body->motion = make_standing({def.position, def.orientation.normalized()});
   } else {
     const RigidInertia inertia = resolve_inertia(
         {def.density, def.mass, def.inertia, def.center_of_mass}, def.shape.get(), name);
@@ -152,7 +155,7 @@ BodyId Kernel::add_body(const BodyDef& def) {
 void Kernel::require_no_overlap(const Body& a, const Body& b) const {
   if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !may_collide(a, b)) return;
   const auto frame = [&](const Body& body) {
-    return frame_at(body, *state_at(body.id(), time), time);
+    return state_at(body.id(), time)->trajectory().frame(time);
   };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
   const double allowed = start_depth * std::min(a.least_width, b.least_width);
@@ -168,7 +171,7 @@ void Kernel::require_no_overlap(const Body& a, const Body& b) const {
 void Kernel::check_overlaps(Body& body) {
   if (!body.shape_P) return;
   if (!body.unbounded) {
-    Aabb box = swept_bounds(body, *state_at(body.id(), time), time, time);
+    Aabb box = swept_bounds(body, state_at(body.id(), time)->trajectory(), time, time);
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
     grid.place(body.id(), box, body.fixed());
     grid.overlapping(body.id(), [&](BodyId other) { require_no_overlap(*bodies[other], body); });
@@ -336,6 +339,7 @@ void Kernel::set_gravity(const Vec3& gravity) {
     if (body->dynamic() && newborn(body->id())) {
       State* tail = graph.tail(body->process);
       tail->acceleration = gravity + tail->force / body->mass;
+      let_fly(*body, *tail);
     }
   edit_together([&](BodyId id) { return !newborn(id); },
                 [&](Successor& successor) {

@@ -42,13 +42,11 @@ StatisticsTable Kernel::statistics() const {
       while (next && !next->starts_arc()) next = next->next;
       const double until = std::min(time, next ? next->key.time : time);
       kinematic_work += contact_work(*s, until);
-      if (s->group && !s->group->at_rest) {
-        const GroupArc& arc = *s->group->arc;
-        length += arc.reached() - arc.start().time;
-        if (s->member == 0) {
-          steps += arc.counts().steps;
-          factorizations += arc.counts().factorizations;
-        }
+      if (s->trajectory().stepped()) {
+        const Effort effort = s->trajectory().effort();
+        length += effort.length;
+        steps += effort.steps;
+        factorizations += effort.factorizations;
         continue;
       }
       length += until - s->key.time;

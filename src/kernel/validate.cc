@@ -7,6 +7,15 @@
 #include "kernel/kernel.h"
 
 namespace tw {
+namespace {
+
+bool flies_as_it_began(const State& state) {
+  const Parabola* path = state.trajectory().ballistic();
+  return path && path->start == state.arc_time && path->x == state.x && path->v == state.v &&
+         path->acceleration == state.acceleration;
+}
+
+}  // namespace
 
 std::string Kernel::validate_state_graph() const {
   if (std::string broken = graph.validate(); !broken.empty()) return broken;
@@ -15,6 +24,8 @@ std::string Kernel::validate_state_graph() const {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
       if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
+      if (body->dynamic() && !s->group && !s->error && !flies_as_it_began(*s))
+        return "flight of another state: " + body->info.name + " " + show(s->key);
       if (s->key.time < gvt && !s->committed && !s->error)
         return "state before GVT not committed: " + body->info.name + ", " + show(s->key);
       if (s->committed && s->key.time > gvt) return "committed after GVT: " + show(s->key);
@@ -86,7 +97,7 @@ std::string Kernel::validate_residences() const {
       if (s->member >= group.members.size() || group.members[s->member] != body->id())
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
-      if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
+      if (s->trajectory().end() < s->key.time) return "state past a group check: " + where;
       // once a group: this runs after every event
       if (s->starts_arc() && s->member == 0)
         for (const ContactPair& pair : group.pairs)
@@ -121,7 +132,7 @@ std::string Kernel::validate_claims() const {
       if (!std::isfinite(t) || t < gvt) continue;
       const State* s = graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
-      const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
+      const Aabb there = body->shape_P->bounds(s->trajectory().frame(t));
       const Aabb& box = grid.box(body->id());
       if (!box.contains(there.lo) || !box.contains(there.hi))
         return "box does not hold " + body->info.name + " at " + show(t) + " s";
@@ -162,7 +173,7 @@ void add_group(Hasher& h, const Group& group) {
     h.add(tag.feature);
   }
   for (const double gap : group.gaps) h.add(gap);
-  for (const double end : group.ends) h.add(end);
+  for (std::uint32_t i = 0; i < group.members.size(); ++i) h.add(group.end(i));
   for (const Stillness& stillness : group.stillness) {
     for (const double number : {stillness.since, stillness.early_peak, stillness.peak})
       h.add(number);
@@ -208,7 +219,7 @@ std::vector<QueuedState> Kernel::state_queue(BodyId id) const {
   std::vector<QueuedState> result;
   for (const State* s = graph.head(process_of(id)); s; s = s->next)
     result.push_back(
-        {s->key, s->committed, body_state(*bodies[id], evaluate(*bodies[id], *s, s->key.time))});
+        {s->key, s->committed, body_state(*bodies[id], s->trajectory().at(s->key.time))});
   return result;
 }
 

@@ -14,7 +14,12 @@ void start_new_arc(Successor& successor, const Key& key) {
   d.v = successor.point.v;
   // of an isolated body it is constant
   if (d.group) d.L = angular_momentum(*successor.body, d.q, successor.point.w);
-  d.rotation_ready = false;
+}
+
+void let_fly(const Body& body, StateData& data) {
+  data.follows = nullptr;
+  data.flight = Flight(FreeRotation(body.moments, data.q, data.L), body.turn_excess,
+                       {data.arc_time, data.x, data.v, data.acceleration});
 }
 
 }  // namespace tw

@@ -33,4 +33,7 @@ struct Successor {
 // old one.
 void start_new_arc(Successor& successor, const Key& key);
 
+// Gives an isolated dynamic body its flight, from how its arc begins: when the state is published.
+void let_fly(const Body& body, StateData& data);
+
 }  // namespace tw

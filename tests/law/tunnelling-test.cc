@@ -7,6 +7,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "integrate/keyframes.h"
 #include "kernel/kernel.h"
 
 #include "support/scene.h"
