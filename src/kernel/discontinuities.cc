@@ -77,6 +77,8 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
       successor.data.arc_key = key;
       successor.role = Role::new_arc;
     }
+    const bool flies = successor.starts_arc() && successor.body->dynamic() && !successor.data.group;
+    if (flies) let_fly(*successor.body, successor.data);
     State* state = sim_.graph.append(successor.process(), key);
     static_cast<StateData&>(*state) = std::move(successor.data);
     ring.push_back(state);
@@ -84,7 +86,7 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
     TW_ASSERT(!state->group || state->group->key == key || state->error,
               "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
     // those of moving groups are counted by steps, when they are done with
-    if (!state->group || state->group->at_rest) ++counters_.integrations;
+    if (!state->trajectory().stepped()) ++counters_.integrations;
   }
   sim_.graph.close_ring(ring);
 }
