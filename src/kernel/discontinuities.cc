@@ -44,7 +44,8 @@ Discontinuities::Discontinuities(Simulation& simulation, ActivePairs& pairs, Pai
       claims_(claims),
       undo_redo_(simulation) {}
 
-// An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
+// An error stops whole groups: adds the group mates of the successors, and gives all the first
+// one's error.
 void Discontinuities::stop_group_mates(const Key& key, std::vector<Successor>& successors) const {
   const std::exception_ptr error = successors.front().data.error;
   std::vector<ProcessId> stopped;
@@ -59,7 +60,7 @@ void Discontinuities::stop_group_mates(const Key& key, std::vector<Successor>& s
   for (Successor& successor : successors) successor.data.error = error;
 }
 
-// The drafts give their slots, collisions and errors away.
+// The successors give their slots, collisions and errors away.
 void Discontinuities::append(const Key& key, std::vector<Successor>& successors) {
   for (Successor& successor : successors) check_finite(successor);
   const auto stopped = std::find_if(successors.begin(), successors.end(),
