@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "timeline/arc.h"
+#include "dynamics/placed-body.h"
 
 namespace tw {
 namespace {
@@ -20,14 +20,14 @@ double point_speed(const Body& body, const PoseTwist& p) {
 Separation separation_at(const Piece& piece, double when) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
-  return separation(*a.shape_P, frame_at(a, *piece.a, when), *b.shape_P,
-                    frame_at(b, *piece.b, when));
+  return separation(*a.shape_P, piece.a->trajectory().frame(when), *b.shape_P,
+                    piece.b->trajectory().frame(when));
 }
 
 double closing_at(const Piece& piece, double when, const Separation& s) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
-  const PoseTwist pa = evaluate(a, *piece.a, when), pb = evaluate(b, *piece.b, when);
+  const PoseTwist pa = piece.a->trajectory().at(when), pb = piece.b->trajectory().at(when);
   const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
   const double closing = -(ub - ua).dot(s.normal);
   return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
@@ -38,10 +38,9 @@ bool approaching_at(const Piece& piece, double when) {
 }
 
 bool pressed_at(const Piece& piece, const Vec3& normal) {
-  const auto pull = [](const Body& body, const State& arc) {
-    return body.dynamic() && !arc.group ? arc.acceleration : Vec3(Vec3::Zero());
-  };
-  return (pull(*piece.body_b, *piece.b) - pull(*piece.body_a, *piece.a)).dot(normal) < 0;
+  const Vec3 pull_a = piece.a->trajectory().free_acceleration();
+  const Vec3 pull_b = piece.b->trajectory().free_acceleration();
+  return (pull_b - pull_a).dot(normal) < 0;
 }
 
 }  // namespace tw

@@ -32,8 +32,8 @@ double reach(const MovingBody& side, const Vec3& n, double c, double u, double a
   const double gap = c - n.dot(side.point.x + r) - radius;
   if (!(gap > 0)) return 0;
   const double arm = r.norm();
-  if (!side.body->dynamic()) {
-    const double bound = side.speed_bound + side.turn_bound * arm;
+  if (side.by_speed()) {
+    const double bound = side.bounds.speed + side.bounds.turn * arm;
     return first_zero(gap, u - bound, alpha);
   }
   const double speed = n.dot(side.point.v + side.point.w.cross(r));
@@ -62,12 +62,11 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   if (part.kind == PartKind::half_space) {
     // stands, or moves without turning
     const double gap = c - n.dot(side.frame * (part.normal * part.offset));
-    return gap > 0 ? first_zero(gap, u - side.speed_bound, alpha) : 0;
+    return gap > 0 ? first_zero(gap, u - side.bounds.speed, alpha) : 0;
   }
   if (as_ball || part.kind == PartKind::sphere)
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
-  if (!side.body->dynamic() && !side.body->fixed())
-    return kinematic_reach(side, part, n, c, u, alpha);
+  if (side.by_speed()) return kinematic_reach(side, part, n, c, u, alpha);
 
   // heights and speeds of points are linear in them: in the part's frame,
   // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w
@@ -116,12 +115,12 @@ double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBod
 }  // namespace
 
 double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
-  const MovingBody a(*piece.body_a, *piece.a, when), b(*piece.body_b, *piece.b, when);
+  const Trajectory& path_a = piece.a->trajectory();
+  const Trajectory& path_b = piece.b->trajectory();
+  const MovingBody a(*piece.body_a, path_a, when), b(*piece.body_b, path_b, when);
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
-  double least = never;
-  if (a.body->info.kind == BodyKind::kinematic || b.body->info.kind == BodyKind::kinematic)
-    least = kinematic_horizon;
+  double least = std::min(a.bounds.valid_until, b.bounds.valid_until) - when;
   // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
   // needed
   const bool in_steps = a.step_end != never || b.step_end != never;
@@ -129,10 +128,11 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
   const auto by_step = [&](const auto& bound) {
     if (!in_steps) return bound(a, b);
     if (!step_a) {
-      step_a.emplace(a.within_step(*piece.a, when));
-      step_b.emplace(b.within_step(*piece.b, when));
+      step_a.emplace(a.within_step(path_a, when));
+      step_b.emplace(b.within_step(path_b, when));
     }
-    return std::min(std::min(step_a->horizon, step_b->horizon) - when, bound(*step_a, *step_b));
+    return std::min(std::min(step_a->bounds.valid_until, step_b->bounds.valid_until) - when,
+                    bound(*step_a, *step_b));
   };
   const auto longest = [&](const auto& bound) {
     const double left = bound(a, b);

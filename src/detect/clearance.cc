@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "timeline/arc.h"
-
 namespace tw {
 namespace {
 
@@ -17,28 +15,12 @@ struct Travel {
   double turning = 0;
 };
 
-Travel travel_of(const Body& body, const State& arc, double from, double to) {
+Travel travel_of(const Body& body, const Trajectory& trajectory, double from, double to) {
+  const MotionBounds bounds = trajectory.bounds(from, to);
   Travel t;
-  const double dt = to - from;
-  t.center = center_at(body, arc, from);
-  if (body.fixed() || (arc.group && arc.group->at_rest)) return t;
-  if (arc.group) {
-    const GroupBounds bounds = arc.group->arc->bounds(static_cast<int>(arc.member), from, to);
-    t.displacement = {bounds.path.lo - t.center, bounds.path.hi - t.center};
-    t.turning = body.sphere_radius >= 0 ? 0 : bounds.turn * dt * body.radius;
-    return t;
-  }
-  if (body.dynamic()) {
-    const Vec3 end = center_at(body, arc, to) - t.center;
-    const Vec3 apex = (0.125 * dt * dt) * arc.acceleration.cwiseAbs();
-    t.displacement = {end.cwiseMin(0.0) - apex, end.cwiseMax(0.0) + apex};
-    t.turning =
-        body.sphere_radius >= 0 ? 0 : angular_speed_bound(body, arc, from, to) * dt * body.radius;
-    return t;
-  }
-  t.displacement = Aabb{Vec3::Zero(), Vec3::Zero()};
-  t.displacement.grow(body.motion->speed_bound(from, to) * dt);
-  t.turning = body.motion->angular_speed_bound(from, to) * dt * body.radius;
+  t.center = trajectory.center(from);
+  t.displacement = {bounds.path.lo - t.center, bounds.path.hi - t.center};
+  t.turning = body.sphere_radius >= 0 ? 0 : bounds.turn * (to - from) * body.radius;
   return t;
 }
 
@@ -68,7 +50,9 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
   if (a.unbounded || b.unbounded) return false;
-  const Travel ta = travel_of(a, *piece.a, from, to), tb = travel_of(b, *piece.b, from, to);
+  const Trajectory& path_a = piece.a->trajectory();
+  const Trajectory& path_b = piece.b->trajectory();
+  const Travel ta = travel_of(a, path_a, from, to), tb = travel_of(b, path_b, from, to);
   const RelativeTravel travel(ta, tb);
 
   // remembered, or by the bounding balls, or by a query: what is left of it at the end
@@ -76,7 +60,7 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
   double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
   if (!(left > 0)) {
-    const Frame fa = frame_at(a, *piece.a, from), fb = frame_at(b, *piece.b, from);
+    const Frame fa = path_a.frame(from), fb = path_b.frame(from);
     const auto& parts_a = a.shape_P->parts();
     const auto& parts_b = b.shape_P->parts();
     if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());

@@ -5,70 +5,43 @@
 #include <algorithm>
 #include <cmath>
 
-#include "timeline/arc.h"
+#include "dynamics/placed-body.h"
+#include "integrate/trajectory.h"
 
 namespace tw {
 
 // How far ahead the speed of a kinematic body is bounded, s.
 inline constexpr double kinematic_horizon = 0.5;
 
-// One body of the pair at the certificate's time.
-struct MovingBody {
-  const Body* body;
-  Frame frame;
-  PoseTwist point;
-  double turn_bound = 0;   // W, rad/s
-  double bend = 0;         // bound on |a point's acceleration against the centre's| / arm, 1/s^2
-  double speed_bound = 0;  // kinematic: the origin's
-  Vec3 acceleration = Vec3::Zero();
-  Vec3 spread = Vec3::Zero();  // the acceleration differs from `acceleration` by this at most
-  double horizon = never;      // bounds hold so far
-  double step_end = never;     // of the integrator's present step; `never`: the arc ends with it
+// One body of the pair at the certificate's time.  What is integrated is seen as its pose moves.
+struct MovingBody : PlacedBody {
+  MotionBounds bounds;
+  Vec3 acceleration;        // the middle of its bounds; none where the velocity may jump
+  Vec3 spread;              // it differs from the middle by this at most
+  double bend = 0;          // bound on |a point's acceleration against the centre's| / arm, 1/s^2
+  double step_end = never;  // of the integrator's present step; `never`: the arc ends with it
 
-  MovingBody(const Body& b, const State& arc, double when) : body(&b) {
-    if (arc.group && !arc.group->at_rest) {
-      follow_group(arc, when);
-      return;
-    }
-    point = evaluate(b, arc, when);
-    frame = Frame(point.q.toRotationMatrix(), point.x);
-    if (b.fixed() || arc.group) return;
-    turn_bound = angular_speed_bound(b, arc, when, when + kinematic_horizon);
-    bend = (1 + b.turn_excess) * turn_bound * turn_bound;
-    if (b.dynamic())
-      acceleration = arc.acceleration;
-    else
-      speed_bound = b.motion->speed_bound(when, when + kinematic_horizon);
-  }
-  // The dense output itself moves.
-  void follow_group(const State& arc, double when) {
-    const int member = static_cast<int>(arc.member);
-    GroupArc& motion = *arc.group->arc;
-    motion.pose(member, when, point.x, point.q);
-    frame = Frame(point.q.toRotationMatrix(), point.x);
-    motion.pose_rates(member, when, point.v, point.w);
-    const double end = arc.group->end(arc.member);
-    bound_by(arc, when, std::max(when, end));
-    step_end = motion.step_end(when);
-    if (step_end >= end) step_end = never;
+  MovingBody(const Body& b, const Trajectory& trajectory, double when)
+      : PlacedBody(b, trajectory.path_at(when)) {
+    const double until = b.kinematic() ? when + kinematic_horizon : trajectory.end();
+    bound_by(trajectory.bounds(when, std::max(when, until)));
+    step_end = trajectory.step_end(when);
   }
   // The same with the narrower bounds of the present step of the integrator.
-  MovingBody within_step(const State& arc, double when) const {
+  MovingBody within_step(const Trajectory& trajectory, double when) const {
     MovingBody narrow = *this;
-    if (step_end == never) return narrow;
-    narrow.bound_by(arc, when, std::max(when, step_end));
-    narrow.horizon = std::max(when, step_end);
+    if (step_end != never) narrow.bound_by(trajectory.bounds(when, std::max(when, step_end)));
     return narrow;
   }
-  void bound_by(const State& arc, double when, double until) {
-    const GroupBounds bounds = arc.group->arc->bounds(static_cast<int>(arc.member), when, until);
-    turn_bound = bounds.turn;
-    bend = bounds.turn_change + bounds.turn * bounds.turn;
-    acceleration = 0.5 * (bounds.acceleration.lo + bounds.acceleration.hi);
-    spread = 0.5 * (bounds.acceleration.hi - bounds.acceleration.lo);
-  }
-  Vec3 velocity_at(const Vec3& world_point) const {
-    return point.v + point.w.cross(world_point - point.x);
+  // Only its speeds are bounded.
+  bool by_speed() const { return bounds.velocity_may_jump(); }
+
+ private:
+  void bound_by(const MotionBounds& b) {
+    bounds = b;
+    bend = b.turn_change + b.turn * b.turn;
+    acceleration = by_speed() ? Vec3(Vec3::Zero()) : b.acceleration.center();
+    spread = by_speed() ? Vec3(Vec3::Zero()) : Vec3(0.5 * b.acceleration.size());
   }
 };
 

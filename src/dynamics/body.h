@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +14,12 @@
 #include "base/error.h"
 #include "dynamics/contact-parameters.h"
 #include "dynamics/ids.h"
-#include "dynamics/motion.h"
 #include "dynamics/rigid-body.h"
 #include "geometry/shape.h"
 
 namespace tw {
+
+class Trajectory;
 
 // What a body does at one instant.  Position and orientation are the *body frame's*, velocity the
 // centre of mass's; all in the world frame, SI.
@@ -55,7 +57,7 @@ struct Body {
   double least_width = 0;     // the `size` of contact parameters, m
   double sphere_radius = -1;  // >= 0: a single sphere centred on P
   double turn_excess = 0;     // max |Ii - Ij| / Ik: bounds the angular acceleration
-  MotionPtr motion;           // fixed and kinematic
+  std::shared_ptr<const Trajectory> motion;  // given: of fixed and kinematic bodies
   bool unbounded = false;
   Vec3 plane_normal = Vec3::Zero();  // a fixed half-space, world
   double plane_offset = 0;

@@ -6,19 +6,9 @@
 #pragma once
 
 #include "dynamics/body.h"
+#include "dynamics/pose-twist.h"
 
 namespace tw {
-
-// Pose and twist of a principal frame: m, unit quaternion, m/s, rad/s.
-struct PoseTwist {
-  Vec3 x = Vec3::Zero();
-  Quat q = Quat::Identity();
-  Vec3 v = Vec3::Zero();
-  Vec3 w = Vec3::Zero();
-
-  Frame frame() const { return Frame(q.toRotationMatrix(), x); }
-  Vec3 velocity_at(const Vec3& where) const { return v + w.cross(where - x); }
-};
 
 struct PlacedBody {
   const Body* body = nullptr;

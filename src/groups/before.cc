@@ -21,7 +21,7 @@ const std::shared_ptr<Group>& owner_of(const Body& body_a, const State& a, const
 
 PlacedBody Before::placed(BodyId id) const {
   const Body& body = scene_.body(id);
-  return PlacedBody(body, evaluate(body, state_of(id), key_.time));
+  return PlacedBody(body, state_of(id).trajectory().at(key_.time));
 }
 
 Before::Owned Before::owned(std::uint64_t pair) const {

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "dynamics/placed-body.h"
 #include "dynamics/scene.h"
 #include "groups/group.h"
 #include "timeline/arc.h"

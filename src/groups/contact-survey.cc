@@ -117,7 +117,7 @@ double contact_work(const Scene& scene, const State& state, double until) {
   }
   if (!any) return 0;
   return group.arc->work_on(static_cast<int>(state.member), all, group.arc->start().time,
-                            std::min(until, natural_end(state)));
+                            std::min(until, state.trajectory().end()));
 }
 
 }  // namespace tw

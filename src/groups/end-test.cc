@@ -28,16 +28,9 @@ struct PairOnArc {
   const Body& b;
   std::vector<SeamNeighbour> around_a, around_b;  // of the one that is ground
 
-  Frame frame(const Body& body, double when) const {
-    const int member = group.member_of(body.process);
-    if (member < 0) return Frame(outside_motion(body).pose(when));
-    Vec3 x;
-    Quat q;
-    group.arc->pose(member, when, x, q);
-    return Frame(q.toRotationMatrix(), x);
-  }
-  const Motion& outside_motion(const Body& body) const {
-    if (!body.dynamic()) return *body.motion;
+  const Trajectory& trajectory(const Body& body) const {
+    if (const int member = group.member_of(body.process); member >= 0)
+      return group.arc->trajectory(member);
     const auto at = std::find(group.outside.begin(), group.outside.end(), body.id());
     TW_ASSERT(at != group.outside.end(),
               body.info.name + " is in contact and neither member nor outside");
@@ -48,11 +41,12 @@ struct PairOnArc {
     thread_local std::vector<ManifoldPoint> points;
     points.clear();
     const double size = std::min(a.least_width, b.least_width);
+    const Frame frame_a = trajectory(a).frame(when), frame_b = trajectory(b).frame(when);
     if (at_seams)
-      manifold_at_seams(*a.shape_P, frame(a, when), around_a, *b.shape_P, frame(b, when), around_b,
-                        0, size, points);
+      manifold_at_seams(*a.shape_P, frame_a, around_a, *b.shape_P, frame_b, around_b, 0, size,
+                        points);
     else
-      manifold(*a.shape_P, frame(a, when), *b.shape_P, frame(b, when), 0, points);
+      manifold(*a.shape_P, frame_a, *b.shape_P, frame_b, 0, points);
     double least = 0;
     for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
     return least;
@@ -67,17 +61,10 @@ struct PairOnArc {
   // How far any surface point may have moved, m.
   double travel() const {
     double sum = 0;
+    const double from = group.arc->start().time, to = group.next_check;
     for (const Body* body : {&a, &b}) {
-      const int member = group.member_of(body->process);
-      const double from = group.arc->start().time, to = group.next_check;
-      if (member < 0) {
-        if (!body->dynamic()) continue;
-        const Motion& motion = outside_motion(*body);
-        sum += motion.path_bounds(from, to).size().norm() +
-               motion.angular_speed_bound(from, to) * (to - from) * body->radius;
-        continue;
-      }
-      const GroupBounds bounds = group.arc->bounds(member, from, to);
+      if (!body->dynamic()) continue;
+      const MotionBounds bounds = trajectory(*body).bounds(from, to);
       sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
     }
     return sum;
@@ -151,16 +138,18 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   if (group.members.size() < answer::least_divided) {
     for (const EarlyEnd& early : early_ends)
       group.next_check = std::min(group.next_check, early.time);
+    group.arc->lower_ends(std::vector<double>(group.members.size(), group.next_check));
     return;
   }
-  group.ends.assign(group.members.size(), group.next_check);
+  std::vector<double> ends(group.members.size(), group.next_check);
   for (const EarlyEnd& early : early_ends)
     for (const BodyId side : {first_of(early.pair), second_of(early.pair)}) {
       const int member = group.member_of(scene.process_of(side));
       if (member < 0) continue;
-      double& end = group.ends[static_cast<std::size_t>(member)];
+      double& end = ends[static_cast<std::size_t>(member)];
       end = std::min(end, early.time);
     }
+  group.arc->lower_ends(std::move(ends));
 }
 
 }  // namespace tw

@@ -6,7 +6,8 @@
 // small group all arcs, else those of the two), and the group check that stands there takes it in.
 // So the end is a function of the group alone.
 //
-// Cost: one manifold a pair, none for pairs that moved less than a fraction of their contact's depth.
+// Cost: one manifold a pair, none for pairs that moved less than a fraction of their
+// contact's depth.
 // Source: doc/numerics.md, "Contact groups" (missed features gain energy).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later

@@ -18,7 +18,9 @@ void for_each_field(const Group& group, Visit&& visit) {
   visit("members", motion, group.members);
   visit("birth", motion, group.birth);
   visit("next check", motion, group.next_check);
-  visit("ends", motion, group.ends);
+  std::vector<double> ends;
+  for (std::uint32_t i = 0; i < group.members.size(); ++i) ends.push_back(group.end(i));
+  visit("ends", motion, ends);
   visit("rest", motion, group.at_rest);
   visit("sleep", motion, group.asleep);
   visit("quiet time", motion, group.quiet);

@@ -54,7 +54,7 @@ struct Group : Counted<Group> {
   Key key;           // of the discontinuity that made it
   double birth = 0;  // when this set of members came together, s
   double next_check = never;
-  bool end_tested = false;  // next_check and ends are as the end test found them
+  bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
   bool at_rest = false;
   bool asleep = false;             // at rest for the time being (stillness.h)
   QuietTime quiet;                 // of the group as a whole
@@ -68,8 +68,7 @@ struct Group : Counted<Group> {
   std::vector<ContactTag> tags;                             // of arc->start().contacts
   std::vector<double> gaps;          // m, of arc->start().contacts, at the start
   std::vector<Stillness> stillness;  // of each member
-  std::vector<double> ends;          // of each member's arc, s; empty: all at next_check
-  std::unique_ptr<GroupArc> arc;
+  std::shared_ptr<GroupArc> arc;
 
   // Its place among the members; -1: it is none.
   int member_of(ProcessId process) const {
@@ -95,7 +94,7 @@ struct Group : Counted<Group> {
     return arc->contact_force(static_cast<int>(contact), contact_time(when));
   }
   // Where the arc of a member ends by itself, s.
-  double end(std::uint32_t member) const { return ends.empty() ? next_check : ends[member]; }
+  double end(std::uint32_t member) const { return arc->end(static_cast<int>(member)); }
 };
 
 using Groups = std::vector<std::shared_ptr<Group>>;

@@ -12,6 +12,8 @@
 #include "groups/rest.h"
 #include "groups/share-stiffness.h"
 #include "groups/tolerances.h"
+#include "integrate/member-trajectory.h"
+#include "integrate/standing.h"
 
 namespace tw {
 namespace {
@@ -39,18 +41,19 @@ void index_pairs(const Scene& scene, Group& group) {
 }
 
 // The motion of a body that a group meets.
-MotionPtr outside_motion(const Regrouping& work, BodyId id) {
+TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
   const Body& body = work.scene().body(id);
   if (!body.dynamic()) return body.motion;
   const Successor& successor = *work.successor_of(id);
   // laid to rest by this discontinuity, or, seen from there, what goes on: it is not asked for long
-  if (work.changes(&successor)) return make_fixed_motion({successor.point.x, successor.point.q});
+  if (work.changes(&successor)) return make_standing({successor.point.x, successor.point.q});
   const Group& theirs = *successor.data.group;
-  if (theirs.at_rest) return make_fixed_motion({successor.data.x, successor.data.q});
+  if (theirs.at_rest) return successor.data.follows;
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
   theirs.arc->extend(theirs.next_check);
-  return theirs.arc->motion(static_cast<int>(successor.data.member), work.now(), theirs.next_check);
+  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(),
+                             theirs.next_check);
 }
 
 // Members of the arc, and the tolerances of its steps.
@@ -108,7 +111,7 @@ void start_arc(Regrouping& work, Group& group) {
   // also what is in contact without a point is looked at along the arc (end-test.h)
   for (const ContactPair& pair : group.pairs)
     for (const BodyId id : {pair.a(), pair.b()}) index_of(id);
-  group.arc = std::make_unique<GroupArc>(std::move(start));
+  group.arc = std::make_shared<GroupArc>(std::move(start));
 }
 
 // Its contact pairs, and until when those at its border know where they go, s.
@@ -220,10 +223,14 @@ void make_groups(Regrouping& work) {
   for (std::size_t i = 0; i < count; ++i) {
     Successor& successor = work.successors[i];
     if (!work.changes(&successor)) continue;
-    const std::shared_ptr<Group>& group = made[components.root(i)];
-    const int member = held[i] ? group->member_of(successor.process()) : 0;
-    successor.data.group = group;
-    successor.data.member = static_cast<std::uint32_t>(member);
+    StateData& data = successor.data;
+    const std::shared_ptr<Group>& group = data.group = made[components.root(i)];
+    data.member = 0;
+    if (!group) continue;
+    const int member = group->member_of(successor.process());
+    data.member = static_cast<std::uint32_t>(member);
+    data.follows =
+        group->at_rest ? make_resting({data.x, data.q}) : member_trajectory(group->arc, member);
   }
 }
 

@@ -57,7 +57,7 @@ double deviation(const Before& before, const Group& group, const Body& body) {
   const GroupSample now = group.arc->evaluate(group.member_of(body.process), end);
   // an arc that began at this very instant need not be complete
   if (!old.group->at_rest) old.group->arc->extend(end);
-  const PoseTwist was = evaluate(body, old, end);
+  const PoseTwist was = old.trajectory().at(end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
 

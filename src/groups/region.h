@@ -11,8 +11,8 @@
 // Those at the border get a record, so that a rollback of theirs takes those back that relied on
 // them.
 //
-// Measured: a blow on a heap of 90 sliding rocks moves 4 to 6 of them by more than 1 mm/s before the
-// next check.
+// Measured: a blow on a heap of 90 sliding rocks moves 4 to 6 of them by more than 1 mm/s before
+// the next check.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -97,7 +97,7 @@ Successor make_successor(const Before& before, ProcessId process, bool new_arc) 
   const State& state = before.state(process);
   Successor successor;
   successor.body = &before.scene().body_of(process);
-  successor.point = evaluate(*successor.body, state, before.key().time);
+  successor.point = state.trajectory().at(before.key().time);
   successor.data = state;
   successor.data.changed = true;
   successor.data.next_callback = never;

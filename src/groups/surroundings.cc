@@ -1,7 +1,9 @@
 // Who is near a body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/surroundings.h"
+
 #include "collision/seams/seams.h"
+#include "integrate/trajectory.h"
 
 #include <algorithm>
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "integrate/group-stepper.h"
+#include "integrate/member-trajectory.h"
 
 namespace tw {
 
@@ -17,6 +18,8 @@ struct GroupArc::Data {
   GroupStepper stepper;
   const GroupSystem& system;
   const GroupRecord& record;
+  std::vector<MemberTrajectory> trajectories;
+  std::vector<double> ends;  // of each member; empty: the arc's
   std::string failure;
   int failed_contact = -1;
   const std::uint64_t serial = next_serial();  // no two arcs of a program share one
@@ -106,7 +109,11 @@ void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
   for (int i = 0; i < system.members(); ++i) set_slot(i, time, s);
 }
 
-GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(start))) {}
+GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(start))) {
+  const int count = data_->system.members();
+  data_->trajectories.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) data_->trajectories.emplace_back(*this, i);
+}
 GroupArc::~GroupArc() = default;
 
 const GroupStart& GroupArc::start() const { return data_->start; }
@@ -114,6 +121,19 @@ double GroupArc::reached() const { return data_->record.reached(); }
 const std::string& GroupArc::failure() const { return data_->failure; }
 int GroupArc::failed_contact() const { return data_->failed_contact; }
 double GroupArc::next_step() const { return data_->stepper.next_step(); }
+
+void GroupArc::lower_ends(std::vector<double> ends) {
+  TW_ASSERT(data_->ends.empty(), "the ends of an arc were told twice");
+  data_->ends = std::move(ends);
+}
+
+double GroupArc::end(int member) const {
+  return data_->ends.empty() ? data_->start.end : data_->ends[static_cast<std::size_t>(member)];
+}
+
+const Trajectory& GroupArc::trajectory(int member) const {
+  return data_->trajectories[static_cast<std::size_t>(member)];
+}
 
 GroupCounts GroupArc::counts() const { return data_->stepper.counts(); }
 
@@ -149,16 +169,7 @@ void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) const {
   w = sample.w;
 }
 
-// Of an arc that stands at its start.
-static GroupBounds standing_bounds(const GroupSample& start) {
-  GroupBounds bounds;
-  bounds.path.add(start.x);
-  bounds.turn = start.w.norm();
-  bounds.acceleration.add(Vec3(Vec3::Zero()));
-  return bounds;
-}
-
-GroupBounds GroupArc::bounds(int member, double from, double to) const {
+MotionBounds GroupArc::bounds(int member, double from, double to) const {
   // at the instant at which it begins an arc is known before its first step
   const bool begins = to <= data_->start.time && data_->record.steps() == 0;
   if (!begins && data_->has_steps()) {
@@ -167,7 +178,7 @@ GroupBounds GroupArc::bounds(int member, double from, double to) const {
       std::uint64_t arc = 0;
       int member = 0;
       double from = 0, to = 0;
-      GroupBounds bounds;
+      MotionBounds bounds;
     };
     constexpr std::size_t places = 512;
     thread_local std::vector<Kept> table(places);
@@ -177,7 +188,8 @@ GroupBounds GroupArc::bounds(int member, double from, double to) const {
       kept = {data_->serial, member, begin, end, data_->record.bounds(member, begin, end)};
     return kept.bounds;
   }
-  return standing_bounds(evaluate(member, from));
+  const GroupSample start = evaluate(member, from);
+  return standing_bounds(start.x, start.v, start.w);
 }
 
 double GroupArc::step_end(double time) const {
@@ -189,54 +201,11 @@ double GroupArc::step_end(double time) const {
   return step >= 0 ? record.time(step + 1) : record.reached();
 }
 
-namespace {
-
-class MemberMotion final : public Motion {
- public:
-  MemberMotion(GroupRecord record, const GroupSample& start)
-      : record_(std::move(record)), start_(start) {}
-  Pose pose(double time) const override {
-    const double t = at(time);
-    Pose pose;
-    pose.p = record_.position(0, t);
-    pose.q = record_.attitude(0, t);
-    return pose;
-  }
-  // of the path itself, so that contacts see what moves them
-  void velocity(double time, Vec3& v, Vec3& w) const override {
-    if (record_.steps() > 0) return record_.pose_rates(0, at(time), v, w);
-    v = start_.v;
-    w = start_.w;
-  }
-  double speed_bound(double from, double to) const override {
-    Vec3 v, w;
-    velocity(from, v, w);
-    const Aabb bend = bounds(from, to).acceleration;
-    return v.norm() + bend.lo.cwiseAbs().cwiseMax(bend.hi.cwiseAbs()).norm() * (to - from);
-  }
-  double angular_speed_bound(double from, double to) const override {
-    return bounds(from, to).turn;
-  }
-  Aabb path_bounds(double from, double to) const override { return bounds(from, to).path; }
-
- private:
-  double at(double time) const { return std::clamp(time, record_.start(), record_.reached()); }
-  GroupBounds bounds(double from, double to) const {
-    const double end = at(to);
-    return record_.steps() > 0 ? record_.bounds(0, std::min(at(from), end), end)
-                               : standing_bounds(start_);
-  }
-
-  GroupRecord record_;
-  GroupSample start_;  // of an arc that could not make a step
-};
-
-}  // namespace
-
-MotionPtr GroupArc::motion(int member, double from, double to) const {
-  const GroupSample start = data_->has_steps() ? GroupSample() : evaluate(member, from);
+TrajectoryPtr GroupArc::excerpt(int member, double from, double to) const {
+  PoseTwist start;
+  if (!data_->has_steps()) start = trajectory(member).at(from);
   data_->at(to);
-  return std::make_shared<MemberMotion>(data_->record.stretch_of(member, data_->at(from)), start);
+  return make_excerpt(data_->record.stretch_of(member, data_->at(from)), start);
 }
 
 Vec3 GroupArc::stretch(int contact, double time) const {

@@ -36,8 +36,7 @@
 
 #include "base/counted.h"
 #include "dynamics/contact-law.h"
-#include "dynamics/motion.h"
-#include "math/aabb.h"
+#include "integrate/trajectory.h"
 #include "math/vec.h"
 
 namespace tw {
@@ -83,7 +82,7 @@ struct GroupStart {
   double time = 0;  // s
   double end = 0;   // the arc goes no further, s
   std::vector<GroupMember> members;
-  std::vector<MotionPtr> outside;  // fixed and kinematic bodies
+  std::vector<TrajectoryPtr> outside;  // of bodies that the arc meets and does not move
   std::vector<GroupContact> contacts;
   double first_step = 0;             // to be tried first, s; 0: chosen
   double position_tolerance = 1e-6;  // m, of one step (RMS over members)
@@ -104,14 +103,6 @@ struct ContactForce {
   Vec3 friction = Vec3::Zero();  // N, on b
   Vec3 velocity = Vec3::Zero();  // of b's point against a's, m/s
   bool slipping = false;         // the friction is cut at mu N (anchored), N > 0
-};
-
-// Bounds over a stretch of the arc.
-struct GroupBounds {
-  Aabb path;               // of the centre
-  Aabb acceleration;       // holds x'' of the position's interpolant, m/s^2
-  double turn = 0;         // angular speed at most, rad/s
-  double turn_change = 0;  // |w'| at most, of the attitude's interpolant, rad/s^2
 };
 
 // A contact of a member, and whether the work at it is asked for.
@@ -135,6 +126,10 @@ class GroupArc : public Counted<GroupArc> {
   // Integrates as far as `time` (at most to the end).  False: it stopped before; see failure().
   bool extend(double time);
   double reached() const;  // how far it is integrated, s
+  // Where the members' trajectories end: at the arc's end, or earlier where somebody found out that
+  // it does not hold so far.  Told once, before anybody relies on them.
+  void lower_ends(std::vector<double> ends);
+  double end(int member) const;
   // Empty, or why it stopped: a step size under the spacing of doubles or a state that is not
   // finite, with the time and the contact with the largest force.
   const std::string& failure() const;
@@ -148,13 +143,14 @@ class GroupArc : public Counted<GroupArc> {
   // Rates of the pose's interpolant itself, continuous in time (differ from v and w by the
   // integration error, and at the ends of steps by rounding): for bounds.
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
-  GroupBounds bounds(int member, double from, double to) const;
+  MotionBounds bounds(int member, double from, double to) const;
   // The end of the step that holds `time`, or begins there: beyond it bounds may be much wider.
   double step_end(double time) const;
-  // What the member's centre of mass and principal frame do over [from, to], as a motion with the
-  // same bits: a copy of that stretch, which keeps nothing else of the arc.  Beyond the stretch it
-  // stands.
-  MotionPtr motion(int member, double from, double to) const;
+  // What the member does over [from, to]: a copy of that stretch, which keeps nothing else of the
+  // arc.
+  TrajectoryPtr excerpt(int member, double from, double to) const;
+  // What the member does; lives as long as the arc (member_trajectory shares it).
+  const Trajectory& trajectory(int member) const;
   Vec3 stretch(int contact, double time) const;  // a's frame
   ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside

@@ -212,15 +212,20 @@ void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {
 }
 
 void GroupRecord::add_step_bounds(int i, int member, double from, double to,
-                                  GroupBounds& bounds) const {
+                                  MotionBounds& bounds) const {
   const double r0 = fraction(i, from), r1 = fraction(i, to), rate = 1 / length(i);
 
   // path: control points over [r0, r1]: p(r0), p + (r1-r0) p'/3 from either end, p(r1)
   const Cubic way = path(i, member);
-  const Vec3 p0 = way.value(r0), p1 = way.value(r1);
+  const Vec3 p0 = way.value(r0), p1 = way.value(r1), u0 = way.rate(r0), u1 = way.rate(r1);
   const double third = (r1 - r0) / 3;
-  const Vec3 control0 = p0 + third * way.rate(r0), control1 = p1 - third * way.rate(r1);
+  const Vec3 control0 = p0 + third * u0, control1 = p1 - third * u1;
   for (const Vec3& p : {p0, p1, control0, control1}) bounds.path.add(p);
+
+  // x' is quadratic: within its control points
+  const Vec3 u = u0 + 0.5 * (r1 - r0) * way.second(r0);
+  const double fastest = std::max({u0.squaredNorm(), u.squaredNorm(), u1.squaredNorm()});
+  bounds.speed = std::max(bounds.speed, rate * std::sqrt(fastest));
 
   // x'' is linear: largest at an end
   for (const double r : {r0, r1}) bounds.acceleration.add(Vec3(rate * rate * way.second(r)));
@@ -240,8 +245,8 @@ void GroupRecord::add_step_bounds(int i, int member, double from, double to,
   bounds.turn_change = std::max(bounds.turn_change, turn_second + speed * bend / 6);
 }
 
-GroupBounds GroupRecord::bounds(int member, double from, double to) const {
-  GroupBounds result;
+MotionBounds GroupRecord::bounds(int member, double from, double to) const {
+  MotionBounds result;
   // steps of positive overlap, at least one
   const int last = step_to(to), first = std::min(std::max(step_from(from), 0), last);
   for (int i = from < to ? first : last; i <= last; ++i)
@@ -253,6 +258,7 @@ GroupBounds GroupRecord::bounds(int member, double from, double to) const {
   const double widen = 1 + 1e-12;
   result.acceleration.grow(1e-12 * std::max(result.acceleration.lo.cwiseAbs().maxCoeff(),
                                             result.acceleration.hi.cwiseAbs().maxCoeff()));
+  result.speed *= widen;
   result.turn *= widen;
   result.turn_change *= widen;
   return result;

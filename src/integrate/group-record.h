@@ -51,7 +51,7 @@ class GroupRecord {
   LaneVec side(int pack, double time) const;
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
   // As GroupArc::bounds; from <= to, both in [start, reached], at least one step.
-  GroupBounds bounds(int member, double from, double to) const;
+  MotionBounds bounds(int member, double from, double to) const;
 
  private:
   // cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step
@@ -78,7 +78,7 @@ class GroupRecord {
   Cubic rotation(int step, int member) const;
   const double* member_node(int node, int member) const;
   const double* member_step(int step, int member) const;
-  void add_step_bounds(int step, int member, double from, double to, GroupBounds& bounds) const;
+  void add_step_bounds(int step, int member, double from, double to, MotionBounds& bounds) const;
 
   int members_ = 0, packs_ = 0;
   bool with_sides_ = false;

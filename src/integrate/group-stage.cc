@@ -35,13 +35,12 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
   const double d = step / 32;
   for (const int slot : moving_slots_) {
     BodyChange& change = s.changes[index(slot)];
-    Vec3 v[3], w[3];
-    for (int j = 0; j < 3; ++j)
-      outside_[index(slot - members_)]->velocity(time + j * d, v[j], w[j]);
-    vec(change.x) = v[0];
-    vec(change.th) = w[0];
-    vec(change.v) = (4 * (v[1] - v[0]) - (v[2] - v[0])) / (2 * d);
-    vec(change.w) = (4 * (w[1] - w[0]) - (w[2] - w[0])) / (2 * d);
+    Twist u[3];
+    for (int j = 0; j < 3; ++j) u[j] = outside_[index(slot - members_)]->twist(time + j * d);
+    vec(change.x) = u[0].v;
+    vec(change.th) = u[0].w;
+    vec(change.v) = (4 * (u[1].v - u[0].v) - (u[2].v - u[0].v)) / (2 * d);
+    vec(change.w) = (4 * (u[1].w - u[0].w) - (u[2].w - u[0].w)) / (2 * d);
   }
 
   const LaneVec none = {lanes(0), lanes(0), lanes(0)};

@@ -44,10 +44,8 @@ GroupSystem::GroupSystem(const GroupStart& start)
   // what stands still is placed once
   std::vector<BodyKinematics> bodies(index(packs_.slots));
   for (int i = 0; i < static_cast<int>(outside_.size()); ++i) {
-    const Motion& motion = *outside_[index(i)];
-    if (motion.speed_bound(start.time, start.end) > 0 ||
-        motion.angular_speed_bound(start.time, start.end) > 0)
-      moving_slots_.push_back(members_ + i);
+    const MotionBounds bounds = outside_[index(i)]->bounds(start.time, start.end);
+    if (bounds.speed > 0 || bounds.turn > 0) moving_slots_.push_back(members_ + i);
     place_outside(members_ + i, start.time, bodies[index(members_ + i)]);
   }
   outside_at_start_.assign(bodies.begin() + members_, bodies.end());
@@ -94,13 +92,12 @@ void GroupSystem::set_moving(double time, std::vector<BodyKinematics>& bodies) c
 void GroupSystem::place_outside(int slot, double time, BodyKinematics& body) const {
   // the arc ends before a corner at its end: velocities from the left there
   const double inside = time < end_ ? time : std::nextafter(end_, end_ - 1);
-  const Motion& motion = *outside_[index(slot - members_)];
-  const Pose pose = motion.pose(time);
-  Vec3 v, w;
-  motion.velocity(inside, v, w);
+  const Trajectory& trajectory = *outside_[index(slot - members_)];
+  const Pose pose = trajectory.pose(time);
+  const Twist rates = trajectory.twist(inside);
   vec(body.x) = pose.p;
-  vec(body.v) = v;
-  vec(body.w) = w;
+  vec(body.v) = rates.v;
+  vec(body.w) = rates.w;
   store_rotation(pose.q.toRotationMatrix(), body.R);
 }
 

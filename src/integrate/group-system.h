@@ -90,7 +90,7 @@ class GroupSystem {
   int members_;
   std::size_t size_;
   double end_;
-  std::vector<MotionPtr> outside_;
+  std::vector<TrajectoryPtr> outside_;
   std::vector<BodyKinematics> outside_at_start_;
   std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;

@@ -12,19 +12,15 @@ namespace tw {
 namespace {
 
 // A stepped arc counts as far as it was computed, and every step as an integration, once a group.
-double count_steps(Counters& counters, const State& state) {
-  const GroupArc& arc = *state.group->arc;
-  if (state.member == 0) {
-    counters.integrations += arc.counts().steps;
-    counters.implicit_steps += arc.counts().steps;
-    counters.rejected_steps += arc.counts().rejected;
-    counters.factorizations += arc.counts().factorizations;
-    counters.force_evaluations += arc.counts().evaluations;
-  }
-  return arc.reached() - arc.start().time;
+double count_steps(Counters& counters, const Trajectory& trajectory) {
+  const Effort effort = trajectory.effort();
+  counters.integrations += effort.steps;
+  counters.implicit_steps += effort.steps;
+  counters.rejected_steps += effort.rejected;
+  counters.factorizations += effort.factorizations;
+  counters.force_evaluations += effort.evaluations;
+  return effort.length;
 }
-
-bool stepped(const State& state) { return state.group && !state.group->at_rest; }
 
 }  // namespace
 
@@ -38,7 +34,7 @@ StateGraph::OnRelease count_discarded(Simulation& simulation) {
     double length = std::max(0.0, end - state.key.time);
     // a body at rest claims for ever
     if (!std::isfinite(length)) length = 0;
-    if (stepped(state)) length = count_steps(counters, state);
+    if (state.trajectory().stepped()) length = count_steps(counters, state.trajectory());
     counters.integration_length += length;
     counters.rollback_length += length;
     counters.deepest_rollback = std::max(counters.deepest_rollback, length);
@@ -52,8 +48,8 @@ StateGraph::OnRelease count_used(Simulation& simulation) {
     const State* next = state.next;
     while (next && !next->starts_arc()) next = next->next;
     if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
-    if (stepped(state))
-      counters.integration_length += count_steps(counters, state);
+    if (state.trajectory().stepped())
+      counters.integration_length += count_steps(counters, state.trajectory());
     else if (next)
       counters.integration_length += next->key.time - state.key.time;
   };

@@ -1,11 +1,13 @@
 // Bodies that come and go between runs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/bodies.h"
+#include "integrate/standing.h"
 
 #include <algorithm>
 
 #include "base/hash.h"
 #include "collision/separation.h"
+#include "integrate/standing.h"
 #include "kernel/active-pairs.h"
 #include "kernel/arc-accounts.h"
 #include "kernel/callback-book.h"
@@ -93,7 +95,7 @@ void Bodies::require_no_overlap(const Body& a, const Body& b) const {
   if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !sim_.scene.may_collide(a, b))
     return;
   const auto frame = [&](const Body& body) {
-    return frame_at(body, *state_at(sim_, body.id(), sim_.present.time), sim_.present.time);
+    return state_at(sim_, body.id(), sim_.present.time)->trajectory().frame(sim_.present.time);
   };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
   const double allowed = start_depth * std::min(a.least_width, b.least_width);
@@ -110,8 +112,8 @@ void Bodies::require_no_overlap(const Body& a, const Body& b) const {
 void Bodies::check_overlaps(const Body& body) {
   if (!body.shape_P) return;
   if (!body.unbounded) {
-    Aabb box = swept_bounds(body, *state_at(sim_, body.id(), sim_.present.time), sim_.present.time,
-                            sim_.present.time);
+    Aabb box = swept_bounds(body, state_at(sim_, body.id(), sim_.present.time)->trajectory(),
+                            sim_.present.time, sim_.present.time);
     box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
     sim_.grid.place(body.id(), box, body.fixed());
     sim_.grid.overlapping(body.id(),
@@ -168,10 +170,11 @@ void Bodies::bury(Body& body, const BodyState& last) {
   body.shape_P = nullptr;
   body.unbounded = body.is_fixed_plane = false;
   body.X_BP = body.X_PB = Pose();
-  body.motion = make_fixed_motion({last.position, last.orientation});
+  body.motion = make_standing({last.position, last.orientation});
   State* state = graph.append(body.process, {present.time, 0, KeyKind::birth, body.id()});
   state->arc_key = state->key;
   state->arc_time = present.time;
+  state->follows = body.motion;
   state->committed = present.begun;
   sim_.process(body).claim = present.begun ? last_key : state->key;
 }

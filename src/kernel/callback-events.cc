@@ -40,7 +40,7 @@ Progress CallbackEvents::process(std::uint32_t number) {
   if (!groups_.await(region_of(sim_.before(key), struck, false), key)) return Progress::try_again;
   if (!(callback.next == key)) return Progress::try_again;
 
-  // drafts that carry the old arcs, and views of them
+  // successors that carry the old arcs, and views of them
   std::vector<Successor> successors;
   for (const BodyId id : callback.def.targets)
     successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));

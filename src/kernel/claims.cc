@@ -50,7 +50,7 @@ Claims::Claims(Simulation& simulation, ActivePairs& pairs, PairChecks& checks,
 void Claims::schedule_advance(const Body& body) {
   // a member waits for the group check where its arc ends
   if (body.fixed() ||
-      sim_.process(body).claim.time >= natural_end(*sim_.graph.tail(body.process))) {
+      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->trajectory().end()) {
     sim_.queue.withdraw(sim_.process(body).advance);
     return;
   }
@@ -84,7 +84,7 @@ void Claims::withdraw(ProcessId id) {
 void Claims::schedule_group_check(ProcessId id) {
   Process& waiting = sim_.processes[number(id)];
   const State* tail = sim_.graph.tail(id);
-  const double end = tail && !tail->error ? natural_end(*tail) : never;
+  const double end = tail && !tail->error ? tail->trajectory().end() : never;
   if (end == never) {
     sim_.queue.withdraw(waiting.group_check);
     return;
@@ -106,17 +106,19 @@ double Claims::window_end(const Body& body) const {
   const double start = sim_.process(body).claim.time;
   const double limit = sim_.policy->may_reach(sim_.queue, sim_.process(body));
   const double least = std::nextafter(start, never);
-  if (tail.group) return std::max(std::min(natural_end(tail), limit), least);
+  const Trajectory& trajectory = tail.trajectory();
+  const Parabola* path = trajectory.ballistic();
+  if (!path && !body.kinematic()) return std::max(std::min(trajectory.end(), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, sim_.process(body).lonely_claims - patience));
   const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
-  if (body.dynamic()) {
-    speed = (tail.v + (start - tail.arc_time) * tail.acceleration).norm();
-    pull = tail.acceleration.norm();
+  if (path) {
+    speed = path->velocity(start).norm();
+    pull = path->acceleration.norm();
   } else {
-    speed = body.motion->speed_bound(start, start + longest_window);
+    speed = trajectory.bounds(start, start + longest_window).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
   double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
@@ -136,9 +138,9 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   for (; state; state = state->next) {
     const double from = std::max(state->key.time, sim_.present.gvt);
     const double to = state->next ? std::min(state->next->key.time, end) : end;
-    if (to >= from) box.add(swept_bounds(body, *state, from, to));
+    if (to >= from) box.add(swept_bounds(body, state->trajectory(), from, to));
   }
-  if (const State& tail = *sim_.graph.tail(body.process); tail.group && !tail.group->at_rest)
+  if (const State& tail = *sim_.graph.tail(body.process); tail.trajectory().stepped())
     box.grow(answer::contact_margin * body.least_width);
   box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
@@ -151,7 +153,7 @@ void Claims::claim_window(const Body& body) {
   }
   const Key before = sim_.process(body).claim;
   if (sim_.graph.tail(body.process)->error ||
-      sim_.process(body).claim.time >= natural_end(*sim_.graph.tail(body.process))) {
+      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->trajectory().end()) {
     // a stopped process moves no further, a member of a group not past the next check
     sim_.queue.withdraw(sim_.process(body).advance);
     return;

@@ -118,7 +118,7 @@ void Commit::commit_state(State& state) {
   if (sim_.options.hash && state.changed) {
     const Body& body = sim_.body_of(state.process);
     HistorySum& history = sim_.present.history;
-    history.sum += state_hash(body, state.key, evaluate(body, state, state.key.time), state);
+    history.sum += state_hash(body, state.key, state.trajectory().at(state.key.time), state);
     ++history.count;
   }
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/motion.h"
 #include "geometry/shape.h"
+#include "integrate/trajectory.h"
 #include "kernel/callback.h"
 
 namespace tw {
@@ -26,7 +26,7 @@ struct BodyDef {
   Vec3 velocity = Vec3::Zero();         // of the centre of mass
   Vec3 angular_velocity = Vec3::Zero();
   bool fixed = false;
-  MotionPtr motion;  // makes the body kinematic; excludes `fixed`
+  TrajectoryPtr motion;  // makes the body kinematic; excludes `fixed`
   std::string material;
   SlotsPtr slots;             // null: no slots
   std::optional<Vec3> color;  // sRGB 0..1

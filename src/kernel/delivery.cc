@@ -104,7 +104,7 @@ void Delivery::deliver_frame(Sink& record) {
     if (body->fixed()) continue;
     const State* state = sim_.graph.last_at_or_before_time(body->process, frame_time);
     if (!state) continue;
-    poses.push_back({body->id(), body_state(*body, evaluate(*body, *state, frame_time))});
+    poses.push_back({body->id(), body_state(*body, state->trajectory().at(frame_time))});
   }
   double& deepest = sim_.present.counters.max_penetration;
   deepest = std::max(deepest, deepest_contact(sim_.scene, states_at(sim_, frame_time), frame_time));

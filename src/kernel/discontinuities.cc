@@ -44,7 +44,8 @@ Discontinuities::Discontinuities(Simulation& simulation, ActivePairs& pairs, Pai
       claims_(claims),
       undo_redo_(simulation) {}
 
-// An error stops whole groups: adds the fellows of the drafts, and gives all the first one's error.
+// An error stops whole groups: adds the group mates of the successors, and gives all the first
+// one's error.
 void Discontinuities::stop_group_mates(const Key& key, std::vector<Successor>& successors) const {
   const std::exception_ptr error = successors.front().data.error;
   std::vector<ProcessId> stopped;
@@ -59,7 +60,7 @@ void Discontinuities::stop_group_mates(const Key& key, std::vector<Successor>& s
   for (Successor& successor : successors) successor.data.error = error;
 }
 
-// The drafts give their slots, collisions and errors away.
+// The successors give their slots, collisions and errors away.
 void Discontinuities::append(const Key& key, std::vector<Successor>& successors) {
   for (Successor& successor : successors) check_finite(successor);
   const auto stopped = std::find_if(successors.begin(), successors.end(),
@@ -77,6 +78,8 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
       successor.data.arc_key = key;
       successor.role = Role::new_arc;
     }
+    const bool flies = successor.starts_arc() && successor.body->dynamic() && !successor.data.group;
+    if (flies) let_fly(*successor.body, successor.data);
     State* state = sim_.graph.append(successor.process(), key);
     static_cast<StateData&>(*state) = std::move(successor.data);
     ring.push_back(state);
@@ -84,7 +87,7 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
     TW_ASSERT(!state->group || state->group->key == key || state->error,
               "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
     // those of moving groups are counted by steps, when they are done with
-    if (!state->group || state->group->at_rest) ++counters_.integrations;
+    if (!state->trajectory().stepped()) ++counters_.integrations;
   }
   sim_.graph.close_ring(ring);
 }

@@ -57,6 +57,7 @@ void Editing::set_gravity(const Vec3& gravity) {
     if (body->dynamic() && newborn(body->id())) {
       State* tail = sim_.graph.tail(body->process);
       tail->acceleration = gravity + tail->force / body->mass;
+      let_fly(*body, *tail);
     }
   edit_together([&](BodyId id) { return !newborn(id); },
                 [&](Successor& successor) {

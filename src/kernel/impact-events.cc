@@ -70,7 +70,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
   const auto [soft, collision] =
       compute_impact(sim_.scene, sim_.surroundings, key, wanted, successors[0], successors[1]);
 
-  // callbacks see the drafts; their errors stop the receivers, speculatively
+  // callbacks see the successors; their errors stop the receivers, speculatively
   if (collision && collision->kind == CollisionKind::collision && !successors[0].data.error &&
       !callbacks_.empty()) {
     try {

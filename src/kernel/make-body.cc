@@ -1,6 +1,7 @@
 // From how a body comes into a world to the body and the state it is born in.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/make-body.h"
+#include "integrate/standing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "base/limits.h"
 #include "dynamics/placed-body.h"
 #include "geometry/mass-properties.h"
+#include "integrate/standing.h"
 #include "kernel/state-view.h"
 #include "timeline/key.h"
 
@@ -66,9 +68,8 @@ void resolve_shape(Body& body, const BodyDef& def) {
     body.plane_normal = frame.R * part.normal;
     body.plane_offset = part.offset + body.plane_normal.dot(frame.p);
   }
-  TW_REQUIRE(
-      !body.unbounded || !body.motion || body.motion->angular_speed_bound(-never, never) == 0,
-      body.info.name + " is a half-space that turns; expected a motion without rotation");
+  TW_REQUIRE(!body.unbounded || !body.motion || body.motion->bounds(-never, never).turn == 0,
+             body.info.name + " is a half-space that turns; expected a motion without rotation");
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ std::unique_ptr<Body> make_body(const BodyDef& def, BodyId id, const std::string
   if (def.fixed || def.motion) {
     body->info.kind = def.fixed ? BodyKind::fixed : BodyKind::kinematic;
     body->motion = def.motion;
-    if (def.fixed) body->motion = make_fixed_motion({def.position, def.orientation.normalized()});
+    if (def.fixed) body->motion = make_standing({def.position, def.orientation.normalized()});
   } else {
     const RigidInertia inertia = resolve_inertia(
         {def.density, def.mass, def.inertia, def.center_of_mass}, def.shape.get(), name);
@@ -101,13 +102,17 @@ void make_birth(const Body& body, const BodyDef& def, const Vec3& gravity, State
   state.arc_key = state.key;
   state.arc_time = state.key.time;
   state.slots = def.slots;
-  if (!body.dynamic()) return;
+  if (!body.dynamic()) {
+    state.follows = body.motion;
+    return;
+  }
   const Quat q = def.orientation.normalized();
   state.q = q * body.X_BP.q;
   state.x = def.position + q * body.X_BP.p;
   state.v = def.velocity;
   state.L = angular_momentum(body, state.q, def.angular_velocity);
   state.acceleration = gravity;
+  let_fly(body, state);
 }
 
 }  // namespace tw

@@ -38,9 +38,7 @@ double grid_floor(double t) { return std::floor(t / check_grid) * check_grid; }
 double grid_ceil(double t) { return std::ceil(t / check_grid) * check_grid; }
 double grid_after(double t) { return (std::floor(t / check_grid) + 1) * check_grid; }
 
-bool moves_in_group(const State& state) {
-  return state.group && !state.group->at_rest && !state.error;
-}
+bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
 
 }  // namespace
 

@@ -27,7 +27,7 @@ StateOf states_at(const Simulation& simulation, double when) {
 }
 
 PoseTwist point_at(const Simulation& simulation, BodyId id, double when) {
-  return evaluate(simulation.body(id), *state_at(simulation, id, when), when);
+  return state_at(simulation, id, when)->trajectory().at(when);
 }
 
 double total_energy(const Simulation& simulation, double when) {
@@ -72,7 +72,7 @@ std::string history_hash(const Simulation& simulation) {
     if (body->info.removed) continue;
     const State* state = state_at(simulation, body->id(), present.time);
     const Key end{present.time, 0, KeyKind::step, body->id()};
-    sum += state_hash(*body, end, evaluate(*body, *state, present.time), *state);
+    sum += state_hash(*body, end, state->trajectory().at(present.time), *state);
   }
   std::string bytes;
   for (const std::uint64_t word : {sum, present.history.count})

@@ -1,4 +1,4 @@
-// What callbacks and edits see of a draft, and change in it.
+// What callbacks and edits see of a successor, and change in it.
 //
 // Source: the paper, section 4.6.
 //

@@ -50,13 +50,11 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       while (next && !next->starts_arc()) next = next->next;
       const double until = std::min(present.time, next ? next->key.time : present.time);
       kinematic_work += kinematic_work_of(simulation, *s, until);
-      if (s->group && !s->group->at_rest) {
-        const GroupArc& arc = *s->group->arc;
-        length += arc.reached() - arc.start().time;
-        if (s->member == 0) {
-          steps += arc.counts().steps;
-          factorizations += arc.counts().factorizations;
-        }
+      if (s->trajectory().stepped()) {
+        const Effort effort = s->trajectory().effort();
+        length += effort.length;
+        steps += effort.steps;
+        factorizations += effort.factorizations;
         continue;
       }
       length += until - s->key.time;

@@ -13,6 +13,16 @@
 
 namespace tw {
 
+namespace {
+
+bool flies_as_it_began(const State& state) {
+  const Parabola* path = state.trajectory().ballistic();
+  return path && path->start == state.arc_time && path->x == state.x && path->v == state.v &&
+         path->acceleration == state.acceleration;
+}
+
+}  // namespace
+
 std::string validate_state_graph(const Simulation& simulation) {
   if (std::string broken = simulation.graph.validate(); !broken.empty()) return broken;
   for (const auto& body : simulation.scene.bodies) {
@@ -20,6 +30,8 @@ std::string validate_state_graph(const Simulation& simulation) {
       // a rollback left nothing behind a stopped process
       if (s->error && s->next) return "states after an error: " + body->info.name;
       if (s->arc_time > s->key.time) return "arc starts after its state: " + show(s->key);
+      if (body->dynamic() && !s->group && !s->error && !flies_as_it_began(*s))
+        return "flight of another state: " + body->info.name + " " + show(s->key);
       if (s->key.time < simulation.present.gvt && !s->committed && !s->error)
         return "state before GVT not committed: " + body->info.name + ", " + show(s->key);
       if (s->committed && s->key.time > simulation.present.gvt)
@@ -67,7 +79,10 @@ std::string validate_pairs(const Simulation& simulation, const ActivePairs& pair
     const std::string where =
         simulation.body(pair.a).info.name + " and " + simulation.body(pair.b).info.name;
     if (!(pair.a < pair.b)) return "ids out of order: " + where;
-    if (pairs.of(pair.a)[pair.place_a] != i || pairs.of(pair.b)[pair.place_b] != i)
+    const auto lists = [&](BodyId body, std::uint32_t place) {
+      return place < pairs.of(body).size() && pairs.of(body)[place] == i;
+    };
+    if (!lists(pair.a, pair.place_a) || !lists(pair.b, pair.place_b))
       return "pair not in its bodies' lists: " + where;
     if (pair.safe_time() < simulation.present.gvt) return "safe time before GVT: " + where;
     if (pair.pending) {
@@ -96,7 +111,7 @@ std::string validate_residences(const Simulation& simulation) {
       if (s->member >= group.members.size() || group.members[s->member] != body->process)
         return "not a member of its group: " + where;
       if (s->arc_key != group.key) return "arc and group differ in key: " + where;
-      if (natural_end(*s) < s->key.time) return "state past a group check: " + where;
+      if (s->trajectory().end() < s->key.time) return "state past a group check: " + where;
       // once a group: this runs after every event
       if (s->starts_arc() && s->member == 0)
         for (const ContactPair& pair : group.pairs)
@@ -133,7 +148,7 @@ std::string validate_claims(const Simulation& simulation, const Claims& claims) 
       if (!std::isfinite(t) || t < gvt) continue;
       const State* s = simulation.graph.last_at_or_before_time(body->process, t);
       if (!s || s->error || (tail->error && t >= tail->key.time)) continue;
-      const Aabb there = body->shape_P->bounds(frame_at(*body, *s, t));
+      const Aabb there = body->shape_P->bounds(s->trajectory().frame(t));
       const Aabb& box = simulation.grid.box(body->id());
       if (!box.contains(there.lo) || !box.contains(there.hi))
         return "box does not hold " + body->info.name + " at " + show(t) + " s";

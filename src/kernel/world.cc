@@ -155,7 +155,7 @@ std::vector<QueuedState> World::state_queue(BodyId id) const {
   const Body& body = kernel_->simulation.body(id);
   std::vector<QueuedState> result;
   for (const State* s = kernel_->simulation.graph.head(body.process); s; s = s->next)
-    result.push_back({s->key, s->committed, body_state(body, evaluate(body, *s, s->key.time))});
+    result.push_back({s->key, s->committed, body_state(body, s->trajectory().at(s->key.time))});
   return result;
 }
 double World::total_energy() const {

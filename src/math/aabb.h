@@ -13,6 +13,12 @@ struct Aabb {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
 
+  static Aabb everywhere() {
+    const double infinite = std::numeric_limits<double>::infinity();
+    return {Vec3::Constant(-infinite), Vec3::Constant(infinite)};
+  }
+  // Some of it lies infinitely far.
+  bool unbounded() const { return !is_finite(lo) || !is_finite(hi); }
   bool empty() const { return !(lo.x() <= hi.x()); }
   void add(const Vec3& point) {
     lo = lo.cwiseMin(point);

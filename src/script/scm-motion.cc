@@ -129,21 +129,23 @@ Pose ScmMotion::pose(double time) const {
   return result;
 }
 
-void ScmMotion::velocity(double time, Vec3& v, Vec3& w) const {
+Twist ScmMotion::twist(double time) const {
   const Pose before = call(time - difference_step), after = call(time + difference_step);
-  v = (after.p - before.p) / (2 * difference_step);
-  w = turn_between(before.q, after.q) / (2 * difference_step);
+  return {(after.p - before.p) / (2 * difference_step),
+          turn_between(before.q, after.q) / (2 * difference_step)};
 }
 
-double ScmMotion::speed_bound(double, double) const { return origin_speed_; }
-
-double ScmMotion::angular_speed_bound(double, double) const { return angular_speed_; }
-
-Aabb ScmMotion::path_bounds(double from, double to) const {
-  Aabb box;
-  box.add(pose(0.5 * (from + to)).p);
-  box.grow(0.5 * origin_speed_ * (to - from));
-  return box;
+MotionBounds ScmMotion::bounds(double from, double to) const {
+  MotionBounds bounds;
+  bounds.speed = origin_speed_;
+  bounds.acceleration = bounds.path = Aabb::everywhere();
+  bounds.turn = angular_speed_;
+  bounds.valid_until = to;
+  if (to == never) return bounds;
+  bounds.path = {};
+  bounds.path.add(pose(0.5 * (from + to)).p);
+  bounds.path.grow(0.5 * origin_speed_ * (to - from));
+  return bounds;
 }
 
 TW_PRIMITIVE(procedure_motion, "%procedure-motion", (SCM procedure, SCM max_speed, SCM shape),

@@ -11,22 +11,20 @@
 
 #include <libguile.h>
 
-#include "dynamics/motion.h"
 #include "geometry/shape.h"
+#include "integrate/trajectory.h"
 #include "script/live.h"
 
 namespace tw {
 
-class ScmMotion : public Motion, Live<LiveKind::motion> {
+class ScmMotion : public Trajectory, Live<LiveKind::motion> {
  public:
   // `shape` may be null; else it must be bounded.  max_speed in m/s, finite, not negative.
   ScmMotion(SCM procedure, double max_speed, ShapePtr shape);
 
   Pose pose(double time) const override;
-  void velocity(double time, Vec3& v, Vec3& w) const override;
-  double speed_bound(double from, double to) const override;
-  double angular_speed_bound(double from, double to) const override;
-  Aabb path_bounds(double from, double to) const override;
+  Twist twist(double time) const override;
+  MotionBounds bounds(double from, double to) const override;
 
  private:
   Pose call(double time) const;

@@ -19,7 +19,7 @@ struct CheckpointBox : Live<LiveKind::checkpoint> {
   std::shared_ptr<const Checkpoint> checkpoint;
 };
 struct MotionBox : Live<LiveKind::motion> {
-  MotionPtr motion;
+  TrajectoryPtr motion;
 };
 
 template <class Box>
@@ -148,13 +148,13 @@ SCM from_shape(ShapePtr shape) {
 
 bool is_motion(SCM object) { return has_type(object, motion_type); }
 
-MotionPtr to_motion(SCM object, const char* name) {
+TrajectoryPtr to_motion(SCM object, const char* name) {
   if (!is_motion(object))
     throw BadValue{name, object, "keyframes, as (keyframes '((0 #(0 0 0)) ...)) returns"};
   return static_cast<MotionBox*>(field(object, 0))->motion;
 }
 
-SCM from_motion(MotionPtr motion, SCM kept) {
+SCM from_motion(TrajectoryPtr motion, SCM kept) {
   auto* box = new MotionBox;
   box->motion = std::move(motion);
   return scm_make_foreign_object_2(motion_type, box, SCM_UNPACK_POINTER(kept));

@@ -14,8 +14,8 @@
 
 #include <libguile.h>
 
-#include "dynamics/motion.h"
 #include "geometry/shape.h"
+#include "integrate/trajectory.h"
 #include "kernel/callback.h"
 #include "kernel/checkpoint.h"
 #include "kernel/world.h"
@@ -69,9 +69,9 @@ bool is_shape(SCM object);
 ShapePtr to_shape(SCM object, const char* name);
 SCM from_shape(ShapePtr shape);
 bool is_motion(SCM object);
-MotionPtr to_motion(SCM object, const char* name);
+TrajectoryPtr to_motion(SCM object, const char* name);
 // `kept`: a Scheme object that the motion needs.
-SCM from_motion(MotionPtr motion, SCM kept = SCM_BOOL_F);
+SCM from_motion(TrajectoryPtr motion, SCM kept = SCM_BOOL_F);
 
 // ---- collisions ----
 bool is_collision(SCM object);

@@ -12,8 +12,9 @@
 
 #include <compare>
 #include <cstdint>
-#include <limits>
 #include <string>
+
+#include "base/never.h"
 
 namespace tw {
 
@@ -56,7 +57,6 @@ inline bool is_edit(const Key& key) {
   return key.kind == KeyKind::edit || key.kind == KeyKind::early_edit;
 }
 
-inline constexpr double never = std::numeric_limits<double>::infinity();
 // After every key.
 inline constexpr Key last_key{never, 0xffffffffu, KeyKind::edit, ~0ull};
 

@@ -4,7 +4,8 @@
 // ring: so a body's residence is its own last state, and rollback needs no links but rings
 // (doc/architecture.md).
 //
-// The arc is a function of the state alone.  A *record* (a callback that changed no motion) does
+// The arc is a function of the state alone: free flight, kept by value, or whatever else a body may
+// follow (integrate/trajectory.h).  A *record* (a callback that changed no motion) does
 // not start an arc of its own: it carries its predecessor's along, origin and all, so that reading
 // a body never moves a bit of its motion.
 //
@@ -19,8 +20,7 @@
 #include <memory>
 
 #include "dynamics/ids.h"
-#include "groups/group.h"
-#include "integrate/free-rotation.h"
+#include "integrate/flight.h"
 #include "math/vec.h"
 #include "timeline/collision.h"
 #include "timeline/key.h"
@@ -28,6 +28,8 @@
 #include "timeline/tally.h"
 
 namespace tw {
+
+struct Group;
 
 // A run of impacts in quick succession (kernel.md, "Soft impacts"): rolls back with its state.
 struct ImpactRun {
@@ -38,9 +40,6 @@ struct ImpactRun {
 // All of a state but its place in the graph.  What every prediction reads stands last, beside the
 // keys and links of State: a few cache lines instead of all.
 struct StateData {
-  mutable FreeRotation rotation;  // of the arc, made from q and L when first needed
-  mutable bool rotation_ready = false;
-
   // what is copied from state to state
   std::uint64_t random = 0;
   ImpactRun impacts;
@@ -56,7 +55,7 @@ struct StateData {
   std::shared_ptr<Group> group;
   std::uint32_t member = 0;
 
-  // the arc
+  // how the arc begins
   Vec3 L = Vec3::Zero();  // at arc_time, and so on
   Quat q = Quat::Identity();
   Vec3 force = Vec3::Zero();         // applied, constant along the arc
@@ -66,6 +65,13 @@ struct StateData {
   double arc_time = 0;       // origin of the arc, s
   Key arc_key;               // key of the discontinuity that started the arc
   std::exception_ptr error;  // speculative: raised when GVT passes it; stops the process
+
+  // the arc itself, made when the state enters the graph and never changed: what it follows; null:
+  // it flies
+  TrajectoryPtr follows;
+  Flight flight;
+
+  const Trajectory& trajectory() const { return follows ? *follows : flight; }
 };
 
 struct State : StateData {

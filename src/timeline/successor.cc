@@ -14,14 +14,18 @@ void start_new_arc(Successor& successor, const Key& key) {
   d.v = successor.point.v;
   // of an isolated body it is constant
   if (d.group) d.L = angular_momentum(*successor.body, d.q, successor.point.w);
-  d.rotation_ready = false;
+}
+
+void let_fly(const Body& body, StateData& data) {
+  data.follows = nullptr;
+  data.flight = Flight(FreeRotation(body.moments, data.q, data.L), body.turn_excess,
+                       {data.arc_time, data.x, data.v, data.acceleration});
 }
 
 void take_velocities(Successor& successor, const ImpulseSlot& after) {
   successor.data.v = successor.point.v = after.v;
   successor.point.w = after.w;
   successor.data.L = angular_momentum(*successor.body, successor.point.q, after.w);
-  successor.data.rotation_ready = false;
 }
 
 }  // namespace tw

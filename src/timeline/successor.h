@@ -36,4 +36,7 @@ void start_new_arc(Successor& successor, const Key& key);
 // Its motion is now what impulses made of it.
 void take_velocities(Successor& successor, const ImpulseSlot& after);
 
+// Gives an isolated dynamic body its flight, from how its arc begins: when the state is published.
+void let_fly(const Body& body, StateData& data);
+
 }  // namespace tw

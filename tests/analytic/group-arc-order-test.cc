@@ -11,19 +11,24 @@ namespace {
 using namespace group_scenes;
 
 // A floor that shakes and tilts.
-class Shake : public Motion {
+class Shake : public Trajectory {
  public:
   Pose pose(double t) const override {
     return {Vec3(0.02 * std::sin(9 * t), 0, 0.002 * std::sin(7 * t)),
             rotation_by(Vec3(0, 0.1 * std::sin(5 * t), 0))};
   }
-  void velocity(double t, Vec3& v, Vec3& w) const override {
-    v = Vec3(0.18 * std::cos(9 * t), 0, 0.014 * std::cos(7 * t));
-    w = Vec3(0, 0.5 * std::cos(5 * t), 0);
+  Twist twist(double t) const override {
+    return {Vec3(0.18 * std::cos(9 * t), 0, 0.014 * std::cos(7 * t)),
+            Vec3(0, 0.5 * std::cos(5 * t), 0)};
   }
-  double speed_bound(double, double) const override { return 0.2; }
-  double angular_speed_bound(double, double) const override { return 0.5; }
-  Aabb path_bounds(double, double) const override { return {}; }
+  MotionBounds bounds(double, double to) const override {
+    MotionBounds bounds;
+    bounds.path = bounds.acceleration = Aabb::everywhere();
+    bounds.speed = 0.2;
+    bounds.turn = 0.5;
+    bounds.valid_until = to;
+    return bounds;
+  }
 };
 
 // One arc a step, its state handed to the next.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "integrate/group-arc.h"
+#include "integrate/standing.h"
 
 namespace tw::group_scenes {
 
@@ -30,7 +31,7 @@ struct CompleteArc : GroupArc {
 inline GroupStart on_the_ground(double end) {
   GroupStart start;
   start.end = end;
-  start.outside = {make_fixed_motion({})};
+  start.outside = {make_standing({})};
   return start;
 }
 

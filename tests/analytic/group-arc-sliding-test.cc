@@ -121,16 +121,18 @@ TEST(GroupArc, a_rolling_ball_keeps_its_speed_and_height) {
 
 TEST(GroupArc, a_block_on_an_accelerating_belt_goes_with_it) {
   // s = t^2/2 for 1 s
-  class Belt : public Motion {
+  class Belt : public Trajectory {
    public:
     Pose pose(double t) const override { return {Vec3(0.5 * t * t, 0, 0), Quat::Identity()}; }
-    void velocity(double t, Vec3& v, Vec3& w) const override {
-      v = Vec3(t, 0, 0);
-      w = Vec3::Zero();
+    Twist twist(double t) const override { return {Vec3(t, 0, 0), Vec3::Zero()}; }
+    MotionBounds bounds(double, double to) const override {
+      MotionBounds bounds;
+      bounds.path = bounds.acceleration = Aabb::everywhere();
+      bounds.speed = to;
+      bounds.turn = 0;
+      bounds.valid_until = to;
+      return bounds;
     }
-    double speed_bound(double, double to) const override { return to; }
-    double angular_speed_bound(double, double) const override { return 0; }
-    Aabb path_bounds(double, double) const override { return {}; }
   };
   GroupStart start = cube_on_slope(0, 0.5, 0.2, 1);
   start.outside = {std::make_shared<Belt>()};

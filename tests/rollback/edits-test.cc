@@ -155,5 +155,16 @@ TEST(Edits, fixed_bodies_cannot_be_moved) {
   EXPECT_EQ(world.state(ball).velocity, Vec3::Zero());
 }
 
+// No discontinuity is needed where nothing has begun, yet the arc is another.
+TEST(Edits, gravity_that_is_set_before_the_first_run_holds_for_bodies_that_are_there) {
+  World world;
+  world.set_check(true);
+  const BodyId ball = add_ball(world, 1, {0, 0, 3}, {1, 0, 0});
+  world.set_gravity({0, 0, -10});
+  world.advance(0.2);
+  EXPECT_LT((world.state(ball).position - Vec3(0.2, 0, 2.8)).norm(), 1e-14);
+  EXPECT_LT((world.state(ball).velocity - Vec3(1, 0, -2)).norm(), 1e-14);
+}
+
 }  // namespace
 }  // namespace tw::test

@@ -30,6 +30,7 @@ class Validators : public testing::Test {
   }
   KernelTest access() { return KernelTest(world_); }
   Kernel& kernel() { return world_.kernel(); }
+  Simulation& simulation() { return kernel().simulation; }
 
   World world_;
   BodyId lying_ = 0, flying_ = 0, other_ = 0;
@@ -37,59 +38,62 @@ class Validators : public testing::Test {
 
 // Boxes hold whole bodies: one that holds the centre and all but a corner is not enough.
 TEST_F(Validators, of_claims_find_a_box_that_misses_a_corner) {
-  EXPECT_EQ(kernel().validate_claims(), "");
-  const Aabb box = kernel().grid.box(flying_);
+  EXPECT_EQ(validate_claims(simulation(), kernel().claims), "");
+  const Aabb box = simulation().grid.box(flying_);
   Aabb narrow = box;
   narrow.lo.z() += 0.3;
-  kernel().grid.place(flying_, narrow, false);
-  EXPECT_NE(kernel().validate_claims().find("box does not hold flying"), std::string::npos)
-      << kernel().validate_claims();
-  kernel().grid.place(flying_, box, false);
-  EXPECT_EQ(kernel().validate_claims(), "");
+  simulation().grid.place(flying_, narrow, false);
+  EXPECT_NE(validate_claims(simulation(), kernel().claims).find("box does not hold flying"),
+            std::string::npos)
+      << validate_claims(simulation(), kernel().claims);
+  simulation().grid.place(flying_, box, false);
+  EXPECT_EQ(validate_claims(simulation(), kernel().claims), "");
 }
 
 TEST_F(Validators, of_residences_find_a_member_in_the_wrong_place) {
-  EXPECT_EQ(kernel().validate_residences(), "");
+  EXPECT_EQ(validate_residences(simulation()), "");
   State& state = access().tail_of(lying_);
   ASSERT_TRUE(state.group);
   ++state.member;
-  EXPECT_NE(kernel().validate_residences().find("not a member of its group: lying"),
+  EXPECT_NE(validate_residences(simulation()).find("not a member of its group: lying"),
             std::string::npos);
   --state.member;
-  EXPECT_EQ(kernel().validate_residences(), "");
+  EXPECT_EQ(validate_residences(simulation()), "");
 }
 
 TEST_F(Validators, of_the_graph_find_a_state_that_was_committed_too_early) {
-  EXPECT_EQ(kernel().validate_state_graph(), "");
+  EXPECT_EQ(validate_state_graph(simulation()), "");
   State& tail = access().tail_of(lying_);
-  ASSERT_GT(tail.key.time, kernel().gvt);
+  ASSERT_GT(tail.key.time, simulation().present.gvt);
   for (State* state = &tail; state && !state->committed; state = state->prev)
     state->committed = true;
-  EXPECT_NE(kernel().validate_state_graph().find("committed after GVT"), std::string::npos);
+  EXPECT_NE(validate_state_graph(simulation()).find("committed after GVT"), std::string::npos);
 }
 
 TEST_F(Validators, of_pairs_find_a_record_that_its_bodies_do_not_list) {
-  EXPECT_EQ(kernel().validate_pairs(), "");
-  const auto pair = std::find_if(kernel().pairs.begin(), kernel().pairs.end(),
-                                 [](const Pair& p) { return p.live; });
-  ASSERT_NE(pair, kernel().pairs.end());
-  std::swap(pair->a, pair->b);
-  EXPECT_NE(kernel().validate_pairs().find("ids out of order"), std::string::npos);
-  std::swap(pair->a, pair->b);
-  std::vector<std::uint32_t>& list = kernel().bodies[pair->b]->pairs;
-  const std::uint32_t number = list[pair->place_b];
-  list[pair->place_b] = number + 1;
-  EXPECT_NE(kernel().validate_pairs().find("pair not in its bodies' lists"), std::string::npos);
-  list[pair->place_b] = number;
+  EXPECT_EQ(validate_pairs(simulation(), kernel().pairs), "");
+  ActivePairs& pairs = kernel().pairs;
+  std::uint32_t index = 0;
+  while (index < pairs.size() && !pairs[index].live) ++index;
+  ASSERT_LT(index, pairs.size());
+  Pair& pair = pairs[index];
+  std::swap(pair.a, pair.b);
+  EXPECT_NE(validate_pairs(simulation(), pairs).find("ids out of order"), std::string::npos);
+  std::swap(pair.a, pair.b);
+  ++pair.place_b;
+  EXPECT_NE(validate_pairs(simulation(), pairs).find("pair not in its bodies' lists"),
+            std::string::npos);
+  --pair.place_b;
+  EXPECT_EQ(validate_pairs(simulation(), pairs), "");
 }
 
 TEST_F(Validators, of_the_queue_find_an_event_of_nobody) {
-  EXPECT_EQ(kernel().validate_event_queue(), "");
-  Process& process = kernel().process(*kernel().bodies[flying_]);
+  EXPECT_EQ(access().validate_event_queue(), "");
+  Process& process = simulation().process(simulation().body(flying_));
   const EventQueue::Handle handle = process.advance;
   ASSERT_NE(handle, EventQueue::none);
   process.advance = EventQueue::none;
-  EXPECT_NE(kernel().validate_event_queue().find("advance event of nobody"), std::string::npos);
+  EXPECT_NE(access().validate_event_queue().find("advance event of nobody"), std::string::npos);
   process.advance = handle;
 }
 

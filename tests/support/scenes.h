@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "integrate/keyframes.h"
 #include "support/case-file.h"
 #include "support/scene.h"
 

@@ -11,6 +11,7 @@
 #include "groups/check-times.h"
 #include "groups/end-test.h"
 #include "groups/regroup.h"
+#include "integrate/standing.h"
 
 namespace tw::test {
 
@@ -44,6 +45,7 @@ class SmallScene {
     state.v = v;
     state.L = angular_momentum(body, q, w);
     state.acceleration = options.gravity;
+    let_fly(body, state);
     return body.id();
   }
 
@@ -101,12 +103,13 @@ class SmallScene {
     body->shape_P = shape;
     body->radius = shape->radius_about_origin();
     body->least_width = shape->least_width();
-    if (kind != BodyKind::dynamic) body->motion = make_fixed_motion(pose);
+    if (kind != BodyKind::dynamic) body->motion = make_standing(pose);
     body->process = graph.add_process();
     scene.first_bodies.push_back(id);
     scene.contacts.add_body(*body);
     State* state = graph.append(body->process, {0, 0, KeyKind::birth, id});
     state->arc_key = state->key;
+    state->follows = body->motion;
     if (shape->bounded()) {
       Aabb box = shape->bounds(Frame(pose));
       box.grow(0.2 * body->least_width);
@@ -122,6 +125,7 @@ class SmallScene {
       if (!successor.enters()) continue;
       State* state = graph.append(successor.process(), key);
       static_cast<StateData&>(*state) = successor.data;
+      if (successor.starts_arc() && !state->group) let_fly(*successor.body, *state);
       ring.push_back(state);
     }
     graph.close_ring(ring);

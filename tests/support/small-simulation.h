@@ -4,9 +4,9 @@
 #pragma once
 
 #include "geometry/shape.h"
+#include "groups/regroup.h"
 #include "kernel/make-body.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
 
 namespace tw::test {
 
@@ -47,14 +47,10 @@ class SmallSimulation : public Simulation {
   State& tail(BodyId id) { return *graph.tail(process_of(id)); }
   // A discontinuity that gives the body a new velocity.
   void turn(BodyId id, const Key& key, const Vec3& velocity) {
-    const State before = tail(id);
-    const PoseTwist point = evaluate(body(id), before, key.time);
-    State& state = *graph.append(process_of(id), key);
-    static_cast<StateData&>(state) = before;
-    state.arc_key = key;
-    state.arc_time = key.time;
-    state.x = point.x;
-    state.v = velocity;
+    Successor successor = make_successor(before(key), process_of(id), true);
+    successor.data.v = velocity;
+    let_fly(body(id), successor.data);
+    static_cast<StateData&>(*graph.append(process_of(id), key)) = successor.data;
   }
 };
 

@@ -40,7 +40,7 @@ TEST(EndTest, an_arc_ends_where_another_cube_comes_down_unseen) {
   EXPECT_EQ(small.counters.early_ends, 1u);
 
   // no deeper there than contacts are meant to be
-  const PoseTwist end = evaluate(small.scene.body(cube), small.tail(cube), group.next_check);
+  const PoseTwist end = small.tail(cube).trajectory().at(group.next_check);
   double lowest = 1;
   for (const double x : {-half, half})
     for (const double y : {-half, half})

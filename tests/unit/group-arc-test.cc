@@ -74,7 +74,7 @@ TEST(GroupArcDeathTest, nobody_looks_past_what_is_completed) {
   EXPECT_DEATH(arc.pose(0, beyond, x, q), "completed to .* s was looked at");
   EXPECT_DEATH(arc.evaluate(0, beyond), "completed to .* s was looked at");
   EXPECT_DEATH(arc.bounds(0, start.time, beyond), "completed to .* s was looked at");
-  EXPECT_DEATH(arc.motion(0, start.time, beyond), "completed to .* s was looked at");
+  EXPECT_DEATH(arc.excerpt(0, start.time, beyond), "completed to .* s was looked at");
   EXPECT_DEATH(arc.contact_force(0, beyond), "completed to .* s was looked at");
   EXPECT_DEATH(arc.elastic_energy(beyond), "completed to .* s was looked at");
   EXPECT_DEATH(arc.step_end(reached), "is not completed");
@@ -93,24 +93,26 @@ TEST(GroupArc, motion_of_a_member_has_the_bits_of_the_arc_and_outlives_it) {
   const double from = start.time + 0.3 * (start.end - start.time), to = start.end;
   // as seen from the middle of a step, and from its very end
   for (const double seen : {from, whole.step_end(from)}) {
-    const MotionPtr motion = CompleteArc(start).motion(1, seen, to);
+    const TrajectoryPtr motion = CompleteArc(start).excerpt(1, seen, to);
     EXPECT_EQ(GroupArc::alive(), alive);
     for (int i = 0; i <= 40; ++i) {
       const double time = std::min(to, seen + i * (to - seen) / 40);
-      Vec3 x, v, w, v_arc, w_arc;
+      Vec3 x, v_arc, w_arc;
       Quat q;
       whole.pose(1, time, x, q);
       whole.pose_rates(1, time, v_arc, w_arc);
-      motion->velocity(time, v, w);
+      const Twist rates = motion->twist(time);
       EXPECT_EQ(motion->pose(time).p, x);
       EXPECT_EQ(motion->pose(time).q.coeffs(), q.coeffs());
-      EXPECT_EQ(v, v_arc);
-      EXPECT_EQ(w, w_arc);
+      EXPECT_EQ(rates.v, v_arc);
+      EXPECT_EQ(rates.w, w_arc);
       const double later = std::min(to, time + 0.1 * (to - seen));
-      const GroupBounds bounds = whole.bounds(1, time, later);
-      EXPECT_EQ(motion->path_bounds(time, later).lo, bounds.path.lo);
-      EXPECT_EQ(motion->path_bounds(time, later).hi, bounds.path.hi);
-      EXPECT_EQ(motion->angular_speed_bound(time, later), bounds.turn);
+      const MotionBounds bounds = whole.bounds(1, time, later);
+      const MotionBounds known = motion->bounds(time, later);
+      EXPECT_EQ(known.path.lo, bounds.path.lo);
+      EXPECT_EQ(known.path.hi, bounds.path.hi);
+      EXPECT_EQ(known.speed, bounds.speed);
+      EXPECT_EQ(known.turn, bounds.turn);
     }
   }
 }
@@ -188,7 +190,7 @@ TEST(GroupArc, bounds_hold_everything_between_and_are_tight) {
   const CompleteArc arc(start);
   for (int i = 0; i < 16; ++i) {
     const double from = i * start.end / 17, to = from + start.end / (1 + i % 5 * 4) / 17;
-    const GroupBounds bounds = arc.bounds(0, from, to);
+    const MotionBounds bounds = arc.bounds(0, from, to);
     Vec3 last_dx = Vec3::Zero(), last_w = Vec3::Zero();
     double acceleration = 0, turn = 0, turn_change = 0;
     constexpr int parts = 400;
@@ -224,7 +226,7 @@ TEST(GroupArc, bounds_hold_everything_between_and_are_tight) {
 TEST(GroupArc, normals_of_points_and_lines_go_round_with_the_contact) {
   GroupStart start;
   start.end = 3;
-  start.outside = {make_fixed_motion({})};
+  start.outside = {make_standing({})};
   const ContactConstants c = constants(1, 0.2, 0);
   start.members = {ball(1, 0.1, Vec3(0, 0, -0.2 + c.depth), Vec3::Zero())};
   start.members[0].v = Vec3(1, 0, 0);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "integrate/group-system.h"
+#include "integrate/standing.h"
 
 namespace tw {
 namespace {
@@ -31,18 +32,20 @@ class Draw {
 };
 
 // slides along and turns about a line, at accelerating speed
-class Slide : public Motion {
+class Slide : public Trajectory {
  public:
   Pose pose(double t) const override {
     return {Vec3(0.3 * t * t, 0.2 * t, 0), rotation_by(Vec3(0, 0, 0.5 * t * t))};
   }
-  void velocity(double t, Vec3& v, Vec3& w) const override {
-    v = Vec3(0.6 * t, 0.2, 0);
-    w = Vec3(0, 0, t);
+  Twist twist(double t) const override { return {Vec3(0.6 * t, 0.2, 0), Vec3(0, 0, t)}; }
+  MotionBounds bounds(double, double to) const override {
+    MotionBounds bounds;
+    bounds.path = bounds.acceleration = Aabb::everywhere();
+    bounds.speed = 0.6 * to + 0.2;
+    bounds.turn = to;
+    bounds.valid_until = to;
+    return bounds;
   }
-  double speed_bound(double, double to) const override { return 0.6 * to + 0.2; }
-  double angular_speed_bound(double, double to) const override { return to; }
-  Aabb path_bounds(double, double) const override { return {}; }
 };
 
 enum class Regime { sticking, slipping, apart };
@@ -74,7 +77,7 @@ GroupStart random_group(Draw& draw, const Case& kind) {
   start.end = 2;
   for (int i = 0; i < 4; ++i) start.members.push_back(random_member(draw));
   const Vec3 place = draw.vec(1);
-  start.outside = {make_fixed_motion({place, draw.turn()}), std::make_shared<Slide>()};
+  start.outside = {make_standing({place, draw.turn()}), std::make_shared<Slide>()};
   const int pairs[][2] = {{-1, 0}, {0, 1}, {1, -2}, {2, 1}, {2, 0}, {3, -2}, {0, 3}};
   for (const auto& pair : pairs) {
     GroupContact c;

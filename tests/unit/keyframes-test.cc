@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dynamics/motion.h"
+#include "integrate/keyframes.h"
 #include "support/scene.h"
 
 namespace tw::test {
@@ -27,7 +27,7 @@ TEST(Keyframes, pose_passes_through_every_keyframe_and_rests_outside) {
   Random random(1);
   for (const bool smooth : {false, true}) {
     const auto frames = random_keyframes(random);
-    const MotionPtr motion = make_keyframes(frames, smooth);
+    const TrajectoryPtr motion = make_keyframes(frames, smooth);
     Quat before = Quat::Identity();
     for (const Keyframe& frame : frames) {
       if (frame.orientation) before = *frame.orientation;
@@ -36,8 +36,7 @@ TEST(Keyframes, pose_passes_through_every_keyframe_and_rests_outside) {
       EXPECT_LT(angle_between(pose.q, before), 1e-14);
     }
     for (const double outside : {frames.front().time - 2, frames.back().time + 2}) {
-      Vec3 v, w;
-      motion->velocity(outside, v, w);
+      const auto [v, w] = motion->twist(outside);
       EXPECT_EQ(v, Vec3::Zero());
       EXPECT_EQ(w, Vec3::Zero());
     }
@@ -49,15 +48,14 @@ TEST(Keyframes, velocity_is_the_derivative_of_the_pose) {
   for (const bool smooth : {false, true})
     for (int i = 0; i < 20; ++i) {
       const auto frames = random_keyframes(random);
-      const MotionPtr motion = make_keyframes(frames, smooth);
+      const TrajectoryPtr motion = make_keyframes(frames, smooth);
       for (int k = 0; k < 20; ++k) {
         const double now = random.real(frames.front().time, frames.back().time), step = 1e-6;
         bool at_corner = false;
         for (const Keyframe& frame : frames)
           at_corner = at_corner || std::abs(frame.time - now) <= 2 * step;
         if (at_corner) continue;
-        Vec3 v, w;
-        motion->velocity(now, v, w);
+        const auto [v, w] = motion->twist(now);
         const Pose a = motion->pose(now - step), b = motion->pose(now + step);
         EXPECT_LT((v - (b.p - a.p) / (2 * step)).norm(), 1e-6 * (1 + v.norm()));
         Quat turn = b.q * a.q.conjugate();
@@ -73,17 +71,17 @@ TEST(Keyframes, bounds_hold_over_any_interval) {
   for (const bool smooth : {false, true})
     for (int i = 0; i < 40; ++i) {
       const auto frames = random_keyframes(random);
-      const MotionPtr motion = make_keyframes(frames, smooth);
+      const TrajectoryPtr motion = make_keyframes(frames, smooth);
       const double from = random.real(frames.front().time - 1, frames.back().time);
       const double to = from + random.real(0, 2);
-      const double speed = motion->speed_bound(from, to);
-      const double turn = motion->angular_speed_bound(from, to);
-      Aabb path = motion->path_bounds(from, to);
+      const MotionBounds bounds = motion->bounds(from, to);
+      const double speed = bounds.speed, turn = bounds.turn;
+      EXPECT_TRUE(bounds.velocity_may_jump());
+      Aabb path = bounds.path;
       path.grow(1e-14);
       for (int k = 0; k <= 100; ++k) {
         const double now = from + (to - from) * k / 100;
-        Vec3 v, w;
-        motion->velocity(now, v, w);
+        const auto [v, w] = motion->twist(now);
         EXPECT_LE(v.norm(), speed * (1 + 1e-14));
         EXPECT_LE(w.norm(), turn * (1 + 1e-14));
         EXPECT_TRUE(path.contains(motion->pose(now).p));
@@ -94,10 +92,9 @@ TEST(Keyframes, bounds_hold_over_any_interval) {
 TEST(Keyframes, smooth_motion_is_at_rest_at_each_keyframe) {
   Random random(4);
   const auto frames = random_keyframes(random);
-  const MotionPtr motion = make_keyframes(frames, true);
+  const TrajectoryPtr motion = make_keyframes(frames, true);
   for (const Keyframe& frame : frames) {
-    Vec3 v, w;
-    motion->velocity(frame.time, v, w);
+    const auto [v, w] = motion->twist(frame.time);
     EXPECT_LT(v.norm() + w.norm(), 1e-12);
   }
 }
@@ -105,10 +102,9 @@ TEST(Keyframes, smooth_motion_is_at_rest_at_each_keyframe) {
 TEST(Keyframes, the_shorter_way_round_is_taken) {
   const Quat turned = rotation_by(Vec3(0, 0, 3));
   const Quat negative(-turned.w(), -turned.x(), -turned.y(), -turned.z());
-  const MotionPtr motion =
+  const TrajectoryPtr motion =
       make_keyframes({{0, Vec3::Zero(), Quat::Identity()}, {1, Vec3::Zero(), negative}}, false);
-  Vec3 v, w;
-  motion->velocity(0.5, v, w);
+  const auto [v, w] = motion->twist(0.5);
   EXPECT_NEAR(w.z(), 3, 1e-14);
 }
 
@@ -123,9 +119,9 @@ TEST(Keyframes, bad_ones_are_errors) {
 }
 
 TEST(Keyframes, a_single_one_never_moves) {
-  const MotionPtr motion = make_keyframes({{3, {1, 2, 3}, {}}}, false);
+  const TrajectoryPtr motion = make_keyframes({{3, {1, 2, 3}, {}}}, false);
   for (const double now : {-1.0, 3.0, 9.0}) EXPECT_EQ(motion->pose(now).p, Vec3(1, 2, 3));
-  EXPECT_EQ(motion->speed_bound(0, 10), 0);
+  EXPECT_EQ(motion->bounds(0, 10).speed, 0);
 }
 
 }  // namespace

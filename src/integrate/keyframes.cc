@@ -1,6 +1,6 @@
-// Motion of kinematic bodies: keyframes.
+// Keyframes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "dynamics/motion.h"
+#include "integrate/keyframes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ struct Segment {
   double length() const { return end - start; }
 };
 
-class Keyframes : public Motion {
+class Keyframes final : public Trajectory {
  public:
   Keyframes(std::vector<Segment> segments, Pose first, Pose last, bool smooth)
       : segments_(std::move(segments)),
@@ -41,31 +41,21 @@ class Keyframes : public Motion {
     return {s->p0 + share * (s->p1 - s->p0), rotation_by(share * s->turn) * s->q0};
   }
 
-  void velocity(double time, Vec3& v, Vec3& w) const override {
+  Twist twist(double time) const override {
     const Segment* s = segment_at(time);
-    const double rate = s ? slope_at(*s, time) / s->length() : 0;
-    v = s ? Vec3(rate * (s->p1 - s->p0)) : Vec3::Zero();
-    w = s ? Vec3(rate * s->turn) : Vec3::Zero();
+    if (!s) return {};
+    const double rate = slope_at(*s, time) / s->length();
+    return {rate * (s->p1 - s->p0), rate * s->turn};
   }
 
-  double speed_bound(double from, double to) const override {
-    return bound(from, to, [](const Segment& s) { return (s.p1 - s.p0).norm(); });
-  }
-  double angular_speed_bound(double from, double to) const override {
-    return bound(from, to, [](const Segment& s) { return s.turn.norm(); });
-  }
-
-  Aabb path_bounds(double from, double to) const override {
-    // every coordinate is monotone within a segment
-    Aabb box;
-    box.add(pose(from).p);
-    box.add(pose(to).p);
-    for (const Segment& s : segments_)
-      if (s.end > from && s.start < to) {
-        if (s.start > from) box.add(s.p0);
-        if (s.end < to) box.add(s.p1);
-      }
-    return box;
+  MotionBounds bounds(double from, double to) const override {
+    MotionBounds bounds;
+    bounds.path = path(from, to);
+    bounds.speed = most(from, to, [](const Segment& s) { return (s.p1 - s.p0).norm(); });
+    bounds.acceleration = Aabb::everywhere();
+    bounds.turn = most(from, to, [](const Segment& s) { return s.turn.norm(); });
+    bounds.valid_until = to;
+    return bounds;
   }
 
  private:
@@ -84,33 +74,29 @@ class Keyframes : public Motion {
   double slope_at(const Segment& s, double time) const {
     return smooth_ ? smooth_slope((time - s.start) / s.length()) : 1;
   }
-  template <class Length>
-  double bound(double from, double to, Length length) const {
-    double most = 0;
+  Aabb path(double from, double to) const {
+    // every coordinate is monotone within a segment
+    Aabb box;
+    box.add(pose(from).p);
+    box.add(pose(to).p);
     for (const Segment& s : segments_)
-      if (s.end >= from && s.start <= to) most = std::max(most, length(s) / s.length());
-    return most * (smooth_ ? smooth_peak_slope : 1) * (1 + 1e-12);
+      if (s.end > from && s.start < to) {
+        if (s.start > from) box.add(s.p0);
+        if (s.end < to) box.add(s.p1);
+      }
+    return box;
+  }
+  template <class Length>
+  double most(double from, double to, Length length) const {
+    double speed = 0;
+    for (const Segment& s : segments_)
+      if (s.end >= from && s.start <= to) speed = std::max(speed, length(s) / s.length());
+    return speed * (smooth_ ? smooth_peak_slope : 1) * (1 + 1e-12);
   }
 
   std::vector<Segment> segments_;
   Pose first_, last_;
   bool smooth_;
-};
-
-class FixedMotion : public Motion {
- public:
-  explicit FixedMotion(Pose pose) : pose_(std::move(pose)) {}
-  Pose pose(double) const override { return pose_; }
-  void velocity(double, Vec3& v, Vec3& w) const override {
-    v.setZero();
-    w.setZero();
-  }
-  double speed_bound(double, double) const override { return 0; }
-  double angular_speed_bound(double, double) const override { return 0; }
-  Aabb path_bounds(double, double) const override { return {pose_.p, pose_.p}; }
-
- private:
-  Pose pose_;
 };
 
 // The rotation vector of the shorter way from q0 to q1, world axes.
@@ -142,7 +128,7 @@ void require_speed(const Segment& s, std::size_t i) {
 
 }  // namespace
 
-MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
+TrajectoryPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
   TW_REQUIRE(!keyframes.empty(), "keyframes: the list is empty; expected at least one keyframe");
 
   // poses with every orientation filled in
@@ -179,7 +165,5 @@ MotionPtr make_keyframes(std::vector<Keyframe> keyframes, bool smooth) {
   }
   return std::make_shared<Keyframes>(std::move(segments), poses.front(), poses.back(), smooth);
 }
-
-MotionPtr make_fixed_motion(const Pose& pose) { return std::make_shared<FixedMotion>(pose); }
 
 }  // namespace tw

@@ -1,0 +1,102 @@
+// Trajectories: how anything moves, from the discontinuity that starts it to the next one.
+//
+// One interface for flight, given motion, rest and the members of contact groups.  A trajectory is
+// a function of the state that starts it (or, given motion, of the scene) and the time alone: same
+// time, same bits.  Once a state has one it never changes; what is computed step by step is
+// completed before anybody looks, and to look past what was completed is a mistake.
+//
+// Frames: of the body's principal frame at the centre of mass, in the world; of bodies whose motion
+// is given, of their body frame.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "base/never.h"
+#include "dynamics/pose-twist.h"
+#include "math/aabb.h"
+
+namespace tw {
+
+// Where the frame may be and how it may move over a stretch of time.
+struct MotionBounds {
+  Aabb path;                   // of the origin, m
+  double speed = 0;            // of the origin, m/s
+  Aabb acceleration;           // of the origin, m/s^2; everywhere: its velocity may jump
+  double turn = 0;             // angular speed, rad/s
+  double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump
+  double valid_until = never;  // s; `never`: as long as the trajectory goes on
+
+  // Only the speeds are bounded.
+  bool velocity_may_jump() const { return acceleration.unbounded(); }
+};
+
+// The origin's path where nothing acts but a constant acceleration: what exact prediction asks for.
+struct Parabola {
+  double start = 0;  // s
+  Vec3 x = Vec3::Zero();
+  Vec3 v = Vec3::Zero();
+  Vec3 acceleration = Vec3::Zero();
+
+  Vec3 position(double time) const {
+    const double s = time - start;
+    return x + s * (v + (0.5 * s) * acceleration);
+  }
+  Vec3 velocity(double time) const { return v + (time - start) * acceleration; }
+};
+
+// What it took to compute, for statistics.
+struct Effort {
+  double length = 0;  // s, of the stretch that was computed
+  // of the integrator: those of a whole group, told by its first member
+  std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
+};
+
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+
+  virtual Pose pose(double time) const = 0;
+  // The rates of the pose; at a corner the right derivative.
+  virtual Twist twist(double time) const = 0;
+  // Pose and twist of the motion.  What is integrated has velocities of its own, which differ from
+  // the rates of its interpolated pose by the integration error.
+  virtual PoseTwist at(double time) const { return joined(time); }
+  // Bounds over [from, to] on the path of the pose and its rates.
+  virtual MotionBounds bounds(double from, double to) const = 0;
+  // Where it ends by itself, s; what follows is another state's.
+  virtual double end() const { return never; }
+  // Beyond this time bounds from `time` on may be much wider: the end of a step of the integrator.
+  virtual double step_end(double /*time*/) const { return never; }
+  // The origin's path in closed form; null where other things act.
+  virtual const Parabola* ballistic() const { return nullptr; }
+  // Whether it is computed step by step.
+  virtual bool stepped() const { return false; }
+  virtual Effort effort() const { return {}; }
+
+  Frame frame(double time) const { return Frame(pose(time)); }
+  Vec3 center(double time) const {
+    const Parabola* path = ballistic();
+    return path ? path->position(time) : pose(time).p;
+  }
+  // What would move it if nothing held it: none of what is carried, or moves as it was given.
+  Vec3 free_acceleration() const {
+    const Parabola* path = ballistic();
+    return path ? path->acceleration : Vec3(Vec3::Zero());
+  }
+  // The pose and its own rates: what `bounds` are about.
+  PoseTwist path_at(double time) const { return stepped() ? joined(time) : at(time); }
+
+ private:
+  PoseTwist joined(double time) const {
+    const Pose there = pose(time);
+    const Twist rates = twist(time);
+    return {there.p, there.q, rates.v, rates.w};
+  }
+};
+
+using TrajectoryPtr = std::shared_ptr<const Trajectory>;
+
+}  // namespace tw
