@@ -67,7 +67,7 @@ BodyId Bodies::add(const BodyDef& def) {
   present.counters.integrations += body->dynamic();
 
   scene.first_bodies.push_back(id);
-  newborn_.push_back(id);
+  sim_.present.newborn.push_back(id);
   names_[name] = id;
   if (body->unbounded) sim_.unbounded.push_back(id);
   if (body->kinematic()) sim_.kinematic.push_back(id);
@@ -76,19 +76,15 @@ BodyId Bodies::add(const BodyDef& def) {
   return id;
 }
 
+bool Bodies::any_newborn() const { return !sim_.present.newborn.empty(); }
+
 void Bodies::check_newborn() {
-  for (const BodyId id : newborn_) check_overlaps(sim_.body(id));
+  for (const BodyId id : sim_.present.newborn) check_overlaps(sim_.body(id));
 }
 
 void Bodies::claim_newborn() {
-  for (const BodyId id : newborn_) claims_.claim_window(sim_.body(id));
-  newborn_.clear();
-}
-
-void Bodies::set_newborn(bool all) {
-  newborn_.clear();
-  if (!all) return;
-  for (const auto& body : sim_.scene.bodies) newborn_.push_back(body->id());
+  for (const BodyId id : sim_.present.newborn) claims_.claim_window(sim_.body(id));
+  sim_.present.newborn.clear();
 }
 
 void Bodies::require_no_overlap(const Body& a, const Body& b) const {
@@ -147,7 +143,7 @@ void Bodies::remove(BodyId id) {
   if (sim_.grid.contains(id)) sim_.grid.remove(id);
   std::erase(sim_.unbounded, id);
   std::erase(sim_.kinematic, id);
-  std::erase(newborn_, id);
+  std::erase(sim_.present.newborn, id);
   names_.erase(body.info.name);
   bury(body, last);
   ++sim_.present.removals;

@@ -32,13 +32,11 @@ class Bodies {
   std::optional<BodyId> find(const std::string& name) const;
 
   // Those that came since the last run: UserError if one overlaps another, then they claim.
-  bool any_newborn() const { return !newborn_.empty(); }
+  bool any_newborn() const;
   void check_newborn();
   void claim_newborn();
   // After the body was placed elsewhere: UserError if it overlaps another.
   void check_overlaps(const Body& body);
-  // As before the first run: all have just come.  Else: nobody has.
-  void set_newborn(bool all);
 
  private:
   void require_no_overlap(const Body& a, const Body& b) const;
@@ -51,7 +49,6 @@ class Bodies {
   Discontinuities& discontinuities_;
   Editing& editing_;
   std::unordered_map<std::string, BodyId> names_;
-  std::vector<BodyId> newborn_;
 };
 
 }  // namespace tw

@@ -81,7 +81,6 @@ void Kernel::restore(const Checkpoint& checkpoint) {
       for (const BodyId id : process.bodies) claims.forget_box(id);
     if (present.begun) claims.schedule(process.id);
   }
-  bodies.set_newborn(!present.begun);
   callbacks.restore(checkpoint.callbacks);
   delivery.restart();
 }

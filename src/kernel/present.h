@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "dynamics/scene.h"
 #include "kernel/counters.h"
@@ -28,6 +29,7 @@ struct Present {
   double gvt = 0;                         // nothing below it is touched any more, s
   Due due;                                // what is final at `time`, and so may be delivered
   bool begun = false;                     // the first run has begun
+  std::vector<BodyId> newborn;            // came since the last run: nobody has met them yet
   SceneOptions settings;                  // gravity changes, the others only before the first run
   std::uint64_t edits = 0, removals = 0;  // number the edits; bodies taken out
   HistorySum history;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "groups/group.h"
 #include "kernel/state-image.h"
 
 namespace tw::test {
