@@ -65,6 +65,9 @@ class SmallScene {
                                  Change change) {
     std::vector<Successor> given;
     for (const BodyId id : struck) {
+      // nobody looks at an arc whose end is not known
+      if (Group* group = graph.tail(process(id))->group.get())
+        test_end(scene, surroundings, *group, counters);
       given.push_back(make_successor(before(key), process(id), scene.body(id).dynamic()));
       change(given.back());
     }
