@@ -24,11 +24,15 @@ class ActivePairs {
 
   Pair& operator[](std::uint32_t index) { return records_[index]; }
   const Pair& operator[](std::uint32_t index) const { return records_[index]; }
-  // Of all records, unused ones too; of those in use.
+  // All records, unused ones too.
+  const std::vector<Pair>& records() const { return records_; }
   std::size_t size() const { return records_.size(); }
+  // How many are in use.
   std::size_t live() const { return live_; }
   // The records of a body, in no order.
-  const std::vector<std::uint32_t>& of(BodyId body) const;
+  const std::vector<std::uint32_t>& of(BodyId body) const {
+    return body < by_body_.size() ? by_body_[body] : nobody_;
+  }
   // `none` if the two have no record.
   std::uint32_t find(BodyId a, BodyId b) const;
 
@@ -45,6 +49,7 @@ class ActivePairs {
   std::vector<Pair> records_;
   std::vector<std::uint32_t> unused_;
   std::vector<std::vector<std::uint32_t>> by_body_;
+  const std::vector<std::uint32_t> nobody_;  // of those that never had any
   std::size_t live_ = 0;
 };
 

@@ -45,9 +45,8 @@ bool Commit::finished() const {
 // grid is safe only up to its last check, before its event.
 double Commit::compute_gvt() const {
   double least = sim_.queue.least_time();
-  for (std::uint32_t i = 0; i < pairs_.size(); ++i)
-    if (const Pair& pair = pairs_[i]; pair.live && !pair.parked)
-      least = std::min(least, pair.safe_time());
+  for (const Pair& pair : pairs_.records())
+    if (pair.live && !pair.parked) least = std::min(least, pair.safe_time());
   return least;
 }
 
