@@ -11,15 +11,10 @@ std::vector<std::uint32_t>& ActivePairs::list_of(BodyId body) {
   return by_body_[body];
 }
 
-const std::vector<std::uint32_t>& ActivePairs::of(BodyId body) const {
-  static const std::vector<std::uint32_t> nobody;
-  return body < by_body_.size() ? by_body_[body] : nobody;
-}
-
 std::uint32_t ActivePairs::find(BodyId a, BodyId b) const {
-  const BodyId shorter = of(a).size() <= of(b).size() ? a : b;
+  const std::vector<std::uint32_t>&of_a = of(a), &of_b = of(b);
   const BodyId x = std::min(a, b), y = std::max(a, b);
-  for (const std::uint32_t index : of(shorter))
+  for (const std::uint32_t index : of_a.size() <= of_b.size() ? of_a : of_b)
     if (records_[index].a == x && records_[index].b == y) return index;
   return none;
 }

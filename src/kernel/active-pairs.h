@@ -28,7 +28,9 @@ class ActivePairs {
   std::size_t size() const { return records_.size(); }
   std::size_t live() const { return live_; }
   // The records of a body, in no order.
-  const std::vector<std::uint32_t>& of(BodyId body) const;
+  const std::vector<std::uint32_t>& of(BodyId body) const {
+    return body < by_body_.size() ? by_body_[body] : nobody_;
+  }
   // `none` if the two have no record.
   std::uint32_t find(BodyId a, BodyId b) const;
 
@@ -45,6 +47,7 @@ class ActivePairs {
   std::vector<Pair> records_;
   std::vector<std::uint32_t> unused_;
   std::vector<std::vector<std::uint32_t>> by_body_;
+  const std::vector<std::uint32_t> nobody_;
   std::size_t live_ = 0;
 };
 
