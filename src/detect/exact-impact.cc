@@ -25,8 +25,8 @@ double ball_meets_plane(const Body& ball, const Parabola& path, const Body& plan
 bool predicted_exactly(const Piece& piece) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
-  const Parabola* path_a = piece.a->trajectory().ballistic();
-  const Parabola* path_b = piece.b->trajectory().ballistic();
+  const Parabola* path_a = piece.a->ballistic();
+  const Parabola* path_b = piece.b->ballistic();
   if (!path_a || !path_b) return false;
   if (a.sphere_radius >= 0 && b.sphere_radius >= 0)
     return path_a->acceleration == path_b->acceleration;
@@ -37,8 +37,8 @@ double exact_impact(const Piece& piece) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
   const double start = piece.start_time();
-  const Parabola& path_a = *piece.a->trajectory().ballistic();
-  const Parabola& path_b = *piece.b->trajectory().ballistic();
+  const Parabola& path_a = *piece.a->ballistic();
+  const Parabola& path_b = *piece.b->ballistic();
   if (a.is_fixed_plane) return start + ball_meets_plane(b, path_b, a, start);
   if (b.is_fixed_plane) return start + ball_meets_plane(a, path_a, b, start);
 

@@ -19,6 +19,13 @@ ImpulseSlot ImpulseSlot::border(const PoseTwist& point) {
   return slot;
 }
 
+void ImpulseSolver::clear() {
+  slots_.clear();
+  blocks_.clear();
+  normal_impulse_ = work_of_held_ = largest_impulse_ = largest_approach_ = 0;
+  largest_ = {};
+}
+
 std::uint32_t ImpulseSolver::add(const ImpulseSlot& slot) {
   slots_.push_back(slot);
   return static_cast<std::uint32_t>(slots_.size() - 1);

@@ -68,6 +68,8 @@ struct ImpulseResult {
 
 class ImpulseSolver {
  public:
+  // As new, with the room it has.
+  void clear();
   std::uint32_t add(const ImpulseSlot& slot);
   const ImpulseSlot& slot(std::uint32_t index) const { return slots_[index]; }
   std::size_t slot_count() const { return slots_.size(); }

@@ -29,13 +29,12 @@ MotionBounds Flight::bounds(double from, double to) const {
   bounds.acceleration = {path_.acceleration, path_.acceleration};
   bounds.turn = rotation_.max_angular_speed();
   bounds.turn_change = turn_change_;
+  bounds.speed = never;
   if (to == never) {
     bounds.path = Aabb::everywhere();
-    bounds.speed = never;
     return bounds;
   }
-  // |v| is convex; the path has its extremes at the ends and where a coordinate turns
-  bounds.speed = std::max(path_.velocity(from).norm(), path_.velocity(to).norm());
+  // extremes at the ends and where a coordinate turns
   bounds.path.add(path_.position(from));
   bounds.path.add(path_.position(to));
   for (int i = 0; i < 3; ++i) {

@@ -27,6 +27,7 @@ class Flight final : public Trajectory {
   // The path over all time is unbounded.
   MotionBounds bounds(double from, double to) const override;
   const Parabola* ballistic() const override { return &path_; }
+  const Parabola& path() const { return path_; }
 
  private:
   FreeRotation rotation_;

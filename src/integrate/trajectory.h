@@ -23,7 +23,7 @@ namespace tw {
 // Where the frame may be and how it may move over a stretch of time.
 struct MotionBounds {
   Aabb path;                   // of the origin, m
-  double speed = 0;            // of the origin, m/s
+  double speed = 0;            // of the origin, m/s; `never`: not told, its path is (ballistic)
   Aabb acceleration;           // of the origin, m/s^2; everywhere: its velocity may jump
   double turn = 0;             // angular speed, rad/s
   double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump

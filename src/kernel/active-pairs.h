@@ -49,7 +49,7 @@ class ActivePairs {
   std::vector<Pair> records_;
   std::vector<std::uint32_t> unused_;
   std::vector<std::vector<std::uint32_t>> by_body_;
-  const std::vector<std::uint32_t> nobody_;  // of those that never had any
+  const std::vector<std::uint32_t> nobody_;
   std::size_t live_ = 0;
 };
 

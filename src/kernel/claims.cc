@@ -49,8 +49,7 @@ Claims::Claims(Simulation& simulation, ActivePairs& pairs, PairChecks& checks,
 
 void Claims::schedule_advance(const Body& body) {
   // a member waits for the group check where its arc ends
-  if (body.fixed() ||
-      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->trajectory().end()) {
+  if (body.fixed() || sim_.process(body).claim.time >= sim_.graph.tail(body.process)->arc_end()) {
     sim_.queue.withdraw(sim_.process(body).advance);
     return;
   }
@@ -84,7 +83,7 @@ void Claims::withdraw(ProcessId id) {
 void Claims::schedule_group_check(ProcessId id) {
   Process& waiting = sim_.processes[number(id)];
   const State* tail = sim_.graph.tail(id);
-  const double end = tail && !tail->error ? tail->trajectory().end() : never;
+  const double end = tail && !tail->error ? tail->arc_end() : never;
   if (end == never) {
     sim_.queue.withdraw(waiting.group_check);
     return;
@@ -107,7 +106,7 @@ double Claims::window_end(const Body& body) const {
   const double limit = sim_.policy->may_reach(sim_.queue, sim_.process(body));
   const double least = std::nextafter(start, never);
   const Trajectory& trajectory = tail.trajectory();
-  const Parabola* path = trajectory.ballistic();
+  const Parabola* path = tail.ballistic();
   if (!path && !body.kinematic()) return std::max(std::min(trajectory.end(), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
@@ -153,7 +152,7 @@ void Claims::claim_window(const Body& body) {
   }
   const Key before = sim_.process(body).claim;
   if (sim_.graph.tail(body.process)->error ||
-      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->trajectory().end()) {
+      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->arc_end()) {
     // a stopped process moves no further, a member of a group not past the next check
     sim_.queue.withdraw(sim_.process(body).advance);
     return;

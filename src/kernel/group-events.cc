@@ -27,7 +27,7 @@ GroupEvents::GroupEvents(Simulation& simulation, Claims& claims, Discontinuities
 bool GroupEvents::own_check_before(ProcessId id, const Key& key) const {
   if (!sim_.body_of(id).dynamic()) return false;
   const State& tail = *sim_.graph.tail(id);
-  if (tail.error || tail.trajectory().end() != key.time) return false;
+  if (tail.error || tail.arc_end() != key.time) return false;
   Key check = group_check_key(*tail.group, key.time);
   check.id = number(id);
   return tail.key < check && check < key;
@@ -53,7 +53,7 @@ bool GroupEvents::await(ProcessId id, const Key& key) {
   if (known(id, key)) return true;
   const bool only_its_check = claims_reach(id, key);
   while (!claims_reach(id, key) &&
-         sim_.process(sim_.body_of(id)).claim.time < sim_.graph.tail(id)->trajectory().end())
+         sim_.process(sim_.body_of(id)).claim.time < sim_.graph.tail(id)->arc_end())
     claims_.claim_window(sim_.body_of(id));
   // the group check that stands before the key
   if (only_its_check || !claims_reach(id, key)) static_cast<void>(check(id));
@@ -95,7 +95,7 @@ Progress GroupEvents::check(ProcessId id) {
     claims_.test_group_end(*group);
     return Progress::try_again;
   }
-  const double when = tail.trajectory().end();
+  const double when = tail.arc_end();
   Key key = group_check_key(*group, when);
   ++counters_.group_checks;
 

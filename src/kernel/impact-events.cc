@@ -64,6 +64,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
     return Progress::try_again;
 
   std::vector<Successor> successors;
+  successors.reserve(2);
   successors.push_back(make_successor(sim_.before(key), body_a.process, body_a.dynamic()));
   successors.push_back(make_successor(sim_.before(key), body_b.process, body_b.dynamic()));
   const Wanted wanted{wants_collision(body_a, body_b), delivery_.observed(CollisionKind::fusion)};

@@ -63,24 +63,23 @@ ImpactRun continued(const ImpactRun& run, double now, double tau) {
 }
 
 // Where the two touch.
-std::vector<ContactPoint> find_impact_points(const Scene& scene, const Successor& a,
-                                             const Successor& b) {
+void find_impact_points(const Scene& scene, const Successor& a, const Successor& b,
+                        std::vector<ContactPoint>& points) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
-  std::vector<ContactPoint> points;
+  points.clear();
   if (simple(body_a) && simple(body_b)) {
     points.push_back(sphere_contact(body_a, a.point, body_b, b.point));
-    return points;
+    return;
   }
   const double size = std::min(body_a.least_width, body_b.least_width);
   const Frame fa(a.point.q.toRotationMatrix(), a.point.x);
   const Frame fb(b.point.q.toRotationMatrix(), b.point.x);
   touching_points(*body_a.shape_P, fa, *body_b.shape_P, fb,
                   answer::touch_per_accuracy * scene.options.accuracy * size, points);
-  if (!points.empty()) return points;
+  if (!points.empty()) return;
   const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
   points.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
-  return points;
 }
 
 // At seams of the ground: points that neighbours of the fixed body bury give way to those that
@@ -158,7 +157,9 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
 
 Impact compute_impact(const Scene& scene, const Surroundings& surroundings, const Key& key,
                       const Wanted& wanted, Successor& a, Successor& b) {
-  std::vector<ContactPoint> points = find_impact_points(scene, a, b);
+  // scratch: a gas has no time for the heap
+  thread_local std::vector<ContactPoint> points;
+  find_impact_points(scene, a, b, points);
   Impact impact;
   // nothing to hit: the two are followed as a contact while they pass the seam
   impact.soft = drop_ghosts(scene, surroundings, a, b, points);
@@ -166,14 +167,15 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   const ContactParameters& contact = scene.contacts.between(a.body->id(), b.body->id());
   // what is told once stands on the first state that enters the graph
   Tally& tally = (a.enters() ? a : b).data.tally;
-  ImpulseSolver solver;
+  thread_local ImpulseSolver solver;
+  solver.clear();
   const std::uint32_t slot_a = solver.add(ImpulseSlot::of(*a.body, a.point));
   const std::uint32_t slot_b = solver.add(ImpulseSlot::of(*b.body, b.point));
   const auto contact_at = [&](const ContactPoint& c) {
     return ImpulseContact{slot_a, slot_b, c.normal, c.point, contact.restitution, contact.friction};
   };
-  std::vector<ImpulseContact> contacts;
-  contacts.reserve(points.size());
+  thread_local std::vector<ImpulseContact> contacts;
+  contacts.clear();
   double worst = 0;
   for (const ContactPoint& c : points) {
     contacts.push_back(contact_at(c));

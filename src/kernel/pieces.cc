@@ -30,7 +30,7 @@ Piece Pieces::at(BodyId a, BodyId b, const Key& from) const {
   if (!piece.b) piece.b = graph_.head(scene_.process_of(b));
   piece.start = std::max(piece.a->arc_key, piece.b->arc_key);
   piece.end = std::min(key_or_last(next_arc(piece.a)), key_or_last(next_arc(piece.b)));
-  const double natural = std::min(piece.a->trajectory().end(), piece.b->trajectory().end());
+  const double natural = std::min(piece.a->arc_end(), piece.b->arc_end());
   if (natural < piece.end.time) {
     piece.end = {natural, 0, KeyKind::birth, 0};
     piece.ends_naturally = true;

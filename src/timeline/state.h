@@ -72,6 +72,10 @@ struct StateData {
   Flight flight;
 
   const Trajectory& trajectory() const { return follows ? *follows : flight; }
+  // The same answers as of trajectory(), without a virtual call where it flies: a gas asks for
+  // little else.
+  double arc_end() const { return follows ? follows->end() : never; }
+  const Parabola* ballistic() const { return follows ? follows->ballistic() : &flight.path(); }
 };
 
 struct State : StateData {
