@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "detect/grid.h"
+#include "integrate/keyframes.h"
 
 #include "support/scene.h"
 #include "support/schedule.h"

@@ -57,6 +57,7 @@ TEST(Rest, a_book_of_stillness_begins_where_the_body_is_slow_and_ends_where_it_i
   const Key key{small.tail(small.cube).key.time, 0, KeyKind::callback, 7};
   Key later = key;
   later.time += 1e-4;
+  small.tail(small.cube).group->arc->extend(later.time);
   small.regroup(later, Cause::callback, {small.cube}, [](Successor& successor) {
     successor.data.v = successor.point.v = {1, 0, 0};
   });

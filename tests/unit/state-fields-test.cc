@@ -7,6 +7,8 @@
 #include "groups/group.h"
 #include "kernel/state-image.h"
 
+#include "groups/group.h"
+
 namespace tw::test {
 namespace {
 
