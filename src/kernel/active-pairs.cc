@@ -6,11 +6,6 @@
 
 namespace tw {
 
-std::vector<std::uint32_t>& ActivePairs::list_of(BodyId body) {
-  if (body >= by_body_.size()) by_body_.resize(body + 1);
-  return by_body_[body];
-}
-
 std::uint32_t ActivePairs::find(BodyId a, BodyId b) const {
   const auto &of_a = of(a), &of_b = of(b);
   const BodyId x = std::min(a, b), y = std::max(a, b);
@@ -35,7 +30,7 @@ std::uint32_t ActivePairs::make(BodyId a, BodyId b, const Key& from) {
   pair.b = std::max(a, b);
   pair.from = from;
   const auto enlist = [&](BodyId body) {
-    std::vector<std::uint32_t>& list = list_of(body);
+    std::vector<std::uint32_t>& list = by_body_[body];
     list.push_back(index);
     return static_cast<std::uint32_t>(list.size() - 1);
   };

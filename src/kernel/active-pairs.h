@@ -30,12 +30,14 @@ class ActivePairs {
   // How many are in use.
   std::size_t live() const { return live_; }
   // The records of a body, in no order.
-  const std::vector<std::uint32_t>& of(BodyId body) const {
-    return body < by_body_.size() ? by_body_[body] : nobody_;
-  }
+  const std::vector<std::uint32_t>& of(BodyId body) const { return by_body_[body]; }
   // `none` if the two have no record.
   std::uint32_t find(BodyId a, BodyId b) const;
 
+  // A body has come: it may have pairs.
+  void make_room_for(BodyId body) {
+    if (by_body_.size() <= body) by_body_.resize(body + 1);
+  }
   // A fresh record of two that have none, free of impacts before `from`.
   std::uint32_t make(BodyId a, BodyId b, const Key& from);
   void drop(std::uint32_t index);
@@ -43,13 +45,10 @@ class ActivePairs {
   void drop_all();
 
  private:
-  std::vector<std::uint32_t>& list_of(BodyId body);
-
   EventQueue& queue_;
   std::vector<Pair> records_;
   std::vector<std::uint32_t> unused_;
   std::vector<std::vector<std::uint32_t>> by_body_;
-  const std::vector<std::uint32_t> nobody_;
   std::size_t live_ = 0;
 };
 

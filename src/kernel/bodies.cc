@@ -69,6 +69,8 @@ BodyId Bodies::add(const BodyDef& def) {
   scene.first_bodies.push_back(id);
   sim_.present.newborn.push_back(id);
   names_[name] = id;
+  pairs_.make_room_for(id);
+  claims_.make_room_for(id);
   if (body->unbounded) sim_.unbounded.push_back(id);
   if (body->kinematic()) sim_.kinematic.push_back(id);
   scene.contacts.add_body(*body);

@@ -48,15 +48,15 @@ Claims::Claims(Simulation& simulation, ActivePairs& pairs, PairChecks& checks,
       callbacks_(callbacks) {}
 
 void Claims::schedule_advance(const Body& body) {
+  Process& process = sim_.process(body);
   // a member waits for the group check where its arc ends
-  if (body.fixed() || sim_.process(body).claim.time >= sim_.graph.tail(body.process)->arc_end()) {
-    sim_.queue.withdraw(sim_.process(body).advance);
+  if (body.fixed() || process.claim.time >= sim_.graph.tail(body.process)->arc_end()) {
+    sim_.queue.withdraw(process.advance);
     return;
   }
   // after callbacks of that instant, which may start a new arc, and before its impacts
-  const Key key{sim_.process(body).claim.time, 0, KeyKind::group_check, body.id()};
-  sim_.schedule(sim_.process(body).advance, key, EventKind::advance, body.id(),
-                sim_.process(body).head_start);
+  const Key key{process.claim.time, 0, KeyKind::group_check, body.id()};
+  sim_.schedule(process.advance, key, EventKind::advance, body.id(), process.head_start);
 }
 
 bool Claims::reach(const Body& body, const Key& key) const {
@@ -102,15 +102,16 @@ void Claims::test_group_end(Group& group) {
 
 double Claims::window_end(const Body& body) const {
   const State& tail = *sim_.graph.tail(body.process);
-  const double start = sim_.process(body).claim.time;
-  const double limit = sim_.policy->may_reach(sim_.queue, sim_.process(body));
+  const Process& process = sim_.process(body);
+  const double start = process.claim.time;
+  const double limit = sim_.policy->may_reach(sim_.queue, process);
   const double least = std::nextafter(start, never);
   const Trajectory& trajectory = tail.trajectory();
   const Parabola* path = tail.ballistic();
   if (!path && !body.kinematic()) return std::max(std::min(trajectory.end(), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
-  const double growth = std::ldexp(1.0, std::max(0, sim_.process(body).lonely_claims - patience));
+  const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - patience));
   const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
   if (path) {
@@ -123,7 +124,7 @@ double Claims::window_end(const Body& body) const {
   double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
 
   // the next callback ends the arc as we know it
-  for (const std::uint32_t number : sim_.process(body).callbacks) {
+  for (const std::uint32_t number : process.callbacks) {
     const double next = callbacks_[number].next.time;
     if (next > start) end = std::min(end, next);
   }
@@ -147,31 +148,29 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
 
 void Claims::claim_window(const Body& body) {
   ++counters_.claims;
-  if (const auto& group = sim_.graph.tail(body.process)->group; group && !group->end_tested) {
-    test_group_end(*group);
-  }
-  const Key before = sim_.process(body).claim;
-  if (sim_.graph.tail(body.process)->error ||
-      sim_.process(body).claim.time >= sim_.graph.tail(body.process)->arc_end()) {
+  const State& tail = *sim_.graph.tail(body.process);
+  if (tail.group && !tail.group->end_tested) test_group_end(*tail.group);
+  Process& process = sim_.process(body);
+  if (tail.error || process.claim.time >= tail.arc_end()) {
     // a stopped process moves no further, a member of a group not past the next check
-    sim_.queue.withdraw(sim_.process(body).advance);
+    sim_.queue.withdraw(process.advance);
     return;
   }
 
+  const Key before = process.claim;
   const double end = body.fixed() ? never : window_end(body);
-  sim_.process(body).claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
+  process.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
     if (!body.unbounded)
       sim_.grid.place(body.id(), claimed_box(body, body.fixed() ? sim_.present.gvt : end),
                       body.fixed());
-    if (placed_.size() <= body.id()) placed_.resize(body.id() + 1);
     placed_[body.id()] = true;
     drop_parted_pairs(body);
     const std::uint64_t candidates = counters_.candidates;
     find_partners(body, before);
     const bool alone = counters_.candidates == candidates;
-    sim_.process(body).lonely_claims =
-        alone ? std::min(sim_.process(body).lonely_claims + 1, patience + most_doublings) : 0;
+    process.lonely_claims =
+        alone ? std::min(process.lonely_claims + 1, patience + most_doublings) : 0;
   }
   schedule_advance(body);
 }
@@ -217,7 +216,7 @@ void Claims::find_partners(const Body& body, const Key& claimed_before) {
 
 void Claims::meet(const Body& body, const Body& other, const Key& claimed_before) {
   if (sim_.scene.contacts.may_disable() && !sim_.scene.may_collide(body, other)) return;
-  checks_.meet(body, other, std::min(claimed_before, sim_.process(other).claim));
+  checks_.meet(body, other, claimed_before);
 }
 
 // Typical spacing of moving bodies: (volume / number)^(1/3), at least their size.

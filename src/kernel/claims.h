@@ -12,6 +12,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "dynamics/body.h"
@@ -44,15 +45,16 @@ class Claims {
   // Finds where the arcs of the group end, before anybody relies on them.
   void test_group_end(Group& group);
 
+  // A body has come.
+  void make_room_for(BodyId id) { placed_.resize(std::max<std::size_t>(placed_.size(), id + 1)); }
+
   // ---- boxes ----
   // Whether the swept boxes of two that have one overlap.
   bool boxes_overlap(const Body& a, const Body& b) const;
   // It has claimed: it has a box in the hash, unless it is unbounded.
-  bool placed(BodyId id) const { return id < placed_.size() && placed_[id]; }
+  bool placed(BodyId id) const { return placed_[id]; }
   // Its box is that of another time, until it claims again.
-  void forget_box(BodyId id) {
-    if (placed(id)) placed_[id] = false;
-  }
+  void forget_box(BodyId id) { placed_[id] = false; }
   // Windows go by the typical spacing of moving bodies.
   void measure_spacing();
 
@@ -70,7 +72,7 @@ class Claims {
   ActivePairs& pairs_;
   PairChecks& checks_;
   const CallbackBook& callbacks_;
-  std::vector<bool> placed_;  // by body
+  std::vector<char> placed_;  // by body
   double cell_ = 1;           // typical spacing, m
 };
 

@@ -231,13 +231,14 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
   return !next_piece(pair, piece);
 }
 
-void PairChecks::meet(const Body& a, const Body& b, const Key& from) {
+void PairChecks::meet(const Body& a, const Body& b, const Key& claimed_before) {
   if (const std::uint32_t known = pairs_.find(a.id(), b.id()); known != ActivePairs::none) {
     const Pair& pair = pairs_[known];
     const bool waits = pair.event == EventQueue::none && !pair.pending && !pair.parked;
     if (waits && pair.from != last_key) pursue(known);
     return;
   }
+  const Key from = std::min(claimed_before, sim_.process(b).claim);
   if (pieces_.in_contact_from(std::min(a.id(), b.id()), std::max(a.id(), b.id()), from)) return;
 
   // an exact pair gets a record only when it will meet

@@ -18,9 +18,10 @@ class PairChecks {
  public:
   PairChecks(Simulation& simulation, ActivePairs& pairs);
 
-  // A new pair of these, which may meet from the key on, or, in contact or exact and never meeting,
-  // none.  One that waited for a claim is followed on.
-  void meet(const Body& a, const Body& b, const Key& from);
+  // The boxes of two overlap since a claimed its last window; before that it had claimed up to the
+  // key.  They become a pair from the lesser claim on, but none where they are in contact or will
+  // certainly never meet.  A pair that waited for a claim is followed on.
+  void meet(const Body& a, const Body& b, const Key& claimed_before);
   // Moves the safe time up as far as the event's time, over as many pieces as it takes.
   void pursue(std::uint32_t index);
   // After a rollback of one of its bodies to `key`: what was known from there on is forgotten.

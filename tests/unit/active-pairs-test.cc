@@ -12,9 +12,13 @@
 namespace tw::test {
 namespace {
 
+struct Pairs : ActivePairs {
+  explicit Pairs(EventQueue& queue) : ActivePairs(queue) { make_room_for(19); }
+};
+
 TEST(ActivePairs, what_is_made_is_found_from_both_sides_until_it_is_dropped) {
   EventQueue queue;
-  ActivePairs pairs(queue);
+  Pairs pairs(queue);
   EXPECT_EQ(pairs.find(3, 7), ActivePairs::none);
   EXPECT_TRUE(pairs.of(7).empty());
   const std::uint32_t index = pairs.make(7, 3, {1, 0, KeyKind::birth, 0});
@@ -31,7 +35,7 @@ TEST(ActivePairs, what_is_made_is_found_from_both_sides_until_it_is_dropped) {
 
 TEST(ActivePairs, dropping_withdraws_the_event) {
   EventQueue queue;
-  ActivePairs pairs(queue);
+  Pairs pairs(queue);
   const std::uint32_t index = pairs.make(0, 1, {});
   queue.schedule(pairs[index].event, {2, {2, 0, KeyKind::step, 1}, EventKind::pair, index});
   pairs.drop(index);
@@ -42,7 +46,7 @@ TEST(ActivePairs, dropping_withdraws_the_event) {
 // at the place that its record names, and records are used again.
 TEST(ActivePairs, lists_and_records_agree_after_any_history) {
   EventQueue queue;
-  ActivePairs pairs(queue);
+  Pairs pairs(queue);
   std::map<std::pair<BodyId, BodyId>, std::uint32_t> standing;
   Random random(3);
   std::size_t most = 0;

@@ -15,7 +15,10 @@ struct PairChecksTest : testing::Test {
   ActivePairs pairs{simulation.queue};
   PairChecks checks{simulation, pairs};
 
-  void meet(BodyId a, BodyId b) { checks.meet(simulation.body(a), simulation.body(b), Key{}); }
+  void meet(BodyId a, BodyId b) {
+    pairs.make_room_for(std::max(a, b));
+    checks.meet(simulation.body(a), simulation.body(b), Key{});
+  }
 };
 
 TEST_F(PairChecksTest, exact_pair_that_meets_waits_for_its_impact) {
