@@ -32,7 +32,7 @@ double reach(const MovingBody& side, const Vec3& n, double c, double u, double a
   const double gap = c - n.dot(side.point.x + r) - radius;
   if (!(gap > 0)) return 0;
   const double arm = r.norm();
-  if (side.by_speed()) {
+  if (side.by_speed) {
     const double bound = side.bounds.speed + side.bounds.turn * arm;
     return first_zero(gap, u - bound, alpha);
   }
@@ -66,7 +66,7 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   }
   if (as_ball || part.kind == PartKind::sphere)
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
-  if (side.by_speed()) return kinematic_reach(side, part, n, c, u, alpha);
+  if (side.by_speed) return kinematic_reach(side, part, n, c, u, alpha);
 
   // heights and speeds of points are linear in them: in the part's frame,
   // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w

@@ -18,6 +18,7 @@ struct MovingBody : PlacedBody {
   MotionBounds bounds;
   Vec3 acceleration;        // the middle of its bounds; none where the velocity may jump
   Vec3 spread;              // it differs from the middle by this at most
+  bool by_speed = false;    // only its speeds are bounded
   double bend = 0;          // bound on |a point's acceleration against the centre's| / arm, 1/s^2
   double step_end = never;  // of the integrator's present step; `never`: the arc ends with it
 
@@ -33,15 +34,14 @@ struct MovingBody : PlacedBody {
     if (step_end != never) narrow.bound_by(trajectory.bounds(when, std::max(when, step_end)));
     return narrow;
   }
-  // Only its speeds are bounded.
-  bool by_speed() const { return bounds.velocity_may_jump(); }
 
  private:
   void bound_by(const MotionBounds& b) {
     bounds = b;
+    by_speed = b.velocity_may_jump();
     bend = b.turn_change + b.turn * b.turn;
-    acceleration = by_speed() ? Vec3(Vec3::Zero()) : b.acceleration.center();
-    spread = by_speed() ? Vec3(Vec3::Zero()) : Vec3(0.5 * b.acceleration.size());
+    acceleration = by_speed ? Vec3(Vec3::Zero()) : b.acceleration.center();
+    spread = by_speed ? Vec3(Vec3::Zero()) : Vec3(0.5 * b.acceleration.size());
   }
 };
 

@@ -88,7 +88,7 @@ double time_to_reach(const MovingBody& side, const Frame& frame, const ConvexPar
 }  // namespace
 
 bool can_turn(const MovingBody& side, const ConvexPart& part) {
-  return part.kind == PartKind::polyhedron && !side.by_speed();
+  return part.kind == PartKind::polyhedron && !side.by_speed;
 }
 
 double turning_time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,

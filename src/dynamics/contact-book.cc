@@ -25,7 +25,7 @@ void ContactBook::classify() {
     const BodyId id = static_cast<BodyId>(classes_.size());
     BodyId first = id;
     if (!table_.names_body(id))
-      first = class_of_material_.emplace(bodies_[id].material, id).first->second;
+      first = class_of_material_.try_emplace(bodies_[id].material, id).first->second;
     classes_.push_back(first);
   }
 }

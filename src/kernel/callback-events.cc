@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "groups/region.h"
 #include "groups/regroup.h"
 #include "kernel/callback-book.h"
 #include "kernel/discontinuities.h"
@@ -32,12 +31,7 @@ Progress CallbackEvents::process(std::uint32_t number) {
       book_.park(number);
       return Progress::done;
     }
-  std::vector<ProcessId> struck;
-  for (const BodyId id : callback.def.targets) {
-    if (!groups_.await(sim_.process_of(id), key)) return Progress::try_again;
-    if (sim_.body(id).dynamic()) insert(struck, sim_.process_of(id));
-  }
-  if (!groups_.await(region_of(sim_.before(key), struck, false), key)) return Progress::try_again;
+  if (!groups_.await_struck(callback.def.targets, key)) return Progress::try_again;
   if (!(callback.next == key)) return Progress::try_again;
 
   // successors that carry the old arcs, and views of them

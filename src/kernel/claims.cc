@@ -33,7 +33,7 @@ constexpr double longest_window = 8;
 bool plane_overlaps(const Body& plane, const Aabb& box) {
   const Vec3& n = plane.plane_normal;
   double lowest = 0;
-  for (int i = 0; i < 3; ++i) lowest += std::min(n[i] * box.lo[i], n[i] * box.hi[i]);
+  for (int i = 0; i < 3; ++i) lowest += n[i] * (n[i] > 0 ? box.lo : box.hi)[i];
   return lowest <= plane.plane_offset;
 }
 

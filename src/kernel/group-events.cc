@@ -67,6 +67,18 @@ bool GroupEvents::await(const Region& region, const Key& key) {
   return all_known;
 }
 
+bool GroupEvents::await_struck(std::span<const BodyId> bodies, const Key& key) {
+  bool all_known = true;
+  for (const BodyId id : bodies) all_known = await(sim_.process_of(id), key) && all_known;
+  if (!all_known) return false;
+  // who is in no group concerns nobody else
+  const Before before = sim_.before(key);
+  std::vector<ProcessId> members;
+  for (const BodyId id : bodies)
+    if (sim_.body(id).dynamic() && before.state_of(id).group) insert(members, sim_.process_of(id));
+  return members.empty() || await(region_of(before, members, false), key);
+}
+
 Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause) {
   const bool between_runs = is_edit(key);
   const Known is_known = [&](ProcessId id) { return between_runs || known(id, key); };

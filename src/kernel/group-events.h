@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "groups/regroup.h"
@@ -29,6 +30,8 @@ class GroupEvents {
   // more.
   bool await(ProcessId id, const Key& key);
   bool await(const Region& region, const Key& key);
+  // The same of all that a discontinuity of these bodies may concern.
+  bool await_struck(std::span<const BodyId> bodies, const Key& key);
   // The groups that follow a discontinuity that changed some of the successors; adds those of all
   // others that take part.
   Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);

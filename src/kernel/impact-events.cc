@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/impact-events.h"
 
-#include "groups/region.h"
 #include "groups/regroup.h"
 #include "kernel/active-pairs.h"
 #include "kernel/delivery.h"
@@ -54,14 +53,8 @@ Progress ImpactEvents::process(std::uint32_t index) {
   const Body& body_b = sim_.body(pairs_[index].b);
 
   // only after the claims of the receivers, and of those they touch, have reached its time
-  std::vector<ProcessId> struck;
-  bool all_known = true;
-  for (const Body* body : {&body_a, &body_b}) {
-    if (body->dynamic()) insert(struck, body->process);
-    all_known = groups_.await(body->process, key) && all_known;
-  }
-  if (!all_known || !groups_.await(region_of(sim_.before(key), struck, false), key))
-    return Progress::try_again;
+  const BodyId struck[] = {body_a.id(), body_b.id()};
+  if (!groups_.await_struck(struck, key)) return Progress::try_again;
 
   std::vector<Successor> successors;
   successors.reserve(2);
