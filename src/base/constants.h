@@ -81,16 +81,22 @@ inline constexpr double wake_share = 0.02;
 // %, at 1.3 times the cost).
 inline constexpr double missed_share = 0.3;
 
-// ---- rest and sleep ----
-// A group is quiet while no surface point is faster than this share, rests when it was so for this
-// long, s, and its speed has fallen to this part of what it was, or below that share.
-inline constexpr double quiet_share = 5e-3, rest_time = 0.2, rest_decay = 0.5, still_share = 1e-7;
-// A member is still while slower than this share; watched for so long, s: the second half's peak
-// must not exceed the first's by more, and the way made by this share of peak times time.
-inline constexpr double sleep_share = 5e-4, sleep_time = 0.5, growth = 1.1, drift = 0.1;
-// Fewer sleepers are not worth a group of their own: a number, and a share of the group.
-inline constexpr std::size_t least_sleepers = 8;
-inline constexpr double least_sleeping_share = 0.25;
+// ---- rest ----
+// A member is slow below this share.  The least watch over it, in times of sqrt(radius / g): what
+// falls over gets e times faster in about one of them.
+inline constexpr double slow_share = 2e-3, watch_times = 2;
+// It settles if its peak in the second half is at most this part of that in the first.  What rolls
+// up a slope and turns back is nowhere slower than a third: 1 - t/2 and t - 1 meet at t = 4/3.
+inline constexpr double settling = 0.25;
+// It trembles in its place if the second peak exceeds the first by no more, and the way made is at
+// most this share of peak times time.
+inline constexpr double growth = 1.1, drift = 0.1;
+// What was always slower than this share has stopped, up to rounding.
+inline constexpr double rounding_share = 1e-7;
+// Where others go on, fewer that could rest are not worth a group of their own: a number, and a
+// share of those that hang together.
+inline constexpr std::size_t least_resting = 8;
+inline constexpr double least_resting_share = 0.25;
 
 // ---- impacts ----
 // Points this close take part in an impact, share of the smaller size over accuracy.

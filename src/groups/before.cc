@@ -40,7 +40,17 @@ std::vector<ProcessId> Before::remaining(const Group& group) const {
 }
 
 std::vector<ProcessId> Before::hanging_together(ProcessId process) const {
-  return reached_from({process}, [](const State&) { return true; });
+  std::vector<ProcessId> all{process}, next = all;
+  while (!next.empty()) {
+    std::vector<ProcessId> found;
+    visit_contacts(next, [&](const Group&, const ContactPair&, BodyId other) {
+      const ProcessId theirs = scene_.process_of(other);
+      if (!holds(all, theirs)) insert(found, theirs);
+    });
+    for (const ProcessId other : found) insert(all, other);
+    next = std::move(found);
+  }
+  return all;
 }
 
 void insert(std::vector<ProcessId>& processes, ProcessId process) {

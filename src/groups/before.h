@@ -57,12 +57,7 @@ class Before {
 
   // Those of its members that have not left it; ascending.
   std::vector<ProcessId> remaining(const Group& group) const;
-  // These, and all that they reach by contacts over processes in states of which `goes_on` holds;
-  // ascending.
-  template <class GoesOn>
-  std::vector<ProcessId> reached_from(const std::vector<ProcessId>& processes,
-                                      GoesOn goes_on) const;
-  // The process, and all that hangs together with it.
+  // The process, and all that hangs together with it; ascending.
   std::vector<ProcessId> hanging_together(ProcessId process) const;
 
  private:
@@ -91,23 +86,6 @@ void Before::visit_contacts(ProcessId process, Visit&& visit) const {
     const ContactPair* owned = owner == group ? &pair : owner ? owner->find(pair.id) : nullptr;
     if (owned && !theirs.error) visit(*owner, *owned, other);
   }
-}
-
-template <class GoesOn>
-std::vector<ProcessId> Before::reached_from(const std::vector<ProcessId>& processes,
-                                            GoesOn goes_on) const {
-  std::vector<ProcessId> all, next;
-  for (const ProcessId process : processes) insert(all, process);
-  for (next = all; !next.empty();) {
-    std::vector<ProcessId> found;
-    visit_contacts(next, [&](const Group&, const ContactPair&, BodyId other) {
-      const ProcessId theirs = scene_.process_of(other);
-      if (!holds(all, theirs) && goes_on(state(theirs))) insert(found, theirs);
-    });
-    for (const ProcessId process : found) insert(all, process);
-    next = found;
-  }
-  return all;
 }
 
 }  // namespace tw

@@ -310,7 +310,7 @@ void collect_old(Regrouping& work) {
   Groups all;
   for (const auto& [process, i] : work.index()) {
     const Successor& successor = work.successors[i];
-    if (!successor.body->dynamic() || successor.role == Role::dependence) continue;
+    if (!successor.body->dynamic()) continue;
     add_once(all, successor.data.group);
     if (!work.changes(&successor)) {
       work.has_border = work.has_border || successor.data.group;

@@ -22,8 +22,6 @@ void for_each_field(const Group& group, Visit&& visit) {
   for (std::uint32_t i = 0; i < group.members.size(); ++i) ends.push_back(group.end(i));
   visit("ends", motion, ends);
   visit("rest", motion, group.at_rest);
-  visit("sleep", motion, group.asleep);
-  visit("quiet time", motion, group.quiet);
   visit("stillness", motion, group.stillness);
   visit("first step", motion, group.first_step);
   visit("range of masses", motion, group.masses);
@@ -36,13 +34,10 @@ void for_each_field(const Group& group, Visit&& visit) {
 }
 
 template <class Put>
-void each_word(const QuietTime& quiet, Put&& put) {
-  put(quiet.since);
-  put(quiet.speed);
-}
-template <class Put>
 void each_word(const Stillness& stillness, Put&& put) {
-  for (const double number : {stillness.since, stillness.early_peak, stillness.peak}) put(number);
+  for (const double number :
+       {stillness.since, stillness.length, stillness.early_peak, stillness.late_peak})
+    put(number);
   each_word(stillness.x, put);
   each_word(stillness.q, put);
 }

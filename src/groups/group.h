@@ -56,8 +56,6 @@ struct Group : Counted<Group> {
   double next_check = never;
   bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
   bool at_rest = false;
-  bool asleep = false;             // at rest for the time being (stillness.h)
-  QuietTime quiet;                 // of the group as a whole
   double first_step = 0;           // of the arc, s; 0: chosen
   MassRange masses;                // of all that hung together when it was made
   std::vector<ProcessId> members;  // ascending
@@ -67,7 +65,7 @@ struct Group : Counted<Group> {
   std::vector<std::uint32_t> pair_starts, pairs_by_member;  // numbers of each member's, in rows
   std::vector<ContactTag> tags;                             // of arc->start().contacts
   std::vector<double> gaps;          // m, of arc->start().contacts, at the start
-  std::vector<Stillness> stillness;  // of each member
+  std::vector<Stillness> stillness;  // of each member, while it moves
   std::shared_ptr<GroupArc> arc;
 
   // Its place among the members; -1: it is none.

@@ -172,21 +172,26 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   const Group* before = same_before(work, *group);
   set_check_times(work, before, border_end, *group);
 
-  if (before && finds_contacts(work.cause)) {
-    group->first_step = before->arc->next_step();
-    if (comes_to_rest(work, *group, *before)) {
-      group->asleep = work.falls_asleep;
-      lay_to_rest(work, *group);
-    }
-  }
-  for (const ProcessId member : members) {
-    const std::size_t place = work.place_of(work.successor_of(member));
-    group->stillness.push_back(work.stillness[place]);
-    group->asleep = group->asleep || work.asleep[place];
-  }
-  if (group->asleep) lay_to_rest(work, *group);
+  if (before && finds_contacts(work.cause)) group->first_step = before->arc->next_step();
+  const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };
+  if (work.rests[place_of(members.front())])
+    lay_to_rest(work, *group);
+  else
+    for (const ProcessId member : members)
+      group->stillness.push_back(work.stillness[place_of(member)]);
   start_arc(work, *group);
   return group;
+}
+
+// Joins the places of successors with new arcs that are in contact, where may_join(i, j).
+template <class MayJoin>
+void join_by_pairs(const Regrouping& work, Components& components, MayJoin&& may_join) {
+  for (const ContactPair& pair : work.pairs) {
+    const Successor *a = work.successor_of(pair.a()), *b = work.successor_of(pair.b());
+    if (!work.changes(a) || !work.changes(b)) continue;
+    if (const std::size_t i = work.place_of(a), j = work.place_of(b); may_join(i, j))
+      components.join(i, j);
+  }
 }
 
 }  // namespace
@@ -195,20 +200,23 @@ void make_groups(Regrouping& work) {
   std::sort(work.pairs.begin(), work.pairs.end(),
             [](const ContactPair& x, const ContactPair& y) { return x.id < y.id; });
   share_stiffness(work);
-  note_stillness(work);
 
-  // who hangs together, and who touches anything at all
+  // who touches anything at all, who hangs together, and where that comes to rest in part
   const std::size_t count = work.successors.size();
-  Components components(count);
   std::vector<bool> held(count, false);
-  for (const ContactPair& pair : work.pairs) {
-    const Successor *a = work.successor_of(pair.a()), *b = work.successor_of(pair.b());
-    const bool moves_a = work.changes(a), moves_b = work.changes(b);
-    if (moves_a) held[work.place_of(a)] = true;
-    if (moves_b) held[work.place_of(b)] = true;
-    if (moves_a && moves_b && work.asleep[work.place_of(a)] == work.asleep[work.place_of(b)])
-      components.join(work.place_of(a), work.place_of(b));
-  }
+  work.stillness.resize(count);
+  for (const ContactPair& pair : work.pairs)
+    for (const BodyId id : {pair.a(), pair.b()})
+      if (const Successor* member = work.successor_of(id); work.changes(member))
+        held[work.place_of(member)] = true;
+  for (std::size_t i = 0; i < count; ++i)
+    if (held[i]) work.stillness[i] = stillness_of(work, work.successors[i]);
+  Components together(count);
+  join_by_pairs(work, together, [](std::size_t, std::size_t) { return true; });
+  work.rests = who_rests(work, together);
+  Components components(count);
+  join_by_pairs(work, components,
+                [&](std::size_t i, std::size_t j) { return work.rests[i] == work.rests[j]; });
   count_fissions(work, held);
 
   // one group a component, its members ascending

@@ -136,7 +136,6 @@ Region region_of(const Before& before, const std::vector<ProcessId>& struck, boo
 }
 
 void widen(Region& region, const Before& before, const std::vector<ProcessId>& more) {
-  region.depends_on.clear();
   for (const ProcessId process : more) insert(region.inside, process);
   add_neighbours(region, before);
   complete(region, before, false);

@@ -25,15 +25,12 @@ namespace tw {
 
 struct Region {
   std::vector<ProcessId> inside, border;  // dynamic, ascending
-  // Whose motion the decision rests on beyond the border: those asleep beside a group that falls
-  // asleep, and what moves there.
-  std::vector<ProcessId> depends_on;
 };
 
 // Of a discontinuity that concerns the dynamic processes `struck`.  `whole`: with all their groups.
 Region region_of(const Before& before, const std::vector<ProcessId>& struck, bool whole);
 
-// The region with these taken in, and those that touch it then; it depends on nobody else any more.
+// The region with these taken in, and those that touch it then.
 void widen(Region& region, const Before& before, const std::vector<ProcessId>& more);
 
 // Who at the border would notice, once the groups are made; integrates those with a border to their

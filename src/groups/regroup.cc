@@ -9,7 +9,6 @@
 #include "groups/contact-graph.h"
 #include "groups/make-groups.h"
 #include "groups/propagation.h"
-#include "groups/rest.h"
 
 namespace tw {
 namespace {
@@ -64,8 +63,6 @@ std::vector<Successor> successors_of(const Region& region, const Before& before,
   }
   for (const ProcessId process : region.border)
     if (!known(process)) add_record(process, Role::border);
-  for (const ProcessId process : region.depends_on)
-    if (!holds(region.border, process) && !known(process)) add_record(process, Role::dependence);
   return all;
 }
 
@@ -80,9 +77,8 @@ void find_contacts(Regrouping& work, const std::vector<ProcessId>& struck) {
 }
 
 bool all_known(const Region& region, const Known& known) {
-  for (const std::vector<ProcessId>* part : {&region.inside, &region.border, &region.depends_on})
-    if (!std::all_of(part->begin(), part->end(), known)) return false;
-  return true;
+  return std::all_of(region.inside.begin(), region.inside.end(), known) &&
+         std::all_of(region.border.begin(), region.border.end(), known);
 }
 
 }  // namespace
@@ -125,7 +121,6 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     std::vector<Successor> successors = successors_of(region, before, given);
     Regrouping work(before, surroundings, request.cause, successors);
     work.reports_fissions = request.reports_fissions;
-    work.falls_asleep = !region.depends_on.empty();
     find_contacts(work, struck);
 
     // impulses that reach the border come first: then nothing is as it should be
@@ -134,17 +129,6 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     if (more.empty()) {
       make_groups(work);
       more = who_notices(work);
-      const std::vector<ProcessId> sleepers = wakes_with(work);
-      std::vector<ProcessId> in_motion;
-      if (more.empty() && disturbed(work, sleepers, in_motion)) {
-        // what would come to rest with them falls asleep instead: once more, the same region
-        count_discarded(work, counters);
-        counters.manifolds += work.counters.manifolds;
-        region.depends_on = sleepers;
-        region.depends_on.insert(region.depends_on.end(), in_motion.begin(), in_motion.end());
-        continue;
-      }
-      more.insert(more.end(), sleepers.begin(), sleepers.end());
     }
     counters.manifolds += work.counters.manifolds;
     if (more.empty()) {

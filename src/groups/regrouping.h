@@ -60,9 +60,8 @@ struct Regrouping {
   Groups old;                            // whose members get new arcs, each once
   std::vector<PairBefore> pairs_before;  // of processes with new arcs, ascending
   bool has_border = false;
-  bool falls_asleep = false;         // whatever comes to rest does so for the time being
   std::vector<Stillness> stillness;  // of the successors
-  std::vector<bool> asleep;          // of the successors: laid to rest for the time being
+  std::vector<bool> rests;           // of the successors: who comes to rest
   std::vector<ContactPair> pairs;    // from here on; their contacts in a row of `contacts`
   std::vector<NewContact> contacts;
   Groups made;

@@ -1,40 +1,37 @@
-// Rest and sleep: which members of a group move no more.
+// Rest: which members of a group move no more.
 //
-// *Rest* is decided for whole groups: slow for a while, no loaded contact slipping, and slower in
-// the end than at first (what tips over slowly gets faster, what settles gets slower).
+// One rule, for each member.  It is *slow* while its fastest point is.  It is *still* after it was
+// slow throughout a watch of at least some times that in which it would fall over, if in the second
+// half of the watch it had all but stopped (it settles), or was no faster and stayed in its place
+// (it trembles): a tower that begins to tip gets faster, a ball that creeps gets away.  Where the
+// watch ends with neither, it begins anew for what got faster, else goes on for twice as long: so
+// what settles slowly is found, too.  A still member *can rest* if all that it touches is slow or
+// stands still.  Whether its contacts slip is not asked: what slides gets away or stops, and what
+// presses with next to nothing may slip for ever.
 //
-// *Sleep* is rest for the time being.  One stone that rocks would keep a heap awake; so at the
-// check of a large group those of its members that hardly move are laid to rest as groups of their
-// own, in which the others see still bodies at their border (region.h), and which wake where the
-// forces on them change.  A member falls asleep when it was slow for a while without getting faster
-// or away (so neither a tower that begins to tip nor a ball that creeps), no loaded contact of it
-// slips, and everything that it touches is slow or still, too.
+// At a check those that can rest are laid to rest: their arcs are constant and have no end.  If
+// that is all of those that hang together, nothing is left to compute; if it is only some, they
+// stand still at the border of what goes on (region.h), and wake where the force on them changes.
+// So one stone that rocks keeps no heap awake.  Few of many are not worth a border.
 //
-// A group that comes to rest beside sleeping ones falls asleep instead, as long as something moves
-// that touches any of those that hang together with it.  When the last one would come to rest, they
-// all wake, and all come to rest together by the rule for whole groups: nothing stays frozen that
-// would have moved.
+// Speeds are shares of sqrt(g size) with size the least width, times multiples of sqrt(radius / g):
+// a scene that is scaled comes to rest when its original does.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
+#include "groups/components.h"
 #include "groups/regrouping.h"
 
 namespace tw {
 
-// Fills in the books of the successors, and who of them falls asleep.
-void note_stillness(Regrouping& work);
+// The book of a successor with a new arc, from here on.
+Stillness stillness_of(const Regrouping& work, const Successor& successor);
 
-// Whether the group, the same members as `before`, has come to rest; keeps its book.
-bool comes_to_rest(const Regrouping& work, Group& group, const Group& before);
-
-// Who sleeps beside groups that would come to rest now, and all sleepers that hang together with
-// them: they wake instead; ascending.
-std::vector<ProcessId> wakes_with(const Regrouping& work);
-
-// Whether something that moves touches the sleepers: then they sleep on.  `in_motion`: those that
-// do so and keep their arcs; ascending.
-bool disturbed(const Regrouping& work, const std::vector<ProcessId>& sleepers,
-               std::vector<ProcessId>& in_motion);
+// Which successors come to rest at a check; needs their books.  `together`: the places of those
+// that hang together by contact pairs.
+std::vector<bool> who_rests(const Regrouping& work, Components& together);
 
 }  // namespace tw

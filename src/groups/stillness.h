@@ -1,6 +1,4 @@
-// How long somebody has hardly moved: what rest and sleep are decided by.
-//
-// Speeds are those of the fastest surface point, m/s.
+// How long a body has hardly moved: the book that rest is decided by (rest.h).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -10,18 +8,14 @@
 
 namespace tw {
 
-// The book of one member.
+// The watch over one member.  It doubles for as long as nothing can be said: its first half is then
+// the whole of what was seen.
 struct Stillness {
-  double since = never;             // s; `never`: it is not still
-  double early_peak = 0, peak = 0;  // in the first and in the second half of the watch
-  Vec3 x = Vec3::Zero();            // where it was at `since`
+  double since = never;                  // s; `never`: it is not slow
+  double length = 0;                     // of the watch, s
+  double early_peak = 0, late_peak = 0;  // m/s, in the halves of the watch
+  Vec3 x = Vec3::Zero();                 // where it was at `since`
   Quat q = Quat::Identity();
-};
-
-// The book of a whole group: slow, and nothing slips.
-struct QuietTime {
-  double since = never;  // s; `never`: not so
-  double speed = 0;      // at that time
 };
 
 }  // namespace tw

@@ -62,7 +62,7 @@ bool GroupEvents::await(ProcessId id, const Key& key) {
 
 bool GroupEvents::await(const Region& region, const Key& key) {
   bool all_known = true;
-  for (const std::vector<ProcessId>* part : {&region.inside, &region.border, &region.depends_on})
+  for (const std::vector<ProcessId>* part : {&region.inside, &region.border})
     for (const ProcessId id : *part) all_known = await(id, key) && all_known;
   return all_known;
 }

@@ -10,11 +10,10 @@ namespace tw {
 
 // What a discontinuity does to one process.
 enum class Role : std::uint8_t {
-  new_arc,     // starts an arc here: a receiver, or whom the change reaches
-  record,      // was looked at, or only its slots changed: carries its arc along
-  border,      // a group member that keeps its arc and touches one that doesn't: a record
-  dependence,  // the others' rest depends on its arc, which it keeps: a record
-  no_state     // a fixed body without slots: takes part, but keeps no states
+  new_arc,  // starts an arc here: a receiver, or whom the change reaches
+  record,   // was looked at, or only its slots changed: carries its arc along
+  border,   // a group member that keeps its arc and touches one that doesn't: a record
+  no_state  // a fixed body without slots: takes part, but keeps no states
 };
 
 struct Successor {

@@ -44,7 +44,7 @@ std::vector<StabilityScene> rows(int heaps) {
   for (const double off : {-0.1, 0.1}) all.push_back(slope_scene(off, 10));
   for (const double e : {0.0, 1.0}) all.push_back(heap_scene(36, 1, true, e, 10));
   for (int decade = 4; decade <= 10; ++decade)
-    all.push_back(stiffness_scene(std::pow(10.0, decade), 5));
+    all.push_back(stiffness_scene(std::pow(10.0, decade), decade > 4 ? 5 : 25));
   const ShapePtr ball = make_sphere(0.1), box = make_box({0.2, 0.2, 0.1});
   const ShapePtr disc = make_cylinder(0.1, 0.05);
   all.push_back(spin_scene("ball-rolling", ball, 0.1, {0, 1000, 0}, false, 20));

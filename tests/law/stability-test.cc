@@ -32,7 +32,7 @@ TEST(Stability, heavy_cubes_stand_on_light_ones) {
 }
 
 TEST(Stability, heavy_cube_that_falls_on_a_light_one_does_not_go_through) {
-  const StabilityOutcome o = expect_stable(heavy_blow_scene(1e6, 5), 1e-3, 2e-3);
+  const StabilityOutcome o = expect_stable(heavy_blow_scene(1e6, 10), 1e-3, 2e-3);
   EXPECT_LT(o.travel, 0.1);  // it had 5 cm to fall
 }
 
@@ -68,7 +68,9 @@ TEST(Stability, thin_rods_come_to_rest) { expect_stable(rod_scene(1000, 4), 1e-3
 
 TEST(Stability, stiffness_over_six_decades) {
   for (const double stiffness : {1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10}) {
-    const StabilityOutcome o = expect_stable(stiffness_scene(stiffness, 5), 1e-6, 0.1);
+    // the softest column all but buckles: it sways for 17 s
+    const double duration = stiffness > 1e4 ? 5 : 25;
+    const StabilityOutcome o = expect_stable(stiffness_scene(stiffness, duration), 1e-6, 0.1);
     // 5 cubes of 8 kg on the lowest; the law hardens to 2 d (1 + ..)
     EXPECT_LT(o.deepest, 5 * 8 * 9.81 / stiffness) << stiffness;
     EXPECT_GT(o.deepest, 0.3 * 5 * 8 * 9.81 / stiffness) << stiffness;

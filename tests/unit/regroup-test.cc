@@ -11,24 +11,6 @@
 namespace tw::test {
 namespace {
 
-// Cubes of 0.1 m in a row on the floor, all in one group since time 0, at rest against each other.
-struct Row : SmallScene {
-  BodyId floor = add_floor();
-  std::vector<BodyId> cubes;
-
-  explicit Row(int count) {
-    for (int i = 0; i < count; ++i) cubes.push_back(add_cube(0.1, {0.1 * i, 0, 0.05}));
-    // first each with the floor, then with its neighbour
-    std::uint32_t microstep = 0;
-    for (const BodyId cube : cubes) fuse(floor, cube, 0, ++microstep);
-    for (int i = 1; i < count; ++i) fuse(cubes[index(i - 1)], cubes[index(i)], 0, ++microstep);
-    // then all join
-    regroup({0, 99, KeyKind::group_check, 0}, Cause::check, cubes);
-  }
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-  Key after() const { return {0, 100, KeyKind::impact, 0}; }
-};
-
 Role role_of(const std::vector<Successor>& successors, BodyId id) {
   const auto at = std::find_if(successors.begin(), successors.end(),
                                [&](const Successor& s) { return s.body->id() == id; });
