@@ -5,9 +5,11 @@
 // counted in the statistics or raised, never silent.  `cost`: decides only where to look, when, or
 // how large a window is; the same bits come out whatever it is.
 //
+// `patch` and `seam`, which points of two surfaces are contacts, belong to the first kind.
+//
 // Not here: limits of what users may set (limits.h); rounding of one algorithm, which stands with
-// it; what follows from `accuracy` (groups/tolerances.h).  Shares of speed are of sqrt(g size),
-// with size the least width of a body; g the scale of gravity.
+// it; what follows from `accuracy` (groups/step-tolerances.h).  Shares of speed are of sqrt(g
+// size), with size the least width of a body; g the scale of gravity.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -30,6 +32,10 @@ inline constexpr double unequal_masses = 100;
 inline constexpr double most_unequal = 1000;
 // Of the small oscillation about the static depth; 0.3 to 0.7 serve.
 inline constexpr double damping_ratio = 0.5;
+// Depth beyond which a contact hardens no more, over its hardening depth.
+inline constexpr double hardening_cap = 100;
+// Smooth friction reaches three quarters of the cone at about this speed, m/s.
+inline constexpr double smooth_speed = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
 inline constexpr double tangential_share = 0.8;
 // m/s^2: stands in for gravity where there is none.
@@ -41,6 +47,16 @@ inline constexpr double fusion_share = 0.07, least_default_speed = 1e-4, least_f
 // A new contact that slides is given this many times the stretch of the cone, so that it slides at
 // once.
 inline constexpr double preload_beyond = 10;
+
+// ---- where bodies meet ----
+// Pairs that are not predicted exactly are looked at at multiples of this, s; a contact that no
+// such time sees does not exist.
+inline constexpr double check_grid = 0x1p-20;
+// Depth that does not count as penetration, share of the smaller size: above the rounding of a
+// distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
+inline constexpr double depth_slack = 1e-12;
+// Bodies may overlap by this share of the smaller size when they come into the world: touching.
+inline constexpr double start_depth = 1e-6;
 
 // ---- which contacts are the same ----
 // A contact after a refresh is one before it if they are not farther apart, share of the smaller
@@ -55,6 +71,17 @@ inline constexpr double flat_angle = coplanar;
 // Where a corner crosses the edge between two faces at a small angle, both hold it for a moment: as
 // far as they are at one place (share of the size) with one normal (cosine), they hold it together.
 inline constexpr double same_place = 1e-2, same_normal = 0.95;
+
+// ---- steps of a group's arc ----
+// The next step is h clamp(safety err^(-1/4), least, most); the first aims at this error, in
+// tolerances, for it is tried without knowing.
+inline constexpr double step_safety = 0.9, least_step_change = 0.2, most_step_change = 5;
+inline constexpr double first_step_error = 50;
+// A member turns no further in a step, rad: rotation vectors are a chart up to 2 pi.
+inline constexpr double most_step_turn = 2;
+// Slow groups are followed more closely: down to this part of the tolerances, and not beyond those
+// of this accuracy (groups/step-tolerances.h).
+inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
 
 // ---- groups ----
 // Boxes of members reach this share of their size farther: a check finds in them whom a member may
@@ -99,6 +126,9 @@ inline constexpr std::size_t least_resting = 8;
 inline constexpr double least_resting_share = 0.25;
 
 // ---- impacts ----
+// What still approaches after an impulse with less than this share of what did before is rounding;
+// an approach slower than this share of the speeds involved is what an impact before left of them.
+inline constexpr double residual_approach = 1e-12, speed_noise = 1e-13;
 // Points this close take part in an impact, share of the smaller size over accuracy.
 inline constexpr double touch_per_accuracy = 0.1;
 // So many impacts in quick succession fuse a pair; the interval that makes them quick is that of
@@ -125,6 +155,70 @@ inline constexpr std::uint32_t most_repeated = 2000;
 inline constexpr std::uint32_t most_microsteps = 100000;
 
 }  // namespace tw::guard
+
+namespace tw::cost {
+
+// ---- claims ----
+// Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
+inline constexpr double box_inflation = 1e-9;
+// A body that claims and finds nobody several times in a row claims longer windows, each twice the
+// one before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
+inline constexpr int patience = 3, most_doublings = 20;
+// The longest window, s: a body that hardly moves need not claim again for long.
+inline constexpr double longest_window = 8;
+// A member of a group that turns by less, rad, is worth a box that fits.  What flies turns by more,
+// or hardly ever asks: its ball at once.
+inline constexpr double hardly_turns = 0.5;
+
+// ---- broad phase ----
+// A zone reaches beyond its box by this share of the longest edge.
+inline constexpr double zone_margin = 0.5;
+// A box moves to the next finer level when its longest edge is below this share of that level's
+// cells.
+inline constexpr double stays_above = 0.75;
+// A table has at least this many buckets for each box.
+inline constexpr std::size_t buckets_per_box = 2;
+
+// ---- certificates ----
+// Bounding balls this many radii apart need no distance query.
+inline constexpr double far_in_radii = 0.25;
+// A certificate shorter than this is worth a second look, s; with a plane that turns along with the
+// two, which is followed no longer than this, s.
+inline constexpr double soon = 1e-4, longest_turn = 2e-3;
+// How far ahead the speed of a kinematic body is bounded, s.
+inline constexpr double kinematic_horizon = 0.5;
+
+// ---- frames ----
+// They are written in batches of so many, or when so many states wait for theirs.
+inline constexpr std::size_t frame_batch = 512, most_waiting_states = 20000;
+
+}  // namespace tw::cost
+
+namespace tw::patch {
+
+// Points a pair of parts has at most.
+inline constexpr std::size_t most_points = 8;
+// Normals this near to that of a face are taken for it: cos 2 degrees of polyhedra, cos 0.2 degrees
+// of what is round, where a degree would make a depth wrong by r/6600.
+inline constexpr double aligned = 0.99939082701909573, aligned_round = 0.99999390765779;
+// Directions of a cylinder this near to each other are parallel, this near to square are square:
+// sin 0.2 degrees.
+inline constexpr double level = 0.0034906514152237;
+// Of two faces the one with this much more area is the reference; else that of A.  Areas do not
+// depend on poses, so that bodies at rest keep their reference.
+inline constexpr double clearly_larger = 1.01;
+// What the points of a face may miss of the distance before the nearest features are added: of the
+// distance (1 - cos 2 degrees, and as much again); of the size; of a radius.  Eight fixed points of
+// a rim that stands flat miss r tilt (1 - cos(pi/8)) < 2.3e-5 r; the nearest point in the place of
+// one of them would make it rock for ever.
+inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_round = 2.5e-5;
+// Sine of the angle between axis and normal below which a cylinder stands, 20 degrees; and below
+// which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
+inline constexpr double standing = 0.342, standing_flat = 3e-4;
+// Points of a rim, and corners of a disc as an outline.
+inline constexpr int rim_points = 8, disc_sides = 16;
+
+}  // namespace tw::patch
 
 namespace tw::seam {
 

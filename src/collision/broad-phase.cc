@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/broad-phase.h"
 
+#include "base/constants.h"
+
 namespace tw {
-namespace {
-
-// A zone reaches beyond its box by this share of the longest edge.
-constexpr double zone_margin = 0.5;
-
-}  // namespace
 
 void BroadPhase::place(std::uint32_t id, const Aabb& box, bool stands) {
   if (!stands) {
@@ -33,7 +29,7 @@ const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
     return zone;
   zone.version = version_;
   zone.box = box;
-  zone.box.grow(zone_margin * box.size().maxCoeff());
+  zone.box.grow(cost::zone_margin * box.size().maxCoeff());
   zone.neighbours.clear();
   standing_.overlapping(zone.box, [&](std::uint32_t other) {
     zone.neighbours.push_back({standing_.box(other), other});

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
+#include "base/constants.h"
 #include "collision/cylinder-plane.h"
 #include "collision/cylinder-point.h"
 #include "collision/face-contact.h"
@@ -14,24 +15,6 @@
 namespace tw {
 
 namespace {
-
-// cos 0.2 degrees: normals this near to that of a face or cap are taken for it.  (On a round body a
-// degree would make a depth wrong by r/6600.)
-constexpr double aligned = 0.99999390765779;
-
-// sin 0.2 degrees: directions this near to each other count as parallel, this near to square as
-// square
-constexpr double level = 0.0034906514152237;
-
-// a disc as an outline
-constexpr int disc_sides = 16;
-
-// What the points of a plane may miss of the distance before the witness is added: relative to the
-// distance, and to the radius.  Eight fixed points of a rim that stands flat (tilt < 3e-4) miss
-// r tilt (1 - cos(pi/8)) < 2.3e-5 r; a witness in the place of one of them would make it rock for
-// ever.
-constexpr double missed_ratio = 2e-3;
-constexpr double missed_floor = 2.5e-5;
 
 // The pair as one sees it who stands on `reference`; the normal is from there to the other.
 struct View {
@@ -60,7 +43,7 @@ bool face_ground(const View& v, Ground& ground) {
   const Vec3 local = world.R.transpose() * v.normal;
   const int number = core.face_at_vertex(core.support(local, 0), local);
   const Polyhedron::Face& face = core.face(number);
-  if (face.normal.dot(local) < aligned) return false;
+  if (face.normal.dot(local) < patch::aligned_round) return false;
   ground.normal = world.R * face.normal;
   ground.point = world * (face.offset * face.normal);
   ground.name = static_cast<std::uint64_t>(number);
@@ -75,13 +58,13 @@ bool face_ground(const View& v, Ground& ground) {
 bool cap_ground(const View& v, Ground& ground) {
   const PlacedCylinder c(v.reference, v.reference_frame);
   const double along = c.axis.dot(v.normal);
-  if (std::abs(along) < aligned) return false;
+  if (std::abs(along) < patch::aligned_round) return false;
   ground.normal = along < 0 ? Vec3(-c.axis) : c.axis;
   ground.point = c.center + c.half_length * ground.normal;
   ground.name = along < 0 ? 1001 : 1000;
   const Vec3 beside = c.axis.cross(c.across);
-  for (int k = 0; k < disc_sides; ++k) {
-    const double angle = 2 * pi * k / disc_sides;
+  for (int k = 0; k < patch::disc_sides; ++k) {
+    const double angle = 2 * pi * k / patch::disc_sides;
     const Vec3 inward = -(std::cos(angle) * c.across + std::sin(angle) * beside);
     ground.sides.push_back({inward, inward.dot(c.center) - c.radius, 0});
   }
@@ -109,9 +92,10 @@ void add_on_ground(const View& v, const Ground& ground, std::vector<ManifoldPoin
   cylinder_on_ground(cylinder, ground, v.reach, v.point(), out);
   double least = 1e300;
   for (std::size_t i = from; i < out.size(); ++i) least = std::min(least, out[i].gap);
-  const double allowed = missed_ratio * std::abs(v.distance) + missed_floor * cylinder.radius;
+  const double allowed =
+      patch::missed_ratio * std::abs(v.distance) + patch::missed_floor_round * cylinder.radius;
   if (least <= v.distance + allowed) return;
-  if (out.size() - from == most_manifold_points) out.pop_back();
+  if (out.size() - from == patch::most_points) out.pop_back();
   add_witness(v, out);
 }
 
@@ -154,7 +138,7 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
     add(c.center + tail + from * along, name(from, true));
     add(c.center + tail + to * along, name(to, false));
   }
-  thin_face_points(points, most_manifold_points);
+  thin_face_points(points, patch::most_points);
   ManifoldPoint p = v.point();
   p.normal = cap.normal;
   for (const FacePoint& found : points) {
@@ -192,7 +176,7 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   };
   const std::size_t from = out.size();
   const double rate = along.dot(c.axis);
-  if (along.cross(c.axis).norm() < level * along.norm()) {
+  if (along.cross(c.axis).norm() < patch::level * along.norm()) {
     const double start = (tail - c.center).dot(c.axis);
     double t0 = (-c.half_length - start) / rate;
     double t1 = (c.half_length - start) / rate;
@@ -216,18 +200,18 @@ void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
   tail = world * core.vertex(vertex);
   along.setZero();
-  double best = level;
+  double best = patch::level;
   for (const Polyhedron::Link& link : core.links(vertex)) {
     const Vec3 edge = world * core.vertex(link.vertex) - tail;
     const double off = edge.cross(axis).norm() / edge.norm();
-    if (off >= best || std::abs(edge.dot(v.normal)) > level * edge.norm()) continue;
+    if (off >= best || std::abs(edge.dot(v.normal)) > patch::level * edge.norm()) continue;
     best = off;
     along = edge;
   }
 }
 
 bool is_level(const ConvexPart& part, const Frame& frame, const Vec3& normal) {
-  return std::abs(PlacedCylinder(part, frame).axis.dot(normal)) < level;
+  return std::abs(PlacedCylinder(part, frame).axis.dot(normal)) < patch::level;
 }
 
 void polyhedron_and_cylinder(const View& of_polyhedron, const View& of_cylinder,

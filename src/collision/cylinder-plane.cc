@@ -4,21 +4,12 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "collision/face-contact.h"
 
 namespace tw {
 
 namespace {
-
-// sine of the angle between axis and normal below which a cylinder stands: 20 degrees
-constexpr double standing = 0.342;
-
-// the same below which it stands flat, on points fixed in it: nearer to upright the lowest point of
-// the rim is noise
-constexpr double flat = 3e-4;
-
-// a rim's points
-constexpr int rim_points = 8;
 
 // sides this near, relative to the radius, are met
 constexpr double slack = 1e-12;
@@ -84,8 +75,8 @@ void stand(const PlacedCylinder& c, const Ground& ground, double rolling, const 
   const Vec3 cap = c.center + end * c.half_length * c.axis;
   const Vec3 beside = c.axis.cross(down);
   polygon.clear();
-  for (int k = 0; k < rim_points; ++k) {
-    const double angle = 2 * pi * k / rim_points;
+  for (int k = 0; k < patch::rim_points; ++k) {
+    const double angle = 2 * pi * k / patch::rim_points;
     const Vec3 point = cap + c.radius * (std::cos(angle) * down + std::sin(angle) * beside);
     polygon.push_back({point, ground.normal.dot(point - ground.point), k});
   }
@@ -97,14 +88,14 @@ void stand(const PlacedCylinder& c, const Ground& ground, double rolling, const 
     if (polygon[i].height > reach) continue;
     const int before = polygon[i > 0 ? i - 1 : polygon.size() - 1].next;
     const int after = polygon[i].next;
-    const bool on_rim = after >= 0 && before == (after + rim_points - 1) % rim_points;
+    const bool on_rim = after >= 0 && before == (after + patch::rim_points - 1) % patch::rim_points;
     const auto word = [](int next) {
       return static_cast<std::uint64_t>(next < 0 ? 1000 + ~next : next);
     };
     const std::uint64_t key = on_rim ? word(after) : (word(before) + 1) << 20 | word(after);
     points.push_back({polygon[i].point, polygon[i].height, key});
   }
-  thin_face_points(points, most_manifold_points);
+  thin_face_points(points, patch::most_points);
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the cylinder
     const bool lowest = rolling > 0 && point.key == 0;
@@ -126,7 +117,7 @@ PlacedCylinder::PlacedCylinder(const ConvexPart& part, const Frame& frame)
 double PlacedCylinder::rolling_radius(const Vec3& normal, Vec3& down) const {
   const Vec3 square = normal - axis.dot(normal) * axis;
   const double sine = square.norm();
-  if (sine < flat) {
+  if (sine < patch::standing_flat) {
     down = across;
     return 0;
   }
@@ -138,7 +129,7 @@ void cylinder_on_ground(const PlacedCylinder& cylinder, const Ground& ground, do
                         ManifoldPoint p, std::vector<ManifoldPoint>& out) {
   Vec3 down;
   const double rolling = cylinder.rolling_radius(ground.normal, down);
-  const bool stands = rolling == 0 || cylinder.radius < standing * rolling;
+  const bool stands = rolling == 0 || cylinder.radius < patch::standing * rolling;
   (stands ? stand : lie)(cylinder, ground, rolling, down, reach, p, out);
 }
 

@@ -13,6 +13,7 @@
 
 #include <vector>
 
+#include "base/constants.h"
 #include "collision/manifold-parts.h"
 #include "geometry/polyhedron.h"
 
@@ -35,7 +36,7 @@ struct Ground {
   std::uint64_t name = 0;
 };
 
-// Appends the points with gap <= reach, at most `most_manifold_points`; `p` has what they share.
+// Appends the points with gap <= reach, at most `patch::most_points`; `p` has what they share.
 void cylinder_on_ground(const PlacedCylinder& cylinder, const Ground& ground, double reach,
                         ManifoldPoint p, std::vector<ManifoldPoint>& out);
 

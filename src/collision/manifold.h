@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/constants.h"
 #include "geometry/shape.h"
 
 namespace tw {
@@ -36,9 +37,6 @@ enum class ReferenceChoice : unsigned char {
   of_a,    // that of a, as where a is fixed: contacts at its seams then have its very normals
   of_b,
 };
-
-// At most this many a pair of parts.
-inline constexpr std::size_t most_manifold_points = 8;
 
 // All points with gap <= reach of every pair of parts, appended to `out`: at least one for each
 // pair of parts whose distance is <= reach.  Face against face: the clipped polygon and, of the

@@ -11,18 +11,6 @@ namespace tw {
 
 namespace {
 
-// A normal this near to that of a face, cos 2 degrees, is taken for it.
-constexpr double aligned = 0.99939082701909573;
-
-// Of two faces the one with this much more area is the reference; else that of A.  Areas do not
-// depend on poses, so that bodies at rest keep their reference.
-constexpr double clearly_larger = 1.01;
-
-// What the points of a face may miss of the distance before the exact features are added: relative
-// to the distance (1 - cos 2 degrees, and as much again), and to the size.
-constexpr double missed_ratio = 2e-3;
-constexpr double missed_floor = 1e-6;
-
 struct AlignedFace {
   int number = -1;
   double cosine = -2;
@@ -41,7 +29,7 @@ AlignedFace aligned_face(const Polyhedron& p, const CoreFeature& feature, const 
 }
 
 bool prefers_b(const Polyhedron::Face& a, const Polyhedron::Face& b, ReferenceChoice choice) {
-  if (choice == ReferenceChoice::larger) return b.area > clearly_larger * a.area;
+  if (choice == ReferenceChoice::larger) return b.area > patch::clearly_larger * a.area;
   return choice == ReferenceChoice::of_b;
 }
 
@@ -112,16 +100,15 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
   const Polyhedron& incident = reference_is_a ? cores.b : cores.a;
   const Frame placed = reference_is_a ? cores.b_in_a : cores.a_in_b();
   const Frame world = reference_is_a ? cores.world_a : cores.world_a * cores.b_in_a;
-  face_contact(reference, face, incident, placed, incident_face, reach, most_manifold_points,
-               points);
+  face_contact(reference, face, incident, placed, incident_face, reach, patch::most_points, points);
 
   // what the face does not show of the distance, its features do
   double least = 1e300;
   for (const FacePoint& p : points) least = std::min(least, p.gap);
-  const double allowed =
-      missed_ratio * std::abs(near.distance) + missed_floor * (cores.a.radius() + cores.b.radius());
+  const double allowed = patch::missed_ratio * std::abs(near.distance) +
+                         patch::missed_floor * (cores.a.radius() + cores.b.radius());
   if (!(least <= near.distance + allowed)) {
-    thin_face_points(points, most_manifold_points - 1);
+    thin_face_points(points, patch::most_points - 1);
     add_corners(cores, near, pair, out);
   }
 
@@ -152,8 +139,8 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
   const Vec3 down = -(cores.b_in_a.R.transpose() * near.normal);
   const AlignedFace face_a = aligned_face(cores.a, near.a, near.normal);
   const AlignedFace face_b = aligned_face(cores.b, near.b, down);
-  const bool of_a = face_a.cosine >= aligned;
-  const bool of_b = face_b.cosine >= aligned;
+  const bool of_a = face_a.cosine >= patch::aligned;
+  const bool of_b = face_b.cosine >= patch::aligned;
   if (!of_a && !of_b) return add_corners(cores, near, pair, out);
   const bool reference_is_a = of_a && !(of_b && prefers_b(cores.a.face(face_a.number),
                                                           cores.b.face(face_b.number), choice));
@@ -189,7 +176,7 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
     const double gap = p.normal.dot(point - frame_h.p) - half_space.offset;
     if (gap <= reach) points.push_back({point, gap, static_cast<std::uint64_t>(v)});
   }
-  thin_face_points(points, most_manifold_points);
+  thin_face_points(points, patch::most_points);
   for (const FacePoint& found : points) {
     p.core_point = found.point;
     p.gap = found.gap;

@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/spatial-hash.h"
 
+#include "base/constants.h"
+
 namespace tw {
 namespace {
 
 // Cell edges from 2^-40 to 2^55 m; what is larger or smaller shares the end's cells.
 constexpr int least_exponent = -40, greatest_exponent = 55;
-
-// A box moves to the next finer level when its longest edge is below this share of that level's
-// cells.
-constexpr double stays_above = 0.75;
-
-// A table has at least this many buckets for each box.
-constexpr std::size_t buckets_per_box = 2;
 
 }  // namespace
 
@@ -79,7 +74,7 @@ void SpatialHash::place(std::uint32_t id, const Aabb& box) {
   int exponent = exponent_of(box);
   // a box that shrank a little stays where it is: levels would flap otherwise
   if (residence.present && exponent == residence.level - 1 &&
-      box.size().maxCoeff() > std::ldexp(stays_above, exponent))
+      box.size().maxCoeff() > std::ldexp(cost::stays_above, exponent))
     exponent = residence.level;
   if (residence.present && exponent != residence.level) remove(id);
 
@@ -98,7 +93,7 @@ void SpatialHash::place(std::uint32_t id, const Aabb& box) {
   }
   residence = {bucket, exponent, true};
   link(level, id);
-  if (level.count * buckets_per_box > level.first.size()) grow_table(level);
+  if (level.count * cost::buckets_per_box > level.first.size()) grow_table(level);
 }
 
 void SpatialHash::remove(std::uint32_t id) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
+#include "base/constants.h"
 #include "collision/clip.h"
 #include "collision/gjk.h"
 #include "collision/manifold-parts.h"
@@ -19,21 +20,18 @@ void crossing_of_edges(const CorePair& pair, const LeastAxis& axis, Vec3& on_a, 
 
 namespace {
 
-// a manifold has no more points than this
-constexpr std::size_t most_points = 8;
-
 // Face of A or B as reference: the other's face clipped by it.
 void face_points(const CorePair& cores, const LeastAxis& axis, double tolerance,
                  std::vector<ClippedPoint>& points) {
   if (axis.kind == AxisKind::face_a) {
     clip_face(cores.a, axis.feature_a, cores.b, cores.b_in_a, axis.feature_b, tolerance,
-              most_points, points);
+              patch::most_points, points);
     // midway between the surfaces
     for (ClippedPoint& p : points) p.point -= 0.5 * p.gap * axis.normal;
     return;
   }
   clip_face(cores.b, axis.feature_b, cores.a, cores.a_in_b(), axis.feature_a, tolerance,
-            most_points, points);
+            patch::most_points, points);
   for (ClippedPoint& p : points) p.point = cores.b_in_a * p.point + 0.5 * p.gap * axis.normal;
 }
 
@@ -84,7 +82,7 @@ void half_space_points(const ConvexPart& half_space, const Frame& frame_h,
     const double gap = normal.dot(point - frame_h.p) - half_space.offset;
     if (gap <= tolerance) points.push_back({point, gap});
   }
-  thin_points(points, most_points);
+  thin_points(points, patch::most_points);
   for (const ClippedPoint& p : points)
     out.push_back({p.point - 0.5 * p.gap * normal, sign * normal, p.gap, pair});
 }

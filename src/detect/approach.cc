@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "dynamics/placed-body.h"
 
 namespace tw {
@@ -30,7 +31,9 @@ double closing_at(const Piece& piece, double when, const Separation& s) {
   const PoseTwist pa = piece.a->trajectory().at(when), pb = piece.b->trajectory().at(when);
   const Vec3 ua = pa.v + pa.w.cross(s.point_a - pa.x), ub = pb.v + pb.w.cross(s.point_b - pb.x);
   const double closing = -(ub - ua).dot(s.normal);
-  return std::abs(closing) > speed_noise * (point_speed(a, pa) + point_speed(b, pb)) ? closing : 0;
+  return std::abs(closing) > answer::speed_noise * (point_speed(a, pa) + point_speed(b, pb))
+             ? closing
+             : 0;
 }
 
 bool approaching_at(const Piece& piece, double when) {

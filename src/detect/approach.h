@@ -7,9 +7,6 @@
 
 namespace tw {
 
-// An approach slower than this share of the speeds involved is rounding left by an impact before.
-inline constexpr double speed_noise = 1e-13;
-
 // The signed distance at `when`, by a cold query: a function of the piece and the time alone.
 Separation separation_at(const Piece& piece, double when);
 // How fast the nearest points of `s` close at `when`, m/s; 0 where that is rounding.

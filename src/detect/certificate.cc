@@ -6,17 +6,12 @@
 #include <cmath>
 #include <optional>
 
+#include "base/constants.h"
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
 namespace {
-
-// Bounding balls this many radii apart need no distance query.
-constexpr double far_in_radii = 0.25;
-
-// A certificate shorter than this is worth a second look, s.
-constexpr double soon = 1e-4;
 
 // The plane: at height c along n, moving with u and alpha.
 struct Plane {
@@ -151,7 +146,7 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
         const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
         const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
         if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
-        if (spheres || centers - radii > far_in_radii * radii) {
+        if (spheres || centers - radii > cost::far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
           least = std::min(least, longest([&](const MovingBody& x, const MovingBody& y) {
                              return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n,
@@ -169,7 +164,7 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
         return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
       });
       // where edges and faces turn past each other, a plane that turns with them lasts longer
-      if (apart < soon && can_turn(a, pa) && can_turn(b, pb))
+      if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
         apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
                            return turning_time_apart(x, pa, y, pb, s, allowance);
                          }));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "collision/impact-time.h"
 #include "detect/approach.h"
 
@@ -15,7 +16,7 @@ double ball_meets_plane(const Body& ball, const Parabola& path, const Body& plan
   const Vec3& n = plane.plane_normal;
   const Vec3 v = path.velocity(start);
   double speed = n.dot(v);
-  if (std::abs(speed) <= speed_noise * v.norm()) speed = 0;
+  if (std::abs(speed) <= answer::speed_noise * v.norm()) speed = 0;
   const double gap = n.dot(path.position(start)) - plane.plane_offset - ball.sphere_radius;
   return sphere_plane_impact(gap, speed, n.dot(path.acceleration));
 }
@@ -46,7 +47,7 @@ double exact_impact(const Piece& piece) {
   const Vec3 r = path_b.position(start) - path_a.position(start), u = vb - va;
   if (r.dot(u) >= 0) return never;
   // what an impact left behind is no approach
-  const double noise = speed_noise * (va.norm() + vb.norm());
+  const double noise = answer::speed_noise * (va.norm() + vb.norm());
   if (r.dot(u) > -noise * r.norm()) return never;
   return start + sphere_sphere_impact(r, u, a.sphere_radius + b.sphere_radius);
 }

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "dynamics/placed-body.h"
 #include "integrate/trajectory.h"
 
 namespace tw {
-
-// How far ahead the speed of a kinematic body is bounded, s.
-inline constexpr double kinematic_horizon = 0.5;
 
 // One body of the pair at the certificate's time.  What is integrated is seen as its pose moves.
 struct MovingBody : PlacedBody {
@@ -24,7 +22,7 @@ struct MovingBody : PlacedBody {
 
   MovingBody(const Body& b, const Trajectory& trajectory, double when)
       : PlacedBody(b, trajectory.path_at(when)) {
-    const double until = b.kinematic() ? when + kinematic_horizon : trajectory.end();
+    const double until = b.kinematic() ? when + cost::kinematic_horizon : trajectory.end();
     bound_by(trajectory.bounds(when, std::max(when, until)));
     step_end = trajectory.step_end(when);
   }

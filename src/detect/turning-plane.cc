@@ -4,13 +4,12 @@
 
 #include <array>
 
+#include "base/constants.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
 namespace {
 
-// The plane is followed no longer than this, s.
-constexpr double longest = 2e-3;
 // Vertices this near the plane belong to the facing feature: times the distance, and share of the
 // size.
 constexpr double near_distances = 3, near_share = 1e-9;
@@ -108,7 +107,7 @@ double turning_time_apart(const MovingBody& a, const ConvexPart& part_a, const M
   plane.acceleration = 0.5 * (a.acceleration + b.acceleration);
   plane.allowance = 0.5 * allowance;
   plane.turn = plane.rate.norm();
-  plane.until = longest;
+  plane.until = cost::longest_turn;
   const double below = time_to_reach(a, frame_a, part_a, plane, 1);
   if (!(below > 0)) return 0;
   return std::min(below, time_to_reach(b, frame_b, part_b, plane, -1));

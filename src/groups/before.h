@@ -15,8 +15,8 @@
 #include "dynamics/placed-body.h"
 #include "dynamics/scene.h"
 #include "groups/group.h"
-#include "timeline/arc.h"
 #include "timeline/state-graph.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 

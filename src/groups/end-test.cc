@@ -7,7 +7,6 @@
 
 #include "base/constants.h"
 #include "collision/seams/seams.h"
-#include "detect/grid.h"
 #include "groups/region.h"
 #include "math/root.h"
 
@@ -133,7 +132,7 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   ++counters.early_ends;
 
   // no shorter than the spacing of checks on the grid of collisions
-  const double least = std::min(group.next_check, group.arc->start().time + check_grid);
+  const double least = std::min(group.next_check, group.arc->start().time + answer::check_grid);
   for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
   if (group.members.size() < answer::least_divided) {
     for (const EarlyEnd& early : early_ends)

@@ -11,7 +11,7 @@
 #include "groups/components.h"
 #include "groups/rest.h"
 #include "groups/share-stiffness.h"
-#include "groups/tolerances.h"
+#include "groups/step-tolerances.h"
 #include "integrate/member-trajectory.h"
 #include "integrate/standing.h"
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "integrate/contact-linear.h"
 
+#include "base/constants.h"
+
 namespace tw {
 
 namespace {
@@ -35,9 +37,9 @@ void set_smooth(const ContactPack& pack, const PackState& s, PackLinear& o) {
   o.bend = -s.vr;
   o.q = lanes(0);
   o.c0 = s.scale;
-  const Lanes y = s.target_length * lanes(1 / smooth_speed);
+  const Lanes y = s.target_length * lanes(1 / answer::smooth_speed);
   // along u: -mu N (2/pi)/(v0 (1 + y^2))
-  const Lanes along = lanes(-2 / (pi * smooth_speed)) * pack.mu * s.N / (lanes(1) + y * y);
+  const Lanes along = lanes(-2 / (pi * answer::smooth_speed)) * pack.mu * s.N / (lanes(1) + y * y);
   o.c1 = along - s.scale;
   o.m = select(s.N > lanes(0), (lanes(1) / max(s.N, lanes(1e-300))) * s.F,
                LaneVec{lanes(0), lanes(0), lanes(0)});
@@ -146,8 +148,8 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2), or k (1 + cap) beyond the cap
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes ratio = s.gap * pack.inverse_hardening, squared = ratio * ratio;
-  const Lanes slope =
-      squared < lanes(hardening_cap) ? one + lanes(3) * squared : lanes(1 + hardening_cap);
+  const Lanes slope = squared < lanes(answer::hardening_cap) ? one + lanes(3) * squared
+                                                             : lanes(1 + answer::hardening_cap);
   const Lanes by_depth = s.N > zero ? pack.k * slope * (one - pack.damping * s.vn) : zero;
   o.kb = s.stiffness * pack.damping;
   o.g = -(by_depth * o.n);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/constants.h"
+
 namespace tw {
 
 namespace {
@@ -63,7 +65,7 @@ TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVe
 TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes depth = -o.gap, ratio = depth * pack.inverse_hardening;
-  const Lanes hard = one + min(ratio * ratio, lanes(hardening_cap));
+  const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
   const Lanes damped = one - pack.damping * o.vn;
   const LaneMask pressed = (depth > zero) & (damped > zero);
   o.stiffness = pressed ? pack.k * depth * hard : zero;
@@ -92,8 +94,9 @@ TW_LANES void set_smooth_friction(const ContactPack& pack, PackState& o) {
   for (int i = 0; i < lane_count; ++i) {
     const double speed = o.target_length[i];
     // atan(y)/y is 1 to rounding below 1e-8
-    const double per_speed =
-        speed > 1e-8 * smooth_speed ? std::atan(speed / smooth_speed) / speed : 1 / smooth_speed;
+    const double per_speed = speed > 1e-8 * answer::smooth_speed
+                                 ? std::atan(speed / answer::smooth_speed) / speed
+                                 : 1 / answer::smooth_speed;
     o.scale[i] = -(2 / pi) * pack.mu[i] * o.N[i] * per_speed;
   }
   o.F = o.scale * o.target;
@@ -207,7 +210,7 @@ LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies) {
 }
 
 Lanes pack_energy(const ContactPack& pack, const PackState& state) {
-  const Lanes zero = lanes(0), half = lanes(0.5), cap = lanes(hardening_cap);
+  const Lanes zero = lanes(0), half = lanes(0.5), cap = lanes(answer::hardening_cap);
   // integral of k d (1 + min(r^2, cap)), r = d/dh: k d^2/2 (1 + r^2/2), beyond the cap
   // k d^2/2 (1 + cap) less what the cap cut off, k dh^2 cap^2/4
   const Lanes depth = max(-state.gap, zero), ratio = depth * pack.inverse_hardening;

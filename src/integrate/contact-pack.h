@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "base/constants.h"
 #include "integrate/group-arc.h"
 #include "integrate/lanes.h"
 
@@ -75,10 +76,5 @@ LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies);
 
 // Of the normal springs (without the damper) and of the stretches as far as the cone holds them, J.
 Lanes pack_energy(const ContactPack& pack, const PackState& state);
-
-// Depth beyond which a contact hardens no more, over its hardening depth, and the speed scale of
-// smooth friction, m/s.
-constexpr double hardening_cap = 100;
-constexpr double smooth_speed = 1e-4;
 
 }  // namespace tw

@@ -215,8 +215,8 @@ Vec3 GroupArc::stretch(int contact, double time) const {
   return {s.x[place.lane], s.y[place.lane], s.z[place.lane]};
 }
 
-// The pack of the contact at one instant.  Neighbours in a link are asked for one after the other,
-// and mostly share a pack: the last one is kept.
+// The pack of the contact at one instant.  Those of a contact pair are asked for one after the
+// other, and mostly share a pack: the last one is kept.
 const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
   thread_local KeptPack kept;
   if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;

@@ -5,20 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "integrate/rodas4.h"
 
 namespace tw {
-
-namespace {
-
-// step control: h1 = h clamp(safety err^(-1/4), least_change, most_change)
-constexpr double safety = 0.9, least_change = 0.2, most_change = 5;
-// of first_step
-constexpr double first_error = 50;
-// members turn no further than this in a step, rad: theta is a chart up to 2 pi
-constexpr double most_turn = 2;
-
-}  // namespace
 
 GroupStepper::GroupStepper(const GroupStart& start)
     : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {}
@@ -48,7 +38,7 @@ GroupScratch& GroupStepper::scratch() const {
 
 // A step for a group of which nothing is known.  Loaded contacts oscillate at about omega, omega^2
 // = the largest sum of |dN/dd| over a member's mass; the jerk j = dv'/dt then makes an error of
-// about omega^2 j h^4/first_error in v.
+// about omega^2 j h^4/answer::first_step_error in v.
 double GroupStepper::first_step(GroupScratch& s) const {
   const double squared = system_.squared_frequency(s);
   const double left = start_.end - start_.time;
@@ -69,7 +59,7 @@ double GroupStepper::first_step(GroupScratch& s) const {
           std::max({jerk, std::abs(dv) / h, std::abs(dL) * m.radius / (h * m.moments.minCoeff())});
     }
   }
-  const double fourth = first_error * start_.velocity_tolerance / (squared * jerk);
+  const double fourth = answer::first_step_error * start_.velocity_tolerance / (squared * jerk);
   return std::min(left, std::sqrt(std::sqrt(fourth)));
 }
 
@@ -176,7 +166,7 @@ bool GroupStepper::step() {
   record_.load_last(system_, s.state.data());
   system_.linearise(time, s.state.data(), s, s.slope.data());
   ++counts_.evaluations;
-  const double turn_limit = most_turn / std::max(fastest_turn(s), 1e-300);
+  const double turn_limit = answer::most_step_turn / std::max(fastest_turn(s), 1e-300);
   if (!(next_step_ > 0)) next_step_ = first_step(s);
   double h = std::min({next_step_, left, turn_limit});
   if (system_.moved_from_outside()) system_.set_time_slope(time, h, s, s.time_slope.data());
@@ -190,14 +180,16 @@ bool GroupStepper::step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const double change =
-        good ? std::clamp(safety / std::sqrt(std::sqrt(error)), least_change, most_change) : 0.1;
+    const double change = good ? std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
+                                            answer::least_step_change, answer::most_step_change)
+                               : 0.1;
     if (good && error <= 1) {
       accept(last ? start_.end : time + h, s);
       ++counts_.steps;
       // a step cut short says little against a longer one
       const double planned = h * (rejected ? std::min(change, 1.0) : change);
-      next_step_ = !rejected && change >= most_change ? std::max(planned, next_step_) : planned;
+      next_step_ =
+          !rejected && change >= answer::most_step_change ? std::max(planned, next_step_) : planned;
       return true;
     }
     ++counts_.rejected;

@@ -1,6 +1,8 @@
 // Bodies that come and go between runs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/bodies.h"
+
+#include "base/constants.h"
 #include "integrate/standing.h"
 
 #include <algorithm>
@@ -17,16 +19,9 @@
 #include "kernel/make-body.h"
 #include "kernel/reading.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
-namespace {
-
-// Bodies may overlap by this share of the smaller size when they come into the world: touching.
-constexpr double start_depth = 1e-6;
-
-}  // namespace
-
 Bodies::Bodies(Simulation& simulation, ActivePairs& pairs, CallbackBook& callbacks, Claims& claims,
                Discontinuities& discontinuities, Editing& editing)
     : sim_(simulation),
@@ -96,7 +91,7 @@ void Bodies::require_no_overlap(const Body& a, const Body& b) const {
     return state_at(sim_, body.id(), sim_.present.time)->trajectory().frame(sim_.present.time);
   };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
-  const double allowed = start_depth * std::min(a.least_width, b.least_width);
+  const double allowed = answer::start_depth * std::min(a.least_width, b.least_width);
   if (s.distance >= -allowed) return;
   throw UserError(a.info.name + " and " + b.info.name + " overlap by " + show(-s.distance) +
                       " m at " + show(sim_.present.time) +

@@ -13,21 +13,10 @@
 #include "kernel/pair-checks.h"
 #include "kernel/reading.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 namespace {
-
-// Boxes are grown by this share of their coordinates: rounding in arcs must not part what touches.
-constexpr double box_inflation = 1e-9;
-
-// A body that claims and finds nobody several times in a row claims longer windows, each twice the
-// one before.  In a gas a single lonely claim says little, and long boxes are looked at by many.
-constexpr int patience = 3;
-constexpr int most_doublings = 20;
-
-// The longest window, s: a body that hardly moves need not claim again for long.
-constexpr double longest_window = 8;
 
 // Solid half-space n.x <= offset against a box: its lowest corner along n.
 bool plane_overlaps(const Body& plane, const Aabb& box) {
@@ -111,17 +100,18 @@ double Claims::window_end(const Body& body) const {
   if (!path && !body.kinematic()) return std::max(std::min(trajectory.end(), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
-  const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - patience));
+  const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - cost::patience));
   const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
   double speed = 0, pull = 0;
   if (path) {
     speed = path->velocity(start).norm();
     pull = path->acceleration.norm();
   } else {
-    speed = trajectory.bounds(start, start + longest_window).speed;
+    speed = trajectory.bounds(start, start + cost::longest_window).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
-  double end = start + std::min(longest_window, 2 * distance / std::max(speed + root, 1e-300));
+  double end =
+      start + std::min(cost::longest_window, 2 * distance / std::max(speed + root, 1e-300));
 
   // the next callback ends the arc as we know it
   for (const std::uint32_t number : process.callbacks) {
@@ -142,7 +132,7 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   }
   if (const State& tail = *sim_.graph.tail(body.process); tail.trajectory().stepped())
     box.grow(answer::contact_margin * body.least_width);
-  box.grow(box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
+  box.grow(cost::box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
 }
 
@@ -170,7 +160,7 @@ void Claims::claim_window(const Body& body) {
     find_partners(body, before);
     const bool alone = counters_.candidates == candidates;
     process.lonely_claims =
-        alone ? std::min(process.lonely_claims + 1, patience + most_doublings) : 0;
+        alone ? std::min(process.lonely_claims + 1, cost::patience + cost::most_doublings) : 0;
   }
   schedule_advance(body);
 }

@@ -10,7 +10,7 @@
 #include "kernel/delivery.h"
 #include "kernel/reading.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 

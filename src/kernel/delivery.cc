@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/cpu-clock.h"
 #include "base/limits.h"
 #include "groups/contact-survey.h"
 #include "kernel/reading.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 
@@ -53,13 +54,13 @@ void Delivery::sort_noted() {
 // Writing frames drives the stepping loop's data out of the processor's caches, so they go in
 // batches: at the latest when the next slice begins or the run ends.
 bool Delivery::is_worth_it() const {
-  constexpr std::size_t batch = 512, most_waiting_states = 20000;
-  if (undelivered_.size() >= 8 * batch) return true;
+  if (undelivered_.size() >= 8 * cost::frame_batch) return true;
   // states wait for their frames: memory
-  if (sim_.graph.state_count() >= most_waiting_states) return true;
+  if (sim_.graph.state_count() >= cost::most_waiting_states) return true;
   const double due = sim_.present.due.time;
-  return std::any_of(sinks_.begin(), sinks_.end(),
-                     [&](const Sink& s) { return (due - s.next_time()) * s.fps >= batch; });
+  return std::any_of(sinks_.begin(), sinks_.end(), [&](const Sink& s) {
+    return (due - s.next_time()) * s.fps >= cost::frame_batch;
+  });
 }
 
 bool Delivery::deliver(double wall_end) {

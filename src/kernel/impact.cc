@@ -16,9 +16,6 @@
 namespace tw {
 namespace {
 
-// A residual approach below this share of the first one is rounding.
-constexpr double residual_approach = 1e-12;
-
 // Replaces each manifold of several points by its centroid, the others stay.
 std::vector<ContactPoint> centroids(const std::vector<ContactPoint>& points) {
   std::vector<ContactPoint> result;
@@ -195,7 +192,7 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   }
 
   // impulses
-  const double threshold = residual_approach * -worst;
+  const double threshold = answer::residual_approach * -worst;
   if (points.size() > 1) {
     for (const ContactPoint& c : centroids(points))
       if (const ImpulseContact at = contact_at(c); solver.approach(at) < -threshold)

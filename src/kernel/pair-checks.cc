@@ -19,24 +19,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "detect/approach.h"
 #include "detect/exact-impact.h"
-#include "detect/grid.h"
 #include "kernel/active-pairs.h"
 #include "kernel/simulation.h"
 #include "math/root.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 namespace {
 
-// Depth that does not count as penetration, share of the smaller size: above the rounding of a
-// distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
-constexpr double depth_slack = 1e-12;
-
-double grid_floor(double t) { return std::floor(t / check_grid) * check_grid; }
-double grid_ceil(double t) { return std::ceil(t / check_grid) * check_grid; }
-double grid_after(double t) { return (std::floor(t / check_grid) + 1) * check_grid; }
+double grid_floor(double t) { return std::floor(t / answer::check_grid) * answer::check_grid; }
+double grid_ceil(double t) { return std::ceil(t / answer::check_grid) * answer::check_grid; }
+double grid_after(double t) {
+  return (std::floor(t / answer::check_grid) + 1) * answer::check_grid;
+}
 
 bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
 
@@ -156,11 +154,11 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
 bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   const Body& a = sim_.body(pair.a);
   const Body& b = sim_.body(pair.b);
-  const double slack = depth_slack * std::min(a.least_width, b.least_width);
+  const double slack = answer::depth_slack * std::min(a.least_width, b.least_width);
   ++counters_.checks;
   const double clear = certificate(piece, pair.caches, when, slack);
   counters_.certificates += clear > -never;
-  pair.next_check = std::max(grid_floor(clear), when + check_grid);
+  pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
 
   // certainly at touch, perhaps overlapping: the cold distance decides
@@ -168,7 +166,7 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   if (right >= -slack) return false;
 
   // the crossing, of 0 or, where the left end touches already, of the slack
-  const double start = std::max(piece.start_time(), when - check_grid);
+  const double start = std::max(piece.start_time(), when - answer::check_grid);
   const double left = separation_at(piece, start).distance;
   double impact_time = when;
   if (left > -slack) {
@@ -184,7 +182,7 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
 // After a free check at `checked`: no root is left before the bracket that the next check would
 // open.
 void PairChecks::raise_safe_time(Pair& pair, const Piece& piece, double checked) const {
-  const double safe = std::max(checked, pair.next_check - check_grid);
+  const double safe = std::max(checked, pair.next_check - answer::check_grid);
   if (pair.from.time < safe && safe < piece.end.time) pair.from = {safe, 0, KeyKind::birth, 0};
 }
 
@@ -213,7 +211,7 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
     const double when = pair.next_check;
     if (when > until && piece.end.time > until) {
       // a root could lie in the step before the next check, not earlier
-      const double safe = std::min(when - check_grid, piece.end.time);
+      const double safe = std::min(when - answer::check_grid, piece.end.time);
       if (safe > pair.from.time) pair.from = {safe, 0, KeyKind::birth, 0};
       if (moves_in_group(*piece.a) || moves_in_group(*piece.b))
         sim_.queue.withdraw(pair.event);

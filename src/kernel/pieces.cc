@@ -6,7 +6,7 @@
 
 #include "detect/exact-impact.h"
 #include "groups/before.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 namespace {

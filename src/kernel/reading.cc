@@ -4,9 +4,9 @@
 
 #include "base/hash.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
 #include "timeline/field-words.h"
 #include "timeline/state-fields.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 

@@ -9,7 +9,7 @@
 #include "kernel/callback-book.h"
 #include "kernel/claims.h"
 #include "kernel/simulation.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 
@@ -118,7 +118,7 @@ std::string validate_residences(const Simulation& simulation) {
           for (const BodyId id : {first_of(pair.id), second_of(pair.id)})
             if (!group.contains(simulation.process_of(id)) &&
                 std::find(group.outside.begin(), group.outside.end(), id) == group.outside.end())
-              return "linked to a group and neither in it nor outside: " +
+              return "in contact with a group and neither in it nor outside: " +
                      simulation.body(id).info.name;
       if (s->committed || s->key != group.key) continue;
       for (const ProcessId other : group.members) {

@@ -7,7 +7,7 @@
 #include "base/limits.h"
 #include "kernel/kernel.h"
 #include "kernel/reading.h"
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 

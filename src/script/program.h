@@ -4,7 +4,7 @@
 
 namespace tw {
 
-// Does not return: the command line exits with the status that scheme.md names.
+// Does not return: the command line exits with the status that --help names.
 [[noreturn]] void run_program(int argc, char** argv);
 
 }  // namespace tw

@@ -1,7 +1,7 @@
 // A state: what a process is at a discontinuity, and the arc that starts there.
 //
 // The state of a contact group stands in the queues of its members, one state each, closed to a
-// ring: so a body's residence is its own last state, and rollback needs no links but rings
+// ring: so a body's residence is its own last state, and rollback needs nothing but rings
 // (doc/architecture.md).
 //
 // The arc is a function of the state alone: free flight, kept by value, or whatever else a body may
@@ -31,7 +31,8 @@ namespace tw {
 
 struct Group;
 
-// A run of impacts in quick succession (kernel.md, "Soft impacts"): rolls back with its state.
+// A run of impacts in quick succession (doc/architecture.md, *Soft impacts*): rolls back with its
+// state.
 struct ImpactRun {
   std::uint32_t count = 0;
   double last_time = -never;

@@ -7,7 +7,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "detect/grid.h"
+#include "base/constants.h"
 #include "integrate/keyframes.h"
 
 #include "support/scene.h"
@@ -34,7 +34,7 @@ std::vector<Collision> shoot(const ShapePtr& plate, const BodyDef& bullet, doubl
 
 // From 10 m/s to the fastest that spends 1.1 h over this depth.
 double random_speed(Random& random, double depth) {
-  const double fastest = depth / (1.1 * check_grid);
+  const double fastest = depth / (1.1 * answer::check_grid);
   return 10 * std::pow(fastest / 10, random.real());
 }
 

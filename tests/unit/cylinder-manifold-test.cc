@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "base/constants.h"
 #include "collision/manifold.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
@@ -58,7 +59,7 @@ TEST(CylinderManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_fr
           const Points points = swap ? manifold_of(b, frame_b, a, frame_a, 0.01)
                                      : manifold_of(a, frame_a, b, frame_b, 0.01);
           ASSERT_FALSE(points.empty());
-          ASSERT_LE(points.size(), most_manifold_points);
+          ASSERT_LE(points.size(), patch::most_points);
           double least = 1e300;
           std::set<std::uint64_t> names;
           for (const ManifoldPoint& p : points) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/constants.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
@@ -110,7 +111,7 @@ TEST(Manifold, the_deepest_point_is_as_deep_as_the_separating_axis_test_says) {
         const Separation s = separation(*a, pose.frame_a, *b, pose.frame_b);
         const Points points = manifold_of(a, pose.frame_a, b, pose.frame_b, 0.01);
         ASSERT_FALSE(points.empty());
-        ASSERT_LE(points.size(), most_manifold_points);
+        ASSERT_LE(points.size(), patch::most_points);
         // 1 - cos 2 degrees, and what one millionth of the size is
         ASSERT_NEAR(least_gap(points), s.distance, 2e-3 * std::abs(s.distance) + 3e-6);
       }
@@ -228,7 +229,7 @@ TEST(Manifold, what_rolls_within_the_reach_is_represented) {
     before.p.z() -= rock->bounds(before).lo.z() - 0.5 + 1e-4;
     const double reach = 0.03;
     const Points points = manifold_of(table, Frame(), rock, before, reach);
-    if (points.size() >= most_manifold_points) continue;
+    if (points.size() >= patch::most_points) continue;
     // roll about the lowest point, each surface point by less than the reach
     const Vec3 pivot(before.p.x(), before.p.y(), 0.5);
     const Vec3 turn = uniform(random, 0, 1) * reach / 0.6 * random_direction(random);

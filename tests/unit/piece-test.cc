@@ -6,8 +6,8 @@
 #include "detect/clearance.h"
 #include "detect/exact-impact.h"
 #include "integrate/standing.h"
-#include "timeline/arc.h"
 #include "timeline/successor.h"
+#include "timeline/swept-bounds.h"
 
 namespace tw {
 namespace {

@@ -149,7 +149,7 @@ void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) 
            p.reference_is_a == q.reference_is_a;
   });
   out.erase(last, out.end());
-  out.resize(std::min(out.size(), from + most_manifold_points));
+  out.resize(std::min(out.size(), from + patch::most_points));
 }
 
 }  // namespace

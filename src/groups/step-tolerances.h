@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace tw {
 
 // Of one step of a contact group, m: `size` is the least width of its smallest member.  At the
@@ -22,8 +24,8 @@ inline double group_position_tolerance(double accuracy, double size) {
 // by the fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to
 // rest gains energy.
 inline double group_closeness(double accuracy, double share_of_speed) {
-  constexpr double closest = 0.1, finest = 1e-6;
-  return std::min(1.0, std::max({share_of_speed, closest, finest / accuracy}));
+  return std::min(
+      1.0, std::max({share_of_speed, answer::closest_steps, answer::finest_accuracy / accuracy}));
 }
 
 // m/s: what gravity does to a body of that size within the time of its contact.

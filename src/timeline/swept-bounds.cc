@@ -1,21 +1,15 @@
 // What a body sweeps along its arc.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "timeline/arc.h"
+#include "timeline/swept-bounds.h"
+
+#include "base/constants.h"
 
 namespace tw {
-namespace {
-
-// A member of a group that turns by less, rad, is worth a box that fits.  What flies turns by more,
-// or hardly ever asks: its ball at once.
-constexpr double hardly_turns = 0.5;
-
-}  // namespace
-
 Aabb swept_bounds(const Body& body, const Trajectory& trajectory, double from, double to) {
   const MotionBounds bounds = trajectory.bounds(from, to);
   Aabb box = bounds.path;
   const double turn = bounds.turn > 0 ? bounds.turn * (to - from) : 0;
-  const bool fits = trajectory.stepped() ? turn <= hardly_turns : bounds.turn == 0;
+  const bool fits = trajectory.stepped() ? turn <= cost::hardly_turns : bounds.turn == 0;
   if (body.sphere_radius >= 0 || !fits) {
     box.grow(body.radius);
     return box;
