@@ -49,9 +49,10 @@ inline constexpr double fusion_share = 0.07, least_default_speed = 1e-4, least_f
 inline constexpr double preload_beyond = 10;
 
 // ---- where bodies meet ----
-// Pairs that are not predicted exactly are looked at at multiples of this, s; a contact that no
-// such time sees does not exist.
-inline constexpr double check_grid = 0x1p-20;
+// Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no
+// such time sees does not exist, unless it gets deeper than this share of the thinner one
+// (detect/dip.h).
+inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a
 // distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
 inline constexpr double depth_slack = 1e-12;
@@ -87,10 +88,16 @@ inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
 // Boxes of members reach this share of their size farther: a check finds in them whom a member may
 // touch before the next one.  What comes from farther in that time is left to collision checks.
 inline constexpr double contact_margin = 0.1;
-// Between two checks a surface point moves at most this share of its body's size; the slowest
-// checks are 2^most_halvings times rarer than the finest.
-inline constexpr double most_travel = 0.05;
+// Between two checks a surface point moves at most this share of its body's size, unless that were
+// more often than after this multiple of sqrt(size / g), or 2^most_halvings times as rare; rounded
+// to this times a power of two, s, so that the checks of all groups meet.
+inline constexpr double most_travel = 0.05, finest_check_times = 0.0175, check_unit = 1.0 / 480;
 inline constexpr int most_halvings = 5;
+// The end test looks so often that what a pair may travel between two looks is at most this share
+// of the smaller one; at most so many times, and no arc ends before this share of the finest
+// interval.
+inline constexpr double travel_unlooked = 0.25, least_arc = 0x1p-11;
+inline constexpr int most_looks = 4096;
 // Depth that may stay unrepresented to the end of an arc, share of the contact's static depth.
 inline constexpr double unseen_depth = 0.5;
 // A gap below this share of the static depth counts as touch when impulses are passed on: found at

@@ -107,6 +107,22 @@ double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBod
   return std::min(below, part_reach(b, part_b, plane, -1, as_balls));
 }
 
+// Seconds until two bodies may come nearer by `slack`, m > 0, by what their points may move against
+// each other at most.  For those that touch and hardly move: along a line or over a face no plane
+// is so exact that rounding leaves all of both on its sides.
+double still_apart(const MovingBody& a, const MovingBody& b, double slack) {
+  const auto turning = [](const MovingBody& side) {
+    return side.bounds.turn > 0 ? side.bounds.turn * side.body->radius : 0;
+  };
+  const auto center_speed = [](const MovingBody& side) {
+    return side.by_speed ? side.bounds.speed : side.point.v.norm();
+  };
+  const double centers =
+      a.by_speed || b.by_speed ? center_speed(a) + center_speed(b) : (a.point.v - b.point.v).norm();
+  const double change = (a.acceleration - b.acceleration).norm() + (a.spread + b.spread).norm();
+  return first_zero(slack, -(centers + turning(a) + turning(b)), -change);
+}
+
 }  // namespace
 
 double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
@@ -167,6 +183,10 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
       if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
         apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
                            return turning_time_apart(x, pa, y, pb, s, allowance);
+                         }));
+      if (apart < cost::soon)
+        apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
+                           return still_apart(x, y, s.distance + allowance);
                          }));
       least = std::min(least, apart);
     }

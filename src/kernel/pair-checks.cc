@@ -5,13 +5,13 @@
 //   exact     spheres that fall alike, sphere and fixed plane: a quadratic (impact-time.h)
 //   on grid   otherwise: at the common start, then at multiples of h = 2^-20 s.  A conservative
 //             certificate skips grid points at which the pair is surely apart.  The impact lies
-//             before the first grid point with penetration; Brent's method finds it on the signed
-//             distance, cold.
+//             before the first grid point with penetration, or the first dip between two of them
+//             (dip.h); Brent's method finds it on the signed distance, cold.
 // An impact found with key K is valid only if K is below the piece's end.  So it does not matter
 // when, in which order or how often a pair is checked.
 //
 // Equality: at the common start, overlapping and approaching is an impact now, overlapping and
-// separating is none.  A contact shorter than h that no grid point sees does not exist.
+// separating is none.  A shallow contact shorter than h that no grid point sees does not exist.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/pair-checks.h"
@@ -21,6 +21,7 @@
 
 #include "base/constants.h"
 #include "detect/approach.h"
+#include "detect/dip.h"
 #include "detect/exact-impact.h"
 #include "kernel/active-pairs.h"
 #include "kernel/simulation.h"
@@ -34,6 +35,10 @@ double grid_floor(double t) { return std::floor(t / answer::check_grid) * answer
 double grid_ceil(double t) { return std::ceil(t / answer::check_grid) * answer::check_grid; }
 double grid_after(double t) {
   return (std::floor(t / answer::check_grid) + 1) * answer::check_grid;
+}
+
+double slack_of(const Piece& piece) {
+  return answer::depth_slack * std::min(piece.body_a->least_width, piece.body_b->least_width);
 }
 
 bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
@@ -152,21 +157,22 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
 
 // Looks at one grid point; true if there is an impact at or before it (then pair.impact).
 bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
-  const Body& a = sim_.body(pair.a);
-  const Body& b = sim_.body(pair.b);
-  const double slack = answer::depth_slack * std::min(a.least_width, b.least_width);
   ++counters_.checks;
-  const double clear = certificate(piece, pair.caches, when, slack);
+  const double clear = certificate(piece, pair.caches, when, slack_of(piece));
   counters_.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
 
   // certainly at touch, perhaps overlapping: the cold distance decides
+  return find_crossing(pair, piece, std::max(piece.start_time(), when - answer::check_grid), when);
+}
+
+// The crossing of 0 or, where the left end touches already, of the slack, where the two are deeper
+// at `when`; true if they approach there.
+bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, double when) const {
+  const double slack = slack_of(piece);
   const double right = separation_at(piece, when).distance;
   if (right >= -slack) return false;
-
-  // the crossing, of 0 or, where the left end touches already, of the slack
-  const double start = std::max(piece.start_time(), when - answer::check_grid);
   const double left = separation_at(piece, start).distance;
   double impact_time = when;
   if (left > -slack) {
@@ -177,6 +183,14 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   if (!approaching_at(piece, impact_time)) return false;
   pair.impact = pieces_.impact_key(piece, impact_time);
   return true;
+}
+
+// A dip before the next grid point; true if there is an impact (then pair.impact).
+bool PairChecks::check_between(Pair& pair, const Piece& piece, double from) {
+  const double to = grid_after(from);
+  if (pair.next_check != to) return false;
+  const double dip = first_dip(piece, pair.caches, from, to, counters_.certificates);
+  return dip < never && find_crossing(pair, piece, from, dip);
 }
 
 // After a free check at `checked`: no root is left before the bracket that the next check would
@@ -194,7 +208,8 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
     pair.checked_start = piece.start;
     // an impact at the common start that was rolled back is found again from its own key on
     if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
-      if (check_common_start(pair, piece) && pair.impact < piece.end) {
+      if ((check_common_start(pair, piece) || check_between(pair, piece, piece.start_time())) &&
+          pair.impact < piece.end) {
         set_pending(index, pair.impact);
         return true;
       }
@@ -202,6 +217,13 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
     } else {
       pair.next_check = grid_ceil(pair.from.time);
       if (pair.next_check <= piece.start_time()) pair.next_check = grid_after(piece.start_time());
+      // taken up between two grid points: a dip belongs to the whole stretch between them
+      const double before = std::max(piece.start_time(), grid_floor(pair.from.time));
+      if (before < pair.next_check && check_between(pair, piece, before) &&
+          pair.impact < piece.end) {
+        set_pending(index, pair.impact);
+        return true;
+      }
     }
   }
 
@@ -219,7 +241,8 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
         schedule_check(index, std::min(when, piece.end.time));
       return true;
     }
-    if (check_grid_point(pair, piece, when) && pair.impact < piece.end) {
+    if ((check_grid_point(pair, piece, when) || check_between(pair, piece, when)) &&
+        pair.impact < piece.end) {
       set_pending(index, pair.impact);
       return true;
     }

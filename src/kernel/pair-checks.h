@@ -38,6 +38,8 @@ class PairChecks {
   bool pursue_on_grid(std::uint32_t index, const Piece& piece, double until);
   bool check_common_start(Pair& pair, const Piece& piece);
   bool check_grid_point(Pair& pair, const Piece& piece, double when);
+  bool find_crossing(Pair& pair, const Piece& piece, double start, double when) const;
+  bool check_between(Pair& pair, const Piece& piece, double from);
   void raise_safe_time(Pair& pair, const Piece& piece, double checked) const;
 
   Simulation& sim_;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "base/constants.h"
 #include "detect/approach.h"
 #include "detect/clearance.h"
+#include "detect/dip.h"
 #include "detect/exact-impact.h"
 #include "integrate/standing.h"
 #include "timeline/successor.h"
@@ -119,6 +121,55 @@ TEST(Pieces, the_swept_box_holds_the_shape_on_its_way) {
       const Aabb there = flyer->body.shape_P->bounds(flyer->state.trajectory().frame(time));
       EXPECT_TRUE(box.contains(there.lo) && box.contains(there.hi)) << time;
     }
+  }
+}
+
+// Two that touch along a line: rounding leaves no plane between them, but nothing moves.
+TEST(Certificates, what_touches_and_moves_alike_is_apart_for_ever) {
+  const ShapePtr drum = make_cylinder(0.25, 0.5);
+  const double allowance = 1e-12 * 0.5;
+  for (const double speed : {0.0, 3.0}) {
+    const Flyer a(0, drum, {0, 0, 0.25}, {speed, 0, speed});
+    const Flyer b(1, drum, {0.5, 0, 0.25}, {speed, 0, speed});
+    SimplexCaches caches;
+    EXPECT_EQ(certificate(between(a, b), caches, 0, allowance), never);
+  }
+  const Flyer a(0, drum, {0, 0, 0.25}, {0, 0, 0}), b(1, drum, {0.5, 0, 0.25}, {-1e-3, 0, 0});
+  SimplexCaches caches;
+  EXPECT_LT(certificate(between(a, b), caches, 0, allowance), 1e-9);
+}
+
+// A plate 20 um thick on end, 5 mm above the ground, that turns at 1e5 rad/s: its corners are below
+// for some microseconds of every turn of 63, the deepest for a time that is given.
+TEST(Dips, what_comes_and_goes_between_two_grid_points_is_seen) {
+  Flyer ground(0, make_half_space(Vec3::UnitZ(), 0), Vec3::Zero(), Vec3::Zero());
+  ground.body.least_width = never;
+  ground.carried();
+  const double half = 5e-3, turn = 1e5;
+  Flyer plate(1, make_box({2 * half, 2 * half, 2e-5}), Vec3(0, 0, 0), Vec3::Zero());
+  for (const double lasts : {1e-7, 1e-8}) {
+    // a corner of the square face goes round in the plane x-z at this radius
+    const double corner = std::sqrt(2.0) * half;
+    const double deepest = corner * (1 - std::cos(0.5 * turn * lasts));
+    plate.state.x = {0, 0, corner - deepest};
+    plate.state.q = Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitX()));
+    // about the plate's own normal, which lies along y
+    plate.body.moments = Vec3(1, 1, 1);
+    plate.state.L = Vec3(0, turn, 0);
+    plate.state.acceleration = Vec3::Zero();
+    let_fly(plate.body, plate.state);
+    SimplexCaches caches;
+    std::uint64_t looks = 0;
+    // the corners stand at 45 degrees at the start: an eighth of a turn later one is lowest
+    const double lowest = 0.25 * pi / turn;
+    const double dip = first_dip(between(ground, plate), caches, 0, 2 * lowest, looks);
+    if (deepest > answer::dip_share * 2e-5) {
+      EXPECT_NEAR(dip, lowest, 0.5 * lasts) << lasts;
+      EXPECT_LT(separation_at(between(ground, plate), dip).distance, 0);
+    } else {
+      EXPECT_EQ(dip, never) << deepest;
+    }
+    EXPECT_LT(looks, 300u);
   }
 }
 
