@@ -99,7 +99,7 @@
     (integrator ("integrator") "NAME" ,integrator "auto; others are not there yet")
     (accuracy ("accuracy") "EPS" ,positive "relative accuracy (1e-6)")
     (seed ("seed") "N" ,natural "seed of random numbers (0)")
-    (group-check-rate ("group-check-rate") "HZ" ,positive "finest rate of contact checks (480)")
+    (group-check-rate ("group-check-rate") "HZ" ,positive "finest rate of contact checks (by size)")
     (check ("check") #f #f "run all validators after every event, and watch callbacks for side effects")
     (interactive (#\i "interactive") #f #f "REPL after the run (or at once with --until=0)")
     (listen ("listen") ("SOCKET") ,(later "the REPL server") "not there yet")

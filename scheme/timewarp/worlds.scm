@@ -118,7 +118,8 @@ first.
 #:seed      of random numbers, an integer, 0 or more, before bodies are added; 0 (--seed)
 #:policy    'timewarp, the only one that is there yet; 'timewarp (--policy)
 #:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
-            the first run; 480 (--group-check-rate)"
+            the first run; otherwise it follows from the sizes of the bodies in contact:
+            480 for 0.14 to 0.55 m (--group-check-rate)"
   (%require-outside-callbacks "scene")
   (let ((world (current-world)))
     (when title

@@ -16,9 +16,9 @@ namespace tw {
 
 // What users set, as far as the motion depends on it.
 struct SceneOptions {
-  Vec3 gravity{0, 0, -9.81};      // m/s^2
-  double accuracy = 1e-6;         // relative
-  double group_check_rate = 480;  // Hz, the finest
+  Vec3 gravity{0, 0, -9.81};    // m/s^2
+  double accuracy = 1e-6;       // relative
+  double group_check_rate = 0;  // Hz, the finest; 0: by the sizes of the members
 };
 
 struct Scene {

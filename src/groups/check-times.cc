@@ -8,8 +8,19 @@
 #include "base/constants.h"
 
 namespace tw {
+namespace {
+
+// To a power of two of the unit, s.
+double on_lattice(double unit, double interval) {
+  return std::ldexp(unit, std::ilogb(interval / unit));
+}
+
+}  // namespace
+
 double check_interval(const Regrouping& work, const std::vector<ProcessId>& members) {
   const double gravity = work.scene().gravity_scale();
+  const double rate = work.scene().options.group_check_rate;
+  const double unit = rate > 0 ? 1 / rate : answer::check_unit;
   double interval = never;
   for (const ProcessId member : members) {
     // the time to move that far: v s + g s^2/2 = distance
@@ -17,13 +28,18 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
     const double distance = answer::most_travel * body.body->least_width;
     const double speed = body.surface_speed();
     const double root = std::sqrt(speed * speed + 2 * gravity * distance);
-    interval = std::min(interval, 2 * distance / (speed + root));
+    const double finest = finest_check(work.scene(), *body.body);
+    interval = std::min(interval, std::clamp(on_lattice(unit, 2 * distance / (speed + root)),
+                                             finest, std::ldexp(finest, answer::most_halvings)));
   }
-  // to a power of two on the grid
-  const double rate = work.scene().options.group_check_rate;
-  const double ticks = interval * rate;
-  const int halvings = ticks > 1 ? std::min(answer::most_halvings, std::ilogb(ticks)) : 0;
-  return std::ldexp(1 / rate, halvings);
+  return interval;
+}
+
+double finest_check(const Scene& scene, const Body& body) {
+  const double rate = scene.options.group_check_rate;
+  if (rate > 0) return 1 / rate;
+  return on_lattice(answer::check_unit, answer::finest_check_times *
+                                            std::sqrt(body.least_width / scene.gravity_scale()));
 }
 
 double next_check_time(double birth, double now, double interval) {

@@ -1,8 +1,9 @@
 // When group checks happen.
 //
-// At birth + k 2^j / rate, j such that no surface point moves more than a twentieth of its body's
+// At birth + k 2^j / 480 s, j such that no surface point moves more than a twentieth of its body's
 // size in between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do
-// not).
+// not), within bounds that follow from the sizes of the members: a scene that is scaled is checked
+// at scaled times.  What moves farther between two checks is looked at in between by the end test.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -13,6 +14,9 @@ namespace tw {
 
 // From now to the next check of a group of these, s: on the grid of checks.
 double check_interval(const Regrouping& work, const std::vector<ProcessId>& members);
+
+// The shortest time between two checks that a member asks for, s: by its size, or as set.
+double finest_check(const Scene& scene, const Body& body);
 
 // The first check after `now` of a group born at `birth`.
 double next_check_time(double birth, double now, double interval);

@@ -7,7 +7,7 @@
 
 #include "base/constants.h"
 #include "collision/seams/seams.h"
-#include "groups/region.h"
+#include "groups/check-times.h"
 #include "math/root.h"
 
 namespace tw {
@@ -62,7 +62,7 @@ struct PairOnArc {
     double sum = 0;
     const double from = group.arc->start().time, to = group.next_check;
     for (const Body* body : {&a, &b}) {
-      if (!body->dynamic()) continue;
+      if (body->fixed()) continue;
       const MotionBounds bounds = trajectory(*body).bounds(from, to);
       sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
     }
@@ -71,9 +71,7 @@ struct PairOnArc {
 };
 
 // When the pair came to be deeper than its contacts know; `never` if it did not.
-double unseen_touch(const PairOnArc& pair, double allowed) {
-  const double from = pair.group.arc->start().time, to = pair.group.next_check;
-  // where it came to be
+double unseen_touch(const PairOnArc& pair, double from, double to, double allowed) {
   const auto excess = [&](double t) {
     return std::min(pair.represented(t), 0.0) - pair.deepest(t, true) - allowed;
   };
@@ -82,11 +80,13 @@ double unseen_touch(const PairOnArc& pair, double allowed) {
   return find_root(excess, from, to, first, last).left;
 }
 
-// When a contact that was open closes faster than `slow`; `never` if it does not.
-double fast_touch(const GroupArc& arc, int contact, double first, double last, double slow) {
-  if (!(first > 0 && last < 0)) return never;
+// When a contact that was open at `from` and is not at `to` closes faster than `slow`; `never` if
+// it does not.
+double fast_touch(const GroupArc& arc, int contact, double from, double to, double slow) {
   const auto gap = [&](double t) { return arc.contact_force(contact, t).gap; };
-  const double when = find_root(gap, arc.start().time, arc.reached(), first, last).left;
+  const double first = gap(from), last = gap(to);
+  if (!(first > 0 && last < 0)) return never;
+  const double when = find_root(gap, from, to, first, last).left;
   const ContactForce f = arc.contact_force(contact, when);
   return -f.velocity.dot(f.normal) > slow ? when : never;
 }
@@ -94,26 +94,39 @@ double fast_touch(const GroupArc& arc, int contact, double first, double last, d
 // When the contacts of a pair stop telling the truth; the next check if they do not.
 double early_end(const Scene& scene, const Surroundings& surroundings, Group& group,
                  const ContactPair& pair) {
-  double end = group.next_check;
   const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
   PairOnArc along{group, pair, a, b, {}, {}};
   const ContactScales scales = contact_scales(scene, a, b, group.masses);
   const double allowed = answer::unseen_depth * scales.depth();
-  if (along.travel() <= allowed) return end;
-  double known = never;
-  each_contact(pair, [&](std::uint32_t c) {
-    const int contact = static_cast<int>(c);
-    const double last = group.arc->contact_force(contact, group.next_check).gap;
-    known = std::min(known, last);
-    end = std::min(end, fast_touch(*group.arc, contact, group.gaps[c], last, scales.fusion_speed));
-  });
-  if (!(std::min(known, 0.0) - along.deepest(group.next_check, false) > allowed)) return end;
-  if (a.fixed() || b.fixed()) {
-    const std::vector<BodyId> ground = surroundings.ground_around(a.dynamic() ? a : b);
-    along.around_a = surroundings.seam_neighbours(a, ground);
-    along.around_b = surroundings.seam_neighbours(b, ground);
+  const double travel = along.travel(), size = std::min(a.least_width, b.least_width);
+  if (travel <= allowed) return group.next_check;
+
+  const double start = group.arc->start().time, length = group.next_check - start;
+  const int looks =
+      static_cast<int>(std::clamp(std::ceil(travel / (answer::travel_unlooked * size)), 1.0,
+                                  static_cast<double>(answer::most_looks)));
+  bool knows_neighbours = false;
+  double from = start;
+  for (int i = 1; i <= looks; ++i) {
+    const double to = i < looks ? start + length * i / looks : group.next_check;
+    double end = never;
+    each_contact(pair, [&](std::uint32_t c) {
+      end =
+          std::min(end, fast_touch(*group.arc, static_cast<int>(c), from, to, scales.fusion_speed));
+    });
+    if (std::min(along.represented(to), 0.0) - along.deepest(to, false) > allowed) {
+      if (!knows_neighbours && (a.fixed() || b.fixed())) {
+        const std::vector<BodyId> ground = surroundings.ground_around(a.dynamic() ? a : b);
+        along.around_a = surroundings.seam_neighbours(a, ground);
+        along.around_b = surroundings.seam_neighbours(b, ground);
+        knows_neighbours = true;
+      }
+      end = std::min(end, unseen_touch(along, from, to, allowed));
+    }
+    if (end < never) return std::min(end, group.next_check);
+    from = to;
   }
-  return std::min(end, unseen_touch(along, allowed));
+  return group.next_check;
 }
 
 }  // namespace
@@ -131,8 +144,11 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   if (early_ends.empty()) return;
   ++counters.early_ends;
 
-  // no shorter than the spacing of checks on the grid of collisions
-  const double least = std::min(group.next_check, group.arc->start().time + answer::check_grid);
+  double finest = never;
+  for (const ProcessId member : group.members)
+    finest = std::min(finest, finest_check(scene, scene.body_of(member)));
+  const double least =
+      std::min(group.next_check, group.arc->start().time + answer::least_arc * finest);
   for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
   if (group.members.size() < answer::least_divided) {
     for (const EarlyEnd& early : early_ends)

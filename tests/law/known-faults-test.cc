@@ -16,12 +16,6 @@ double rise_of(const StabilityScene& scene) {
 // What other scenes of that kind stay below.
 constexpr double sound = 1e-4;
 
-// From the errors of steps, within the arcs: the tighter the tolerance the less.
-TEST(KnownFaults, spun_coins_gain_energy) {
-  EXPECT_KNOWN_FAULT(rise_of(coin_scene(10, 0.3, 20)), sound, 9.8e-3);
-  EXPECT_KNOWN_FAULT(rise_of(coin_scene(60, 0.1, 20)), sound, 4.9e-4);
-}
-
 // While it sways on springs that are too soft for it; where from is not known.
 TEST(KnownFaults, a_heavy_cube_on_a_light_one_gains_energy) {
   EXPECT_KNOWN_FAULT(rise_of(heavy_blow_scene(1e3, 30)), sound, 7.4e-4);

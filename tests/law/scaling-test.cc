@@ -1,0 +1,52 @@
+// A scene that is scaled gives the scaled motion: no rule knows a metre or a second of its own.
+//
+// Lengths by a power of 4 and times by its root keep gravity; lengths as they are and times by a
+// power of 2 change it.  Powers of two, because group checks lie on a lattice of such: then all but
+// rounding is the same, and the bodies part only as far as what is chaotic makes of rounding.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "support/stability-scenes.h"
+
+namespace tw::test {
+namespace {
+
+// The farthest that a body is from where it should be, in sizes, over `units` of time.
+double worst_deviation(double length, double time, double units) {
+  World original, scaled;
+  scale_scene(1).fill(original);
+  scale_scene(length).fill(scaled);
+  scaled.set_gravity(Vec3(0, 0, -9.81 * length / (time * time)));
+  double worst = 0;
+  for (int i = 1; i <= 40; ++i) {
+    const double when = units * i / 40;
+    original.advance(when);
+    scaled.advance(when * time);
+    for (BodyId id = 1; id < static_cast<BodyId>(original.body_count()); ++id) {
+      const Vec3 expected = original.state(id).position;
+      worst = std::max(worst, (scaled.state(id).position / length - expected).norm());
+    }
+  }
+  return worst;
+}
+
+// Three cubes, ball, box and drum of 1 um to 1000 km fall on each other and come to rest.
+TEST(Scaling, size_changes_nothing_but_the_unit) {
+  for (const int k : {-10, -5, 5, 10}) {
+    const double length = std::pow(4.0, k), time = std::pow(2.0, k);
+    EXPECT_LT(worst_deviation(length, time, 1), 1e-12) << k;
+    EXPECT_LT(worst_deviation(length, time, 10), 1e-2) << k;
+  }
+}
+
+TEST(Scaling, speed_changes_nothing_but_the_unit) {
+  for (const int k : {-10, 10}) {
+    const double time = std::pow(2.0, k);
+    EXPECT_LT(worst_deviation(1, time, 1), 1e-12) << k;
+    EXPECT_LT(worst_deviation(1, time, 10), 1e-3) << k;
+  }
+}
+
+}  // namespace
+}  // namespace tw::test
