@@ -22,12 +22,13 @@ namespace tw {
 
 // Where the frame may be and how it may move over a stretch of time.
 struct MotionBounds {
-  Aabb path;                   // of the origin, m
-  double speed = 0;            // of the origin, m/s; `never`: not told, its path is (ballistic)
-  Aabb acceleration;           // of the origin, m/s^2; everywhere: its velocity may jump
-  double turn = 0;             // angular speed, rad/s
-  double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump
-  double valid_until = never;  // s; `never`: as long as the trajectory goes on
+  Aabb path;               // of the origin, m
+  double speed = 0;        // of the origin, m/s; `never`: not told, its path is (ballistic)
+  Aabb acceleration;       // of the origin, m/s^2; everywhere: its velocity may jump
+  double turn = 0;         // angular speed, rad/s
+  double turn_change = 0;  // |w'|, rad/s^2; nothing where the velocity may jump
+  // s; `never`: as long as the trajectory goes on.  Path, speed and turn hold as far as was asked.
+  double valid_until = never;
 
   // Only the speeds are bounded.
   bool velocity_may_jump() const { return acceleration.unbounded(); }
@@ -68,7 +69,8 @@ class Trajectory {
   virtual MotionBounds bounds(double from, double to) const = 0;
   // Where it ends by itself, s; what follows is another state's.
   virtual double end() const { return never; }
-  // Beyond this time bounds from `time` on may be much wider: the end of a step of the integrator.
+  // Beyond this time bounds from `time` on may be much wider, the end of a step of the integrator,
+  // or not known at all yet, the end of a span of a motion by a procedure.
   virtual double step_end(double /*time*/) const { return never; }
   // The origin's path in closed form; null where other things act.
   virtual const Parabola* ballistic() const { return nullptr; }
