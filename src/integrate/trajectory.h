@@ -20,15 +20,15 @@
 
 namespace tw {
 
-// Where the frame may be and how it may move over a stretch of time.
+// Where the frame may be and how it may move over a stretch of time.  Path, speed and turn hold as
+// far as was asked, the others as far as `valid_until`.
 struct MotionBounds {
-  Aabb path;               // of the origin, m
-  double speed = 0;        // of the origin, m/s; `never`: not told, its path is (ballistic)
-  Aabb acceleration;       // of the origin, m/s^2; everywhere: its velocity may jump
-  double turn = 0;         // angular speed, rad/s
-  double turn_change = 0;  // |w'|, rad/s^2; nothing where the velocity may jump
-  // s; `never`: as long as the trajectory goes on.  Path, speed and turn hold as far as was asked.
-  double valid_until = never;
+  Aabb path;                   // of the origin, m
+  double speed = 0;            // of the origin, m/s; `never`: not told, its path is (ballistic)
+  Aabb acceleration;           // of the origin, m/s^2; everywhere: its velocity may jump
+  double turn = 0;             // angular speed, rad/s
+  double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump
+  double valid_until = never;  // s; `never`: as long as the trajectory goes on
 
   // Only the speeds are bounded.
   bool velocity_may_jump() const { return acceleration.unbounded(); }
