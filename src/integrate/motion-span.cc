@@ -39,16 +39,28 @@ class Sampler {
  private:
   // Appends the pieces of [a, b]; false: the span ends in it.
   bool follow(double a, double b, const Quality& above) {
+    if (bad_ <= a) return fail(a, failure_);
     Quality quality;
-    if (fits(a, b, above, quality)) return true;
+    if (bad_ > b && fits(a, b, above, quality)) return true;
     if (span_.pieces.size() >= guard::most_motion_pieces)
-      return fail(a, "a motion's procedure moves so roughly between " + show(a) + " s and " +
-                         show(b) +
-                         " s that it cannot be followed; expected a motion that is smooth but for "
-                         "some corners");
+      return fail(a, std::make_exception_ptr(UserError(
+                         procedure_.name() + " is so rough between " + show(a) + " s and " +
+                         show(b) + " s that it cannot be followed; expected a motion that is " +
+                         "smooth but for some corners")));
     if (b - a <= shortest_) return close_in(a, b);
     const double middle = 0.5 * (a + b);
     return follow(a, middle, quality) && follow(middle, b, quality);
+  }
+
+  // Each error that is raised may take long to describe: beyond one nobody asks again.
+  Pose pose_at(double time) {
+    try {
+      return procedure_.pose(time);
+    } catch (const UserError&) {
+      bad_ = time;
+      failure_ = std::current_exception();
+      throw;
+    }
   }
 
   // Appends one piece if its samples can be had, agree with it, and are slow enough.
@@ -63,7 +75,7 @@ class Sampler {
   bool try_to_fit(double a, double b, const Quality& above, Quality& quality) {
     std::array<Pose, motion_nodes> poses;
     const auto sample = [&](int j) {
-      poses[static_cast<std::size_t>(j)] = procedure_.pose(motion_node_time(j, a, b));
+      poses[static_cast<std::size_t>(j)] = pose_at(motion_node_time(j, a, b));
     };
     for (int j = 0; j < motion_nodes; j += 2) sample(j);
     const Quat& middle = poses[motion_nodes / 2].q;
@@ -119,65 +131,50 @@ class Sampler {
   bool close_in(double a, double b) {
     Pose first, last;
     try {
-      first = procedure_.pose(a);
+      first = pose_at(a);
+      if (bad_ > b) last = pose_at(b);
     } catch (const UserError&) {
-      return fail(a);
+      if (bad_ <= a) return fail(a, failure_);
     }
-    try {
-      last = procedure_.pose(b);
-    } catch (const UserError&) {
-      return fail_between(a, first, b);
-    }
+    if (bad_ <= b) return fail_between(a, first);
     try {
       procedure_.require_speed(a, first, b, last);
     } catch (const UserError&) {
-      return fail(a);
+      return fail(a, std::current_exception());
     }
     span_.pieces.emplace_back(a, b, first, last);
     return true;
   }
 
-  // The procedure succeeds at a and fails at b: up to the first double at which it fails.
-  bool fail_between(double a, const Pose& first, double b) {
-    double good = a, bad = b;
+  // The procedure succeeds at a and fails soon after: up to the first double at which it fails.
+  bool fail_between(double a, const Pose& first) {
+    double good = a;
     Pose last = first;
-    std::exception_ptr failure;
     for (;;) {
-      const double middle = good + 0.5 * (bad - good);
-      const bool adjacent = !(good < middle && middle < bad);
+      const double middle = good + 0.5 * (bad_ - good);
+      if (!(good < middle && middle < bad_)) break;
       try {
-        const Pose pose = procedure_.pose(adjacent ? bad : middle);
-        TW_REQUIRE(!adjacent, "a motion's procedure failed at " + show(bad) +
-                                  " s and then did not; expected a function of the time alone");
-        last = pose;
+        last = pose_at(middle);
         good = middle;
       } catch (const UserError&) {
-        if (adjacent) break_off(bad, std::current_exception());
-        if (adjacent) break;
-        bad = middle;
       }
     }
     // a difference over a few spacings of times would be rounding
     const bool measurable = good - a > 0x1p-10 * shortest_;
-    span_.pieces.emplace_back(a, bad, first, measurable ? last : first);
-    return false;
+    span_.pieces.emplace_back(a, bad_, first, measurable ? last : first);
+    return fail(bad_, failure_);
   }
 
-  bool fail(double when) {
-    break_off(when, std::current_exception());
-    return false;
-  }
-  bool fail(double when, const std::string& message) {
-    break_off(when, std::make_exception_ptr(UserError(message)));
-    return false;
-  }
-  void break_off(double when, std::exception_ptr failure) {
+  bool fail(double when, std::exception_ptr failure) {
     span_.end = when;
     span_.failure = std::move(failure);
+    return false;
   }
 
   const MotionProcedure& procedure_;
   double width_, shortest_ = 0, noise_ = 0;
+  double bad_ = never;  // the earliest time known at which the procedure fails, and how
+  std::exception_ptr failure_;
   MotionSpan span_;
 };
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "integrate/motion-piece.h"
@@ -25,6 +26,8 @@ namespace tw {
 class MotionProcedure {
  public:
   virtual ~MotionProcedure() = default;
+  // What messages call it.
+  virtual std::string name() const = 0;
   // UserError where the procedure fails.
   virtual Pose pose(double time) const = 0;
   // UserError if the body was faster than it may be from one pose to another, s.

@@ -44,8 +44,11 @@ std::vector<Vec3> rim_points(const ConvexPart& part) {
 
 }  // namespace
 
-ScmMotion::ScmMotion(SCM procedure, double max_speed, ShapePtr shape)
-    : procedure_(procedure), max_speed_(max_speed), shape_(std::move(shape)) {
+ScmMotion::ScmMotion(SCM procedure, const std::string& name, double max_speed, ShapePtr shape)
+    : procedure_(procedure),
+      name_(name.empty() ? "a motion's procedure" : "the motion of " + name),
+      max_speed_(max_speed),
+      shape_(std::move(shape)) {
   TW_REQUIRE(std::isfinite(max_speed) && max_speed >= 0,
              "max-speed is " + show(max_speed) + "; expected a finite speed in m/s, not negative");
   TW_REQUIRE(max_speed <= speed_limit,
@@ -54,23 +57,31 @@ ScmMotion::ScmMotion(SCM procedure, double max_speed, ShapePtr shape)
              "a " + shape_->kind_name() + " moves by a procedure; expected a bounded shape");
 }
 
-Pose ScmMotion::pose(double time) const {
+SCM ScmMotion::call(double time) const {
   SCM arguments[] = {scm_from_double(time)};
-  const SCM result = call_scheme(procedure_, arguments);
+  try {
+    return call_scheme(procedure_, arguments);
+  } catch (const SchemeError& error) {
+    throw SchemeError(std::string(error.what()) + "\n  in " + name_ + " at " + show(time) + " s",
+                      error.place(), error.backtrace());
+  }
+}
+
+Pose ScmMotion::pose(double time) const {
+  const SCM result = call(time);
   constexpr const char* expected =
       "expected two values, position #(x y z) and orientation #(w x y z)";
-  TW_REQUIRE(scm_c_nvalues(result) == 2,
-             std::string("a motion's procedure returned one value; ") + expected);
+  TW_REQUIRE(scm_c_nvalues(result) == 2, name_ + " returned one value; " + expected);
   try {
     const Vec3 position = to_vec3(scm_c_value_ref(result, 0), "position");
     TW_REQUIRE(position.cwiseAbs().maxCoeff() <= farthest,
-               "a motion's procedure returned a position with a coordinate of " +
+               name_ + " returned a position with a coordinate of " +
                    show(position.cwiseAbs().maxCoeff()) + " m at " + show(time) +
                    " s; expected at most " + show(farthest) + " m");
     return {position, to_quat(scm_c_value_ref(result, 1), "orientation")};
   } catch (const BadValue& bad) {
-    throw UserError(std::string("a motion's procedure returned a wrong ") + bad.name + " at " +
-                    show(time) + " s; " + expected);
+    throw UserError(name_ + " returned a wrong " + bad.name + " at " + show(time) + " s; " +
+                    expected);
   }
 }
 
@@ -98,20 +109,20 @@ void ScmMotion::require_speed(double from, const Pose& before, double to, const 
   // rounding of the poses themselves, and of the times
   const double time_spacing = 0x1p-50 * std::max(std::abs(from), std::abs(to));
   const double slack = 1e-9 * allowed + 1e-12 * (1 + after.p.norm()) + time_spacing * max_speed_;
-  TW_REQUIRE(moved <= allowed + slack, "a motion's procedure moved a point by " + show(moved) +
-                                           " m between " + show(from) + " s and " + show(to) +
-                                           " s; expected at most max-speed, " + show(max_speed_) +
-                                           " m/s");
+  TW_REQUIRE(moved <= allowed + slack,
+             name_ + " moved a point by " + show(moved) + " m between " + show(from) + " s and " +
+                 show(to) + " s; expected at most max-speed, " + show(max_speed_) + " m/s");
 }
 
-TW_PRIMITIVE(procedure_motion, "%procedure-motion", (SCM procedure, SCM max_speed, SCM shape),
-             "Return a motion by a procedure of time.") {
+TW_PRIMITIVE(procedure_motion, "%procedure-motion",
+             (SCM procedure, SCM name, SCM max_speed, SCM shape),
+             "Return a motion by a procedure of time, of the body called NAME.") {
   if (scm_is_false(max_speed))
     throw BadValue{
         "max-speed", max_speed,
         "a bound in m/s for every point of the surface, since the motion is a procedure"};
   auto motion =
-      std::make_unique<ScmMotion>(procedure, to_real(max_speed, "max-speed"),
+      std::make_unique<ScmMotion>(procedure, text_of(name), to_real(max_speed, "max-speed"),
                                   scm_is_true(shape) ? to_shape(shape, "shape") : nullptr);
   return from_motion(std::make_shared<SampledMotion>(std::move(motion)), procedure);
 }

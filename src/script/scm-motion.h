@@ -10,6 +10,8 @@
 
 #include <libguile.h>
 
+#include <string>
+
 #include "geometry/shape.h"
 #include "integrate/motion-span.h"
 #include "script/live.h"
@@ -18,9 +20,11 @@ namespace tw {
 
 class ScmMotion : public MotionProcedure, Live<LiveKind::motion> {
  public:
-  // `shape` may be null; else it must be bounded.  max_speed in m/s, finite, not negative.
-  ScmMotion(SCM procedure, double max_speed, ShapePtr shape);
+  // `name`: the body's, may be empty.  `shape` may be null; else it must be bounded.  max_speed in
+  // m/s, finite, not negative.
+  ScmMotion(SCM procedure, const std::string& name, double max_speed, ShapePtr shape);
 
+  std::string name() const override { return name_; }
   Pose pose(double time) const override;
   void require_speed(double from, const Pose& before, double to, const Pose& after) const override;
   double max_speed() const override { return max_speed_; }
@@ -28,10 +32,12 @@ class ScmMotion : public MotionProcedure, Live<LiveKind::motion> {
   double radius() const override { return shape_ ? shape_->radius_about_origin() : 1; }
 
  private:
+  SCM call(double time) const;
   // The farthest that a point of the surface is from where it was.
   double displacement(const Pose& from, const Pose& to) const;
 
   SCM procedure_;
+  std::string name_;
   double max_speed_;
   ShapePtr shape_;
 };

@@ -179,14 +179,14 @@
 
 (in-world ()
   (test-message "a jump is told with its time"
-    "moved a point by .* between 0.299999[0-9]* s and 0.3"
+    "the motion of plate moved a point by .* between 0.299999[0-9]* s and 0.3"
     (run-with-motion (lambda (time) (straight (if (< time 0.3) 0 0.01))) 5 1))
   (test-assert "nothing after it is committed" (< (world-time) 0.3)))
 (in-world ()
-  (test-message "a motion that is not a number" "wrong position at 0.3[0-9]* s"
+  (test-message "a motion that is not a number" "motion of plate returned a wrong position at 0.3[0-9]* s"
     (run-with-motion (lambda (time) (straight (if (<= time 0.3) time (/ 0. 0.)))) 5 1)))
 (in-world ()
-  (test-message "an error of the procedure's own" "no row for 0.3"
+  (test-message "an error of the procedure's own" "no row for 0.3[0-9]*\n  in the motion of plate at 0.3[0-9]* s"
     (run-with-motion
      (lambda (time) (if (<= time 0.3) (straight time) (error "no row for" time))) 5 1)))
 (in-world ()

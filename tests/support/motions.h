@@ -15,6 +15,7 @@ class FunctionMotion final : public MotionProcedure {
   FunctionMotion(std::function<Pose(double)> function, double max_speed)
       : function_(std::move(function)), max_speed_(max_speed) {}
 
+  std::string name() const override { return "a function"; }
   Pose pose(double time) const override {
     ++calls;
     earliest = std::min(earliest, time);

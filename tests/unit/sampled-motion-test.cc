@@ -284,6 +284,7 @@ TEST(SampledMotion, a_procedure_that_never_works_says_so) {
   const Sampled sampled([](double t) -> Pose { throw UserError("bad at " + show(t)); });
   EXPECT_EQ(failure_at(*sampled.motion, 0), "bad at 0");
   EXPECT_EQ(failure_at(*sampled.motion, 0.01), "bad at 0");
+  EXPECT_EQ(sampled.procedure->calls, 1) << "an error may take long to describe";
 }
 
 TEST(SampledMotion, an_interrupt_passes_and_leaves_nothing_behind) {
