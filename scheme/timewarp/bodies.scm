@@ -37,9 +37,10 @@ come from the shape and the density.
 #:fixed?      #t: it never moves; #f
 #:motion      makes the body kinematic: what keyframes returns, or a procedure of the time (s)
               that returns a position and an orientation (two values) and depends on nothing
-              else; #f
+              else; #f.  It is called a sixteenth of a second or more ahead, some 300 times a
+              second, oftener where it is not smooth
 #:max-speed   m/s, with a procedure as #:motion, and needed there: no point of the surface is
-              faster
+              faster, which is verified; so a jump is an error
 #:material    a symbol that set-contact-parameters! can name; none
 #:color       #(r g b), sRGB, 0 to 1; chosen for each body
 #:slots       an alist of names (symbols) and values, which callbacks can change; ()
@@ -50,7 +51,7 @@ come from the shape and the density.
       (raise-error (string-append "add-body! got no #:shape; expected a shape, or #:shape #f for a "
                                   "body that touches nothing")))
     (%add-body! (current-world)
-                (body-properties given (body-motion motion max-speed shape))
+                (body-properties given (body-motion motion name max-speed shape))
                 (caller-place))))
 
 (define (remove-body! body)
@@ -60,9 +61,9 @@ after this is an error."
   (%remove-body! (current-world) body))
 
 ;; The motion of the body as the C++ side wants it, or #f.
-(define (body-motion motion max-speed shape)
+(define (body-motion motion name max-speed shape)
   (if (procedure? motion)
-      (%procedure-motion motion max-speed shape)
+      (%procedure-motion motion name max-speed shape)
       (begin
         (when max-speed
           (raise-error "add-body! got #:max-speed; expected it only where #:motion is a procedure"))

@@ -59,6 +59,22 @@ inline constexpr double depth_slack = 1e-12;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
 
+// ---- motion by a procedure ----
+// It is sampled in spans of this length on a grid from time 0, s: so far ahead of what is asked it
+// may be called, and what lasts shorter than a tenth of this may be missed.
+inline constexpr double motion_span = 0x1p-4;
+// Samples that judge a piece miss it by no more than this share of the least width (orientations by
+// as much at the farthest point): a millionth of the default accuracy.
+inline constexpr double motion_error = 1e-12;
+// Where halving a piece does not halve its error twice in a row, the procedure's own noise (what
+// solves equations to a tolerance), this error will do.
+inline constexpr double motion_noise = 1e-9;
+// A piece turns no farther than this from its middle, rad.
+inline constexpr double motion_turn = 1;
+// A kink is followed to within a piece of this length, s, or of so many spacings of the times
+// there.
+inline constexpr double shortest_motion_piece = 0x1p-24, shortest_motion_spacings = 1024;
+
 // ---- which contacts are the same ----
 // A contact after a refresh is one before it if they are not farther apart, share of the smaller
 // size.
@@ -161,6 +177,9 @@ inline constexpr std::uint32_t most_repeated = 2000;
 // More microsteps at one instant are an error that stops the two.
 inline constexpr std::uint32_t most_microsteps = 100000;
 
+// Pieces of one span of a motion by a procedure; more are an error: it is rough everywhere.
+inline constexpr std::size_t most_motion_pieces = 4096;
+
 }  // namespace tw::guard
 
 namespace tw::cost {
@@ -194,6 +213,10 @@ inline constexpr double far_in_radii = 0.25;
 inline constexpr double soon = 1e-4, longest_turn = 2e-3;
 // How far ahead the speed of a kinematic body is bounded, s.
 inline constexpr double kinematic_horizon = 0.5;
+
+// ---- motion by a procedure ----
+// Pieces that are kept; of more the earliest spans are sampled again when they are asked for.
+inline constexpr std::size_t kept_motion_pieces = 8192;
 
 // ---- frames ----
 // They are written in batches of so many, or when so many states wait for theirs.

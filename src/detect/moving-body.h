@@ -22,9 +22,14 @@ struct MovingBody : PlacedBody {
 
   MovingBody(const Body& b, const Trajectory& trajectory, double when)
       : PlacedBody(b, trajectory.path_at(when)) {
-    const double until = b.kinematic() ? when + cost::kinematic_horizon : trajectory.end();
-    bound_by(trajectory.bounds(when, std::max(when, until)));
     step_end = trajectory.step_end(when);
+    double until = trajectory.end();
+    if (b.kinematic()) {
+      // a span of a motion by a procedure is bounded as narrowly as may be at once
+      until = std::min(when + cost::kinematic_horizon, step_end);
+      step_end = never;
+    }
+    bound_by(trajectory.bounds(when, std::max(when, until)));
   }
   // The same with the narrower bounds of the present step of the integrator.
   MovingBody within_step(const Trajectory& trajectory, double when) const {

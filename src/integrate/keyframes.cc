@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "integrate/rotation-vector.h"
 
 namespace tw {
 namespace {
@@ -98,15 +99,6 @@ class Keyframes final : public Trajectory {
   Pose first_, last_;
   bool smooth_;
 };
-
-// The rotation vector of the shorter way from q0 to q1, world axes.
-Vec3 turn_between(const Quat& q0, const Quat& q1) {
-  Quat d = q1 * q0.conjugate();
-  if (d.w() < 0) d.coeffs() = -d.coeffs();
-  const double s = d.vec().norm();
-  if (s == 0) return Vec3::Zero();
-  return (2 * std::atan2(s, d.w()) / s) * d.vec();
-}
 
 Quat unit_orientation(const Quat& q, const std::string& where) {
   TW_REQUIRE(

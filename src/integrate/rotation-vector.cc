@@ -56,6 +56,14 @@ Vec3 angular_velocity(const Vec3& theta, const Vec3& rate) {
   return rate + p * turned + q * theta.cross(turned);
 }
 
+Vec3 turn_between(const Quat& from, const Quat& to) {
+  Quat d = to * from.conjugate();
+  if (d.w() < 0) d.coeffs() = -d.coeffs();
+  const double s = d.vec().norm();
+  if (s == 0) return Vec3::Zero();
+  return (2 * std::atan2(s, d.w()) / s) * d.vec();
+}
+
 Quat short_rotation(const Vec3& theta) {
   // sin(phi/2)/phi and cos(phi/2) in y = (phi/2)^2, exact to rounding up to phi = 0.2
   constexpr double sine[] = {0.5, -0.5 / 6, 0.5 / 120, -0.5 / 5040, 0.5 / 362880};

@@ -20,7 +20,8 @@
 
 namespace tw {
 
-// Where the frame may be and how it may move over a stretch of time.
+// Where the frame may be and how it may move over a stretch of time.  Path, speed and turn hold as
+// far as was asked, the others as far as `valid_until`.
 struct MotionBounds {
   Aabb path;                   // of the origin, m
   double speed = 0;            // of the origin, m/s; `never`: not told, its path is (ballistic)
@@ -68,7 +69,8 @@ class Trajectory {
   virtual MotionBounds bounds(double from, double to) const = 0;
   // Where it ends by itself, s; what follows is another state's.
   virtual double end() const { return never; }
-  // Beyond this time bounds from `time` on may be much wider: the end of a step of the integrator.
+  // Beyond this time bounds from `time` on may be much wider, the end of a step of the integrator,
+  // or not known at all yet, the end of a span of a motion by a procedure.
   virtual double step_end(double /*time*/) const { return never; }
   // The origin's path in closed form; null where other things act.
   virtual const Parabola* ballistic() const { return nullptr; }

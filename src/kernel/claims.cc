@@ -102,16 +102,16 @@ double Claims::window_end(const Body& body) const {
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - cost::patience));
   const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
-  double speed = 0, pull = 0;
+  double speed = 0, pull = 0, farthest = start + cost::longest_window;
   if (path) {
     speed = path->velocity(start).norm();
     pull = path->acceleration.norm();
   } else {
-    speed = trajectory.bounds(start, start + cost::longest_window).speed;
+    farthest = std::min(farthest, trajectory.step_end(start));
+    speed = trajectory.bounds(start, farthest).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
-  double end =
-      start + std::min(cost::longest_window, 2 * distance / std::max(speed + root, 1e-300));
+  double end = std::min(farthest, start + 2 * distance / std::max(speed + root, 1e-300));
 
   // the next callback ends the arc as we know it
   for (const std::uint32_t number : process.callbacks) {

@@ -54,6 +54,10 @@ TEST(Adversary, cubes_that_meet_face_on_up_to_rounding) {
   expect_same_under_adversaries(cube_lattice_scene(3, 1.1, long_tests() ? 5 : 2), 40);
 }
 
+TEST(Adversary, tray_and_bat_that_move_by_procedures) {
+  expect_same_under_adversaries(procedure_scene(long_tests() ? 3 : 1), 10);
+}
+
 TEST(Adversary, spheres_molecules_boxes_and_rocks) {
   expect_same_under_adversaries(mixture_scene(32, 5, 0, long_tests() ? 5 : 1), 20);
 }

@@ -19,6 +19,7 @@ std::vector<Scene> scenes() {
           floor_scene(1.5),
           mixture_scene(20, 4, 0.3, 1),
           paddle_scene(1.5),
+          procedure_scene(1),
           callback_on_pairs_scene(3, 1.1, 2),
           callback_without_period_scene(3, 1, 2)};
 }

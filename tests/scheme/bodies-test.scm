@@ -146,6 +146,53 @@
       (add-body! #:shape (sphere 1) #:motion (lambda (time) #(0 0 0)) #:max-speed 1)
       (run! #:until 1))))
 
+;; a tray that sways under balls: what meets it, and how often, asks the procedure no more
+(define (calls-of-swaying-tray balls)
+  (let ((calls 0) (latest 0))
+    (in-world ()
+      (add-body! #:name "tray" #:shape (box 3 3 0.1) #:max-speed 2
+                 #:motion (lambda (time)
+                            (set! calls (1+ calls))
+                            (set! latest (max latest time))
+                            (values (vector (* 0.1 (sin (* 3 time))) 0 0)
+                                    (rotation #(0 1 0) (* 0.1 (sin time))))))
+      (for-each (lambda (i)
+                  (add-body! #:shape (sphere 0.05)
+                             #:position (vector (* 0.2 (- (quotient i 5) 2))
+                                                (* 0.2 (- (remainder i 5) 2)) 0.2)))
+                (iota balls))
+      (run! #:until 1)
+      (test-assert "it is asked little beyond the end of the run" (< latest 1.2)))
+    calls))
+
+(let ((few (calls-of-swaying-tray 1)) (many (calls-of-swaying-tray 25)))
+  (test-assert (format #f "17 calls in a sixteenth of a second: ~a in 1 s" few)
+    (< (* 16 17) few (* 19 17)))
+  (test-equal "and no more of them for more balls" few many))
+
+(define (run-with-motion motion max-speed until)
+  (add-body! #:name "ball" #:shape (sphere 0.1) #:position #(0 0 1))
+  (add-body! #:name "plate" #:shape (box 1 1 0.1) #:motion motion #:max-speed max-speed)
+  (run! #:until until))
+
+(define (straight x) (values (vector x 0 0) #(1 0 0 0)))
+
+(in-world ()
+  (test-message "a jump is told with its time"
+    "the motion of plate moved a point by .* between 0.299999[0-9]* s and 0.3"
+    (run-with-motion (lambda (time) (straight (if (< time 0.3) 0 0.01))) 5 1))
+  (test-assert "nothing after it is committed" (< (world-time) 0.3)))
+(in-world ()
+  (test-message "a motion that is not a number" "motion of plate returned a wrong position at 0.3[0-9]* s"
+    (run-with-motion (lambda (time) (straight (if (<= time 0.3) time (/ 0. 0.)))) 5 1)))
+(in-world ()
+  (test-message "an error of the procedure's own" "no row for 0.3[0-9]*\n  in the motion of plate at 0.3[0-9]* s"
+    (run-with-motion
+     (lambda (time) (if (<= time 0.3) (straight time) (error "no row for" time))) 5 1)))
+(in-world ()
+  (run-with-motion (lambda (time) (straight (if (< time 0.3) (* 3 time) (- 1.2 time)))) 3 1)
+  (test-assert "a kink is no error" (close? #(0.2 0 0) (position (find-body "plate")) 1e-12)))
+
 ;; ---- removing ----
 
 (in-world ()

@@ -11,6 +11,7 @@
 
 #include "integrate/keyframes.h"
 #include "support/case-file.h"
+#include "support/motions.h"
 #include "support/scene.h"
 
 namespace tw::test {
@@ -162,6 +163,36 @@ inline Scene paddle_scene(double duration) {
     }
   };
   return {"paddle", duration, fill_world};
+}
+
+// Balls and boxes on a tray that sways by a procedure of time, with a kink at 0.4 s, and a bat that
+// turns among them.
+inline Scene procedure_scene(double duration) {
+  const auto fill_world = [](World& world) {
+    set_contact_for_all(world, 0.4, 0.3);
+    BodyDef tray;
+    tray.shape = make_box({3, 3, 0.2});
+    tray.motion = Sampled([](double t) {
+                    const double rise = t < 0.4 ? 0.5 * t : 0.2 - 0.2 * (t - 0.4);
+                    return Pose{{0.1 * std::sin(5 * t), 0, rise},
+                                rotation_by(Vec3(0, 0.1 * std::sin(2 * t), 0))};
+                  }).motion;
+    world.add_body(tray);
+    BodyDef bat;
+    bat.shape = make_box({1.2, 0.1, 0.3});
+    bat.motion = Sampled([](double t) {
+                   return Pose{{0, 0, 0.7}, rotation_by(Vec3(0, 0, 3 * t + std::cos(t)))};
+                 }).motion;
+    world.add_body(bat);
+    Random random(11);
+    for (int k = 0; k < 16; ++k) {
+      const Vec3 position(0.6 * (k % 4) - 0.9, 0.6 * (k / 4) - 0.9, random.real(0.3, 0.4));
+      if (std::abs(position.y()) < 0.4 && std::abs(position.x()) < 0.8) continue;
+      const ShapePtr shape = k % 3 == 0 ? make_box({0.2, 0.2, 0.3}) : make_sphere(0.1);
+      world.add_body(body_of(shape, position, random_vector(random, 1), random_vector(random, 3)));
+    }
+  };
+  return {"procedure", duration, fill_world};
 }
 
 }  // namespace tw::test
