@@ -270,8 +270,10 @@ inline constexpr double same_point = 1e-5;
 inline constexpr double buried_margin = 2e-5;
 // How far from the surface normals are compared, and how far around a point a face is looked at.
 inline constexpr double probe = 0.01;
-// Bodies nearer than this may overlap the neighbours of what they are near to.
-inline constexpr double sunk = 0.01;
+// Bodies may be sunk so deep: a check may find one that moved on into what no contact held, by as
+// far as anything moves between two checks.  What is nearer than this to a piece may overlap its
+// neighbours.
+inline constexpr double sunk = answer::most_travel;
 // How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
 inline constexpr double shrinking[] = {0.98, 0.9};
 

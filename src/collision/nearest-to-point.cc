@@ -21,6 +21,24 @@ bool over_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& po
   return true;
 }
 
+Vec3 nearest_on_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point) {
+  const Vec3 foot = point - (face.normal.dot(point) - face.offset) * face.normal;
+  if (over_face(p, face, foot, 0)) return foot;
+  Vec3 best = foot;
+  double least = 1e300;
+  for (int i = 0; i < face.count; ++i) {
+    const Vec3& tail = p.vertex(p.corner(face.first + i));
+    const Vec3 along = p.vertex(p.corner(face.first + (i + 1) % face.count)) - tail;
+    const double t = std::clamp((foot - tail).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vec3 there = tail + t * along;
+    const double square = (foot - there).squaredNorm();
+    if (!(square < least)) continue;
+    least = square;
+    best = there;
+  }
+  return best;
+}
+
 NearestToPoint nearest_edge(const Polyhedron& p, const Vec3& point) {
   NearestToPoint best;
   double least = 1e300;

@@ -31,5 +31,7 @@ NearestToPoint nearest_edge(const Polyhedron& p, const Vec3& point);
 
 // Whether the foot of the point on the face's plane lies within its sides, up to `slack` beyond.
 bool over_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point, double slack);
+// The point of the face that is nearest.
+Vec3 nearest_on_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point);
 
 }  // namespace tw

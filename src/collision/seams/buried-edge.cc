@@ -77,14 +77,11 @@ int face_with(const Polyhedron& core, const Vec3& normal) {
   return -1;
 }
 
-// The point moved onto the face from beside it.
-Vec3 onto_face(const Polyhedron& core, const Polyhedron::Face& face, Vec3 point) {
-  for (int i = 0; i < face.count; ++i) {
-    const Polyhedron::Side& side = core.side(face.first + i);
-    const double outside = side.offset - side.inward.dot(point);
-    if (outside > 0) point += outside * side.inward;
-  }
-  return point;
+// The middle of a face's corners.
+Vec3 middle_of(const Polyhedron& core, const Polyhedron::Face& face) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < face.count; ++i) sum += core.vertex(core.corner(face.first + i));
+  return sum / face.count;
 }
 
 }  // namespace
@@ -103,10 +100,13 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   // far inside a face: bodies don't sink so deep that it could be an inner wall
   const Polyhedron::Face& face = core.face(number);
   const Vec3 local = world.to_local(point);
-  if (over_face(core, face, local, -seam::probe * size)) return false;
-  const Vec3 foot = onto_face(core, face, local);
+  if (over_face(core, face, local, -seam::sunk * size)) return false;
+  const Vec3 foot = nearest_on_face(core, face, local);
   if (!denied(world * foot, normal, neighbours, size, angle)) return false;
-  // an inner wall is denied all around
+  // an inner wall is denied all around; the face may be pointed there
+  const Vec3 middle = middle_of(core, face) - foot;
+  const Vec3 inward = foot + std::min(1.0, seam::probe * size / middle.norm()) * middle;
+  if (!denied(world * inward, normal, neighbours, size, angle)) return false;
   const Vec3 u = core.side(face.first).inward;
   const Vec3 v = face.normal.cross(u);
   constexpr int directions = 8;

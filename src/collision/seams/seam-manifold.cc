@@ -42,9 +42,9 @@ double manifold_at_seams(const Shape& a, const Frame& frame_a,
   for (std::size_t i = 0; i < a.parts().size(); ++i)
     for (std::size_t j = 0; j < b.parts().size(); ++j, ++pair) {
       const auto first = static_cast<std::ptrdiff_t>(out.size());
-      if (far_apart(a.parts()[i], frame_a, b.parts()[j], frame_b, reach)) continue;
-      const double distance =
-          add(SeamPair{side_a, side_b, i, j, reach, size, choice, pair, {&near_a, &near_b}}, out);
+      const SeamPair seam{side_a, side_b, i, j, reach, size, choice, pair, {&near_a, &near_b}};
+      if (far_apart(seam.first(), frame_a, seam.second(), frame_b, seam.farthest())) continue;
+      const double distance = add(seam, out);
       if (distance <= reach) least = std::min(least, distance);
       std::sort(out.begin() + first, out.end(),
                 [](const auto& p, const auto& q) { return p.feature < q.feature; });

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "base/constants.h"
@@ -41,6 +42,12 @@ struct SeamPair {
 
   const ConvexPart& first() const { return a.shape.parts()[part_a]; }
   const ConvexPart& second() const { return b.shape.parts()[part_b]; }
+
+  // How far a part may be from what lies in its neighbours and touches what it goes on by beneath
+  // them, m.
+  double farthest() const {
+    return a.has_seams || b.has_seams ? std::max(reach, seam::sunk * size) : reach;
+  }
 
   const std::vector<SeamNeighbour>& neighbours(bool of_a) const;
 

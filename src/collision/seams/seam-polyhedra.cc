@@ -8,6 +8,7 @@
 #include "collision/seams/exposed-edges.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"
+#include "collision/seams/valley.h"
 
 namespace tw {
 
@@ -18,6 +19,7 @@ struct Exposure {
   const SeamPair& seam;
   const CorePair& cores;
   bool of_a;
+  std::size_t from;  // what the pair of parts has begins there
   std::vector<ManifoldPoint>& out;
   const Polyhedron& part = of_a ? cores.a : cores.b;
   const Polyhedron& other = of_a ? cores.b : cores.a;
@@ -70,7 +72,10 @@ struct Exposure {
   // neighbour: as behind the edge of a steep ridge.
   bool leaves_by_neighbour(const Vec3& point, double depth) const {
     const Vec3 here = world * point;
-    for (const SeamNeighbour& q : seam.neighbours(of_a)) {
+    const std::vector<SeamNeighbour>& neighbours = seam.neighbours(of_a);
+    thread_local std::vector<SeamNeighbour> others;
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+      const SeamNeighbour& q = neighbours[i];
       if (q.part->kind != PartKind::polyhedron) continue;
       const Polyhedron& core = *q.part->core;
       const Frame place = q.frame * q.part->placement;
@@ -79,9 +84,11 @@ struct Exposure {
         const double under = face.offset - face.normal.dot(local);
         if (!(under >= 0 && under < depth - same_place())) continue;
         const Vec3 foot = local + under * face.normal;
-        if (!over_face(core, face, foot, same_place())) continue;
-        // a little outside, as a wall between two is inside neither
-        if (!covered(place * Vec3(foot + 4 * same_place() * face.normal))) return true;
+        if (!over_face(core, face, foot, 0)) continue;
+        others = neighbours;
+        others[i] = {of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame};
+        if (!buried_edge(*q.part, q.frame, place * foot, place.R * face.normal, others, seam.size))
+          return true;
       }
     }
     return false;
@@ -115,6 +122,41 @@ struct Exposure {
         continue;
       if (height <= seam::sunk * seam.size) add_under_face(v, point, height > 0);
     }
+  }
+
+  // Vertices of the other beside the part, in a valley: over or under what a face goes on by
+  // beneath the neighbours.
+  void add_in_valleys() const {
+    thread_local std::vector<std::pair<double, std::uint64_t>> heights;
+    for (std::uint64_t v = 0; v < other.vertices().size(); ++v) {
+      const Vec3 point = other_in_part * other.vertices()[v];
+      int nearest = 0;
+      const double beside = part.face_separation(point, nearest);
+      if (!(beside > 0 && beside <= seam.farthest())) continue;
+      heights.clear();
+      for (std::uint64_t f = 0; f < part.faces().size(); ++f) {
+        const Polyhedron::Face& face = part.faces()[f];
+        const double height = face.normal.dot(point) - face.offset;
+        if (height < -seam::sunk * seam.size || height > seam.reach) continue;
+        const Vec3 foot = point - height * face.normal;
+        if (over_face(part, face, foot, 0)) continue;
+        if (goes_on_to(part, face, foot, world, seam.neighbours(of_a), seam.farthest(), seam.size))
+          heights.emplace_back(-height, f);
+      }
+      if (heights.empty() || is_known(world * point)) continue;
+      // it leaves what the part goes on by under the nearest of its faces
+      std::sort(heights.begin(), heights.end());
+      for (const auto& [depth, f] : heights)
+        if (add_vertex(v, f, point, -depth)) break;
+    }
+  }
+
+  // Whether a contact holds this point (world) of the other.
+  bool is_known(const Vec3& point) const {
+    return std::any_of(
+        out.begin() + static_cast<std::ptrdiff_t>(from), out.end(), [&](const auto& p) {
+          return p.reference_is_a == of_a && (p.core_point - point).norm() <= same_place();
+        });
   }
 
   // A vertex inside the part, or `beside` it and inside a neighbour.
@@ -158,23 +200,25 @@ double polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) 
   const std::size_t from = out.size();
   const CorePair cores(seam.first(), seam.a.frame, seam.second(), seam.b.frame);
   const NearestFeatures near = nearest_features(cores.a, cores.b, cores.b_in_a, seam.reach);
-  if (near.distance > seam.reach) return near.distance;
+  if (near.distance > seam.farthest()) return near.distance;
+  const bool reached = near.distance <= seam.reach;
   const auto buried = [&](bool on_a) {
     return seam.buries(on_a, cores.world_a * (on_a ? near.point_a : near.point_b),
                        cores.world_a.R * near.normal, seam::same_angle);
   };
-  if (!buried(true) && !buried(false)) {
+  if (reached && !buried(true) && !buried(false)) {
     features_manifold(cores, near, seam.reach, seam.choice, seam.pair, out);
     seam.remove_ghosts(from, seam::face_angle, out);
   }
-  if (out.size() > from || near.distance > seam::sunk * seam.size) return near.distance;
+  const bool nothing = reached && out.size() == from;
   for (const bool of_a : {true, false}) {
     if (!(of_a ? seam.a : seam.b).has_seams) continue;
-    const Exposure exposure{seam, cores, of_a, out};
-    exposure.add_edges();
-    exposure.add_vertices();
+    const Exposure exposure{seam, cores, of_a, from, out};
+    if (nothing) exposure.add_edges();
+    if (nothing) exposure.add_vertices();
+    exposure.add_in_valleys();
   }
-  thin(coincident_ratio * cores.size(), from, out);
+  if (nothing) thin(coincident_ratio * cores.size(), from, out);
   return near.distance;
 }
 

@@ -45,8 +45,9 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
 // Where bodies overlap a little the axis of least depth may be that of a buried wall, while another
 // axis supports.  Then the points are those of the exposed edges that lie deepest in the other
 // polyhedron, and its vertices under the face that they leave the ground by (exposed-edges.h,
-// seam-polyhedra.cc).  A cylinder is scaled down until it is apart: what is nearest then is no
-// ghost (see buried_edge), and has its depth along that normal.
+// seam-polyhedra.cc).  In a valley all slopes hold a vertex (valley.h).  A cylinder is scaled down
+// until it is apart: what is nearest then is no ghost (see buried_edge), and has its depth along
+// that normal.
 double manifold_at_seams(const Shape& a, const Frame& frame_a,
                          const std::vector<SeamNeighbour>& around_a, const Shape& b,
                          const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,

@@ -1,0 +1,26 @@
+// Valleys: where a face of the ground goes on beneath a neighbour.
+//
+// Along a valley the room above the ground is convex, and a body in it is held by both slopes.  But
+// what presses on both is a little way inside the ground, and of a tip that is inside one piece the
+// other piece knows nothing: it lies beside it, under the plane of its slope.  So each face goes on
+// beyond those of its sides where a neighbour rises above it, as far as bodies may be sunk.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "collision/seams/seams.h"
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+// Whether `foot`, a point of the face's plane (frame of the polyhedron) that is not over the face,
+// is where the face goes on beneath its neighbours: beyond each side that the foot is beyond, a
+// neighbour rises above the face, and a neighbour holds the foot; no more than `farthest` (m) away
+// from the face.  `world`: the frame of the polyhedron; `size` (m) as in seams.h.
+bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& foot,
+                const Frame& world, const std::vector<SeamNeighbour>& neighbours, double farthest,
+                double size);
+
+}  // namespace tw

@@ -1,0 +1,130 @@
+// Valleys whose bottom is a seam: what is in them is held by all slopes.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "collision/seams/seams.h"
+#include "convex-oracles.h"
+#include "seam-ground.h"
+
+namespace tw::testing {
+namespace {
+
+// A pit of abutting pieces, its lowest point at the origin, and the normals of its slopes.
+struct Pit : Ground {
+  std::vector<Vec3> normals;
+
+  // Each slope goes down to the origin between two of the directions, which lie in a circle.
+  void add_slope(const Vec3& from, const Vec3& to) {
+    const Vec3 deep = -3 * Vec3::UnitZ();
+    add(make_hull({Vec3::Zero(), from, to, deep, from + deep, to + deep}), Frame());
+    normals.push_back(from.cross(to).normalized());
+  }
+};
+
+// As many slopes as asked for, rising at the angle (rad).
+Pit hole(int slopes, double angle) {
+  Pit pit;
+  const auto rim = [&](int i) {
+    const double turn = 2 * pi * i / slopes + 0.1;
+    const double height = std::cos(pi / slopes) * std::tan(angle);
+    return Vec3(std::cos(turn), std::sin(turn), height);
+  };
+  for (int i = 0; i < slopes; ++i) pit.add_slope(rim(i), rim(i + 1));
+  return pit;
+}
+
+// A groove along y, its slopes rising at the angles.
+Pit groove(double left, double right) {
+  Pit pit;
+  for (const double side : {-1.0, 1.0}) {
+    const double angle = side < 0 ? left : right;
+    std::vector<Vec3> points;
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {0.0, -3.0}) {
+        points.emplace_back(0, y, z);
+        points.emplace_back(side * std::cos(angle), y, z + std::sin(angle));
+      }
+    pit.add(make_hull(points), Frame());
+    pit.normals.emplace_back(-side * std::sin(angle), 0, std::cos(angle));
+  }
+  return pit;
+}
+
+// Of the steepest slope: run over rise.
+double run_of(const Pit& pit) {
+  double least = 1;
+  for (const Vec3& n : pit.normals) least = std::min(least, n.z() / std::hypot(n.x(), n.y()));
+  return least;
+}
+
+// A tip that is less steep than the slopes, tail up.
+ShapePtr spike_for(const Pit& pit) {
+  const double width = 0.2 * run_of(pit);
+  return make_hull({{0, 0, 0},
+                    {width, width, 0.5},
+                    {-width, width, 0.5},
+                    {-width, -width, 0.5},
+                    {width, -width, 0.5}});
+}
+
+// Of 200 tips under all slopes of pits, up to `deepest` of their width below the lowest point: how
+// many are not held by every slope with their depth under it.
+int lost_in(const std::function<Pit(Random&)>& dig, double deepest) {
+  Random random(7);
+  int lost = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pit pit = dig(random);
+    const ShapePtr spike = spike_for(pit);
+    const double depth = deepest * spike->least_width() * std::pow(10, uniform(random, -2, 0));
+    const double aside = i % 3 == 0 ? 0 : 0.7 * run_of(pit) * depth;
+    const Vec3 tip(uniform(random, -aside, aside), uniform(random, -aside, aside), -depth);
+    const Points points = pit.meets(spike, at(tip.x(), tip.y(), tip.z()), 1e-6, i % 5 == 0);
+    const auto is_held = [&](const Vec3& normal) {
+      return std::any_of(points.begin(), points.end(), [&](const ManifoldPoint& p) {
+        return p.normal.dot(normal) > 1 - 1e-6 && std::abs(p.gap - normal.dot(tip)) < 1e-9;
+      });
+    };
+    lost += std::all_of(pit.normals.begin(), pit.normals.end(), is_held) ? 0 : 1;
+  }
+  return lost;
+}
+
+TEST(Valleys, a_tip_in_a_groove_is_held_by_both_slopes) {
+  const auto dig = [](Random& random) {
+    const double left = uniform(random, 0.1, 1.5);
+    return groove(left, left * uniform(random, 0.7, 1));
+  };
+  EXPECT_EQ(lost_in(dig, 1e-3), 0);
+  EXPECT_EQ(lost_in(dig, 0.04), 0);
+}
+
+TEST(Valleys, a_tip_in_a_hole_is_held_by_all_slopes) {
+  const auto dig = [](Random& random) {
+    return hole(static_cast<int>(3 + random() % 4), uniform(random, 0.1, 1.4));
+  };
+  EXPECT_EQ(lost_in(dig, 1e-3), 0);
+  EXPECT_EQ(lost_in(dig, 0.04), 0);
+}
+
+// The ground is the plane z = 0, the wall stands on it at x < 0 and ends at y = 0.5.
+TEST(Valleys, a_wall_that_stands_on_the_ground_holds_corners_that_lie_in_the_ground) {
+  Ground ground;
+  ground.add(make_box({4, 4, 1}), at(0, 0, -0.5));
+  ground.add(make_box({1, 1, 1}), at(-0.5, 0, 0.5));
+  const ShapePtr spike = make_hull({{0, 0, 0}, {0.2, 0.1, 0.1}, {0.2, -0.1, 0.1}, {0.2, 0, 0.3}});
+  const auto pressing = [&](const Vec3& corner) {
+    const Points points = ground.meets(spike, at(corner.x(), corner.y(), corner.z()), 1e-6, false);
+    int walls = 0;
+    for (const ManifoldPoint& p : points) walls += p.normal.x() > 0.9 && p.gap < 0 ? 1 : 0;
+    return walls;
+  };
+  for (const double depth : {1e-6, 2e-5, 1e-4, 1e-3})
+    for (const double into : {1e-6, 2e-5, 1e-4, 1e-3})
+      EXPECT_EQ(pressing({-into, 0.1, -depth}), 1) << depth << " " << into;
+  // what is beside the wall's end is not held by it
+  for (const double depth : {1e-5, 1e-4, 1e-3})
+    EXPECT_EQ(pressing({-1e-4, 0.502, -depth}), 0) << depth;
+}
+
+}  // namespace
+}  // namespace tw::testing
