@@ -14,9 +14,10 @@ struct Findings {
   Text<600> error{};  // what was raised, or the last words of a process that died
   int signal = 0;     // that ended the process
   bool out_of_time = false;
-  double reached = 0;  // s
-  double cpu = 0;      // s, of the world's loop
-  double pace = 0;     // s of CPU per time unit and moving body, in the dearest tenth
+  bool judging = false;  // when it ended: the judge's fault
+  double reached = 0;    // s
+  double cpu = 0;        // s, of the world's loop
+  double pace = 0;       // s of CPU per time unit and moving body, in the dearest tenth
   Text<72> hash{};
 
   double depth = 0;  // share of the smaller body's least width

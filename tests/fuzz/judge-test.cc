@@ -8,10 +8,12 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "collision/separation.h"
 #include "fuzz/apart.h"
 #include "fuzz/draft.h"
 #include "fuzz/generator.h"
 #include "fuzz/judged-run.h"
+#include "support/known-fault.h"
 
 namespace tw::fuzz {
 namespace {
@@ -73,12 +75,32 @@ TEST(Overlap, changes_by_no_more_than_a_body_moves_and_ends) {
       return std::max(0.0, overlap(a, at, b, Frame(Pose{distance * way, q}), 0));
     };
     const Quat q = draft.attitude();
-    EXPECT_EQ(depth_at(a.reach + b.reach + a.center.norm() + b.center.norm(), q), 0);
+    EXPECT_LE(depth_at(a.reach + b.reach + a.center.norm() + b.center.norm(), q), 1e-12);
     const double depth = depth_at(0.3, q);
     deep += depth > 0.01;
     EXPECT_NEAR(depth_at(0.301, q), depth, 1e-3 + 1e-6);
   }
   EXPECT_GT(deep, 100);
+}
+
+// Drums that lie end to end, a hair off the axis and a hair apart: for some offsets src/collision
+// says that they are two lengths deep.
+TEST(Overlap, is_what_the_separation_of_drums_in_touch_gets_wrong) {
+  Draft draft("drums", 1);
+  const Solid drum = cylinder(0.5, 1);
+  const ShapePtr shape = make_cylinder(0.5, 1);
+  const Frame lying(Pose{Vec3::Zero(), rotation_by({pi / 2, 0, 0})});
+  double deepest = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double hair = draft.log_uniform(1e-13, 1e-7);
+    const Vec3 off = draft.vector(hair);
+    const Frame other = lying * Frame(Mat3::Identity(), Vec3(0, 0, 1) + off);
+    const double depth = -separation(*shape, lying, *shape, other).distance;
+    if (depth <= deepest) continue;
+    deepest = depth;
+    EXPECT_LE(overlap(part(drum), lying, part(drum), other, 0), std::max(0.0, -off.z()) + 1e-12);
+  }
+  EXPECT_KNOWN_FAULT(deepest, 1e-6, 2);
 }
 
 // ---- what the judge must see ----

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include "fuzz/overlap.h"
 #include "support/stability.h"
@@ -72,9 +73,11 @@ class JudgedRun {
       frames_.push_back(test::frame_of(world_, id));
     }
     if (f_.not_finite) return;
+    f_.judging = true;
     note_depths(when);
     note_room(when);
     note_energy(when);
+    f_.judging = false;
   }
 
   void note_depths(double when) {
@@ -161,6 +164,10 @@ template <class Run>
 void catching(Findings& findings, Run run) {
   try {
     run();
+  } catch (const std::bad_alloc&) {
+    // an arc that does not end; which limit it meets first depends on the machine
+    findings.out_of_time = true;
+    set_text(findings.error, "out of memory");
   } catch (const std::exception& e) {
     set_text(findings.error, e.what());
   }

@@ -178,22 +178,19 @@ class LeastOverlap {
     try_axis(other.center() - nearest_rim_point(round, other.center()));
   }
 
-  void try_axes_of_libccd() {
+  void try_axis_of_libccd() {
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = ccd_support;
     ccd.center1 = ccd.center2 = ccd_center;
     ccd.max_iterations = 200;
-    ccd.mpr_tolerance = ccd.epa_tolerance = 1e-8;
+    ccd.mpr_tolerance = 1e-6;
     ccd_real_t depth = 0;
     ccd_vec3_t n, position;
-    const auto take = [&](int status) {
-      if (status == 0) try_axis(Vec3(n.v[0], n.v[1], n.v[2]));
-      // no overlap: as good as a direction that shows it
-      if (status == -1) least_ = std::min(least_, 0.0);
-    };
-    take(ccdMPRPenetration(&a_, &b_, &ccd, &depth, &n, &position));
-    if (!done()) take(ccdGJKPenetration(&a_, &b_, &ccd, &depth, &n, &position));
+    if (ccdMPRPenetration(&a_, &b_, &ccd, &depth, &n, &position) == 0)
+      try_axis(Vec3(n.v[0], n.v[1], n.v[2]));
+    else  // no overlap: as good as a direction that shows it
+      least_ = std::min(least_, 0.0);
   }
 
   // Pattern search downhill on the sphere from the best direction.
@@ -280,7 +277,7 @@ double overlap(const Part& a, const Frame& frame_a, const Part& b, const Frame& 
   if (is_round(b)) search.try_axes_of_round(placed_b, placed_a);
   if (!search.done() && (is_round(a) || is_round(b))) {
     search.climb();
-    search.try_axes_of_libccd();
+    search.try_axis_of_libccd();
     search.climb();
   }
   return search.least() * unit;

@@ -3,10 +3,11 @@
 // The depth of two convex solids is the least way along which one has to be moved to be free of the
 // other: the minimum over unit vectors n of h_A(n) + h_B(-n) with support functions h.  Every n
 // gives an upper bound; for polyhedra normals of faces and cross products of edges hold the
-// minimum (the separating axis theorem), for round solids rims stand as polygons, libccd's portal
-// refinement and expanding polytope add their directions, and the best are climbed from.  So what
-// is reported as free is free, and what is reported as deep may be less deep than that only where
-// a round solid has a better direction that none of these leads to.
+// minimum (the separating axis theorem); for round solids rims stand as polygons, libccd's portal
+// refinement adds its direction, and the best is climbed from.  (Not libccd's expanding polytope:
+// on a cylinder it grows without end.)  So what is reported as free is free, and what is reported
+// as deep may be less deep than that only where a round solid has a better direction that none of
+// these leads to.
 //
 // Source: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996 (axes); libccd.
 //

@@ -70,7 +70,7 @@ void judge_findings(Verdict& verdict, const Judges& judges) {
     if (wrong) verdict.faults.push_back(fault);
   };
   add(f.signal && !f.out_of_time, Fault::crash);
-  add(!f.signal && f.error[0], Fault::error);
+  add(!f.signal && !f.out_of_time && f.error[0], Fault::error);
   add(f.not_finite, Fault::not_finite);
   if (judges.depth) {
     add(f.lost_time >= 0, Fault::lost);
@@ -139,7 +139,9 @@ std::string Verdict::line() const {
     text += number(" [rise at %.4g", f.rise_time) + number(" of %.4g s]", scene.duration);
   if (f.out_of_time)
     text += number(" [reached %.4g", f.reached) + number(" of %.4g s", scene.duration) +
-            (f.signal ? ", in one arc]" : "]");
+            (f.judging  ? ", in the judge]"
+             : f.signal ? ", in one arc]"
+                        : "]");
   if (f.signal && !f.out_of_time) text += " [signal " + std::to_string(f.signal) + "]";
   if (f.error[0]) text += " [" + std::string(f.error.data()) + "]";
   if (!schedules.empty()) text += " [other hash:" + schedules + "]";
