@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "fuzz/described-scene.h"
 

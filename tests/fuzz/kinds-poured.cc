@@ -1,5 +1,7 @@
 // Kinds of scenes in which loose bodies fall, spin, roll or are shaken in a container.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
 #include "fuzz/draft.h"
 #include "fuzz/kinds.h"
 

@@ -1,5 +1,8 @@
 // Kinds of scenes in which bodies are thrown at walls, seams, grooves and ramps.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <utility>
+
 #include "fuzz/draft.h"
 #include "fuzz/kinds.h"
 
