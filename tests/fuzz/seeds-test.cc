@@ -24,8 +24,8 @@ bool has_number(const Verdict& verdict, Fault fault) {
 
 void expect_known(const Verdict& verdict, const KnownFault& known) {
   if (!verdict.has(known.fault)) {
-    // a fast machine may be fast enough
-    EXPECT_EQ(known.fault, Fault::slow)
+    // a fast machine may be fast enough, a slow one may not come so far
+    EXPECT_TRUE(known.fault == Fault::slow || !verdict.findings.finished)
         << verdict.scene.name() << " is no longer " << name_of(known.fault)
         << ": take it from the table of what is known";
   } else if (has_number(verdict, known.fault)) {
