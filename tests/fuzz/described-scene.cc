@@ -1,0 +1,106 @@
+// A described scene becomes a world.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "fuzz/described-scene.h"
+
+#include <algorithm>
+
+#include "support/scene.h"
+
+namespace tw::fuzz {
+
+std::size_t DescribedScene::moving() const {
+  const auto count = std::count_if(bodies.begin(), bodies.end(),
+                                   [](const DescribedBody& body) { return !body.fixed; });
+  return static_cast<std::size_t>(count);
+}
+
+Solid ball(double radius) {
+  Solid solid;
+  solid.kind = SolidKind::ball;
+  solid.radius = radius;
+  return solid;
+}
+
+Solid box(const Vec3& edges) {
+  Solid solid;
+  solid.kind = SolidKind::box;
+  solid.edges = edges;
+  return solid;
+}
+
+Solid cylinder(double radius, double length) {
+  Solid solid;
+  solid.kind = SolidKind::cylinder;
+  solid.radius = radius;
+  solid.length = length;
+  return solid;
+}
+
+Solid hull(std::vector<Vec3> points) {
+  Solid solid;
+  solid.kind = SolidKind::hull;
+  solid.points = std::move(points);
+  return solid;
+}
+
+Solid half_space(const Vec3& normal, double offset) {
+  Solid solid;
+  solid.kind = SolidKind::half_space;
+  solid.normal = normal;
+  solid.offset = offset;
+  return solid;
+}
+
+Solid placed(Solid solid, const Vec3& position, const Quat& orientation) {
+  solid.placement = Pose{position, orientation};
+  return solid;
+}
+
+namespace {
+
+ShapePtr shape_of(const Solid& solid) {
+  switch (solid.kind) {
+    case SolidKind::ball: return make_sphere(solid.radius);
+    case SolidKind::box: return make_box(solid.edges);
+    case SolidKind::cylinder: return make_cylinder(solid.radius, solid.length);
+    case SolidKind::hull: return make_hull(solid.points);
+    case SolidKind::half_space: break;
+  }
+  return make_half_space(solid.normal, solid.offset);
+}
+
+}  // namespace
+
+ShapePtr shape_of(const DescribedBody& body) {
+  if (body.solids.size() == 1) return shape_of(body.solids.front());
+  std::vector<ShapePtr> parts;
+  for (const Solid& solid : body.solids)
+    parts.push_back(place_shape(shape_of(solid), solid.placement));
+  return make_union(parts);
+}
+
+void fill(World& world, const DescribedScene& scene) {
+  world.set_gravity(scene.gravity);
+  world.set_accuracy(scene.accuracy);
+  test::set_contact_for_all(world, scene.restitution, scene.friction);
+  for (const DescribedBody& body : scene.bodies) {
+    BodyDef def;
+    def.name = body.name;
+    def.shape = shape_of(body);
+    def.fixed = body.fixed;
+    if (body.kinematic()) {
+      def.motion = make_keyframes(body.keyframes, body.smooth);
+    } else {
+      def.position = body.pose.p;
+      def.orientation = body.pose.q;
+    }
+    if (body.dynamic()) {
+      def.density = body.density;
+      def.velocity = body.velocity;
+      def.angular_velocity = body.spin;
+    }
+    world.add_body(def);
+  }
+}
+
+}  // namespace tw::fuzz

@@ -1,0 +1,81 @@
+// A scene as data: what a random scene is made of, before there is a world.
+//
+// One description is simulated, judged and written down as Scheme.  The judge reads shapes from
+// here and not from the world, so that a shape which the world understands differently shows.
+//
+// Frames and units: as in a scene, SI; a solid is placed in its body's frame.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integrate/keyframes.h"
+#include "kernel/world.h"
+
+namespace tw::fuzz {
+
+enum class SolidKind { ball, box, cylinder, hull, half_space };
+
+struct Solid {
+  SolidKind kind = SolidKind::ball;
+  double radius = 0, length = 0;  // m: ball (radius), cylinder (about z)
+  Vec3 edges = Vec3::Zero();      // m: box
+  std::vector<Vec3> points;       // m: hull
+  Vec3 normal = Vec3::UnitZ();    // half-space: solid where normal.x <= offset
+  double offset = 0;
+  Pose placement;  // not of half-spaces
+};
+
+struct DescribedBody {
+  std::string name;
+  std::vector<Solid> solids;  // several: a union
+  Pose pose;
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+  double density = 1000;
+  bool fixed = false;
+  std::vector<Keyframe> keyframes;  // kinematic where there are any
+  bool smooth = false;
+
+  bool kinematic() const { return !keyframes.empty(); }
+  bool dynamic() const { return !fixed && !kinematic(); }
+};
+
+// Where centres of dynamic bodies stay, in the frame of a body.
+struct Room {
+  std::optional<std::size_t> body;  // absent: the world
+  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();
+};
+
+struct DescribedScene {
+  std::string kind;
+  std::uint64_t seed = 0;
+  double size = 1;       // m, of a typical body
+  double time_unit = 1;  // s, in which something happens: sqrt(size/g), or size over speed
+  double duration = 1;   // s
+  Vec3 gravity = Vec3::Zero();
+  double friction = 0.5, restitution = 0.3, accuracy = 1e-6;
+  std::vector<DescribedBody> bodies;
+  Room room;
+
+  std::string name() const { return kind + ":" + std::to_string(seed); }
+  std::size_t moving() const;
+};
+
+Solid ball(double radius);
+Solid box(const Vec3& edges);
+Solid cylinder(double radius, double length);
+Solid hull(std::vector<Vec3> points);
+Solid half_space(const Vec3& normal, double offset);
+Solid placed(Solid solid, const Vec3& position, const Quat& orientation = Quat::Identity());
+
+ShapePtr shape_of(const DescribedBody& body);
+// Adds everything to an empty world.
+void fill(World& world, const DescribedScene& scene);
+// The same as a scene for the command: `timewarp FILE`.
+std::string scheme_text(const DescribedScene& scene);
+
+}  // namespace tw::fuzz

@@ -1,0 +1,194 @@
+// Samples of a run: depth, room, energy, pace.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "fuzz/judged-run.h"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "fuzz/overlap.h"
+#include "support/stability.h"
+
+namespace tw::fuzz {
+namespace {
+
+// Depths up to here are those of bodies that lie on each other, and are not measured closely.
+constexpr double shallow = 1e-3;
+
+template <std::size_t size>
+void set_text(Text<size>& text, const std::string& value) {
+  std::strncpy(text.data(), value.c_str(), size - 1);
+}
+
+class JudgedRun {
+ public:
+  JudgedRun(const DescribedScene& scene, double budget, Findings& findings)
+      : scene_(scene), budget_(budget), f_(findings) {
+    for (const DescribedBody& body : scene.bodies) {
+      parts_.push_back(parts_of(body));
+      widths_.push_back(least_width(parts_.back()));
+    }
+  }
+
+  void run() {
+    world_.set_hash(true);
+    fill(world_, scene_);
+    look(0);
+    for (int i = 1; i <= samples; ++i) {
+      // to the bit where other schedules end
+      const double when = i < samples ? scene_.duration * i / samples : scene_.duration;
+      // wall time: twice the CPU, for a machine that is shared
+      const double left = budget_ - cpu();
+      if (left <= 0 || world_.advance(when, 2 * left) == RunStatus::slice_over) {
+        f_.out_of_time = true;
+        break;
+      }
+      f_.reached = when;
+      look(when);
+      note_pace(i);
+      if (f_.not_finite) return;
+    }
+    set_text(f_.hash, world_.history_hash());
+    const StatisticsTable table = world_.statistics();
+    f_.collisions = test::count_of(table, "collisions");
+    f_.groups = test::count_of(table, "groups");
+    const double rejected = static_cast<double>(test::count_of(table, "rejected_steps"));
+    const double steps = static_cast<double>(test::count_of(table, "implicit_steps"));
+    f_.rejected = rejected / std::max(1.0, rejected + steps);
+    f_.finished = !f_.out_of_time;
+  }
+
+ private:
+  double cpu() {
+    f_.cpu = test::number_of(world_.statistics(), "cpu_seconds");
+    return f_.cpu;
+  }
+
+  void look(double when) {
+    frames_.clear();
+    for (BodyId id = 0; id < world_.body_count(); ++id) {
+      const BodyState s = world_.state(id);
+      f_.not_finite = f_.not_finite || !is_finite(s.position) || !is_finite(s.orientation) ||
+                      !is_finite(s.velocity) || !is_finite(s.angular_velocity);
+      frames_.push_back(test::frame_of(world_, id));
+    }
+    if (f_.not_finite) return;
+    f_.judging = true;
+    note_depths(when);
+    note_room(when);
+    note_energy(when);
+    f_.judging = false;
+  }
+
+  void note_depths(double when) {
+    for (std::size_t a = 0; a < parts_.size(); ++a)
+      for (std::size_t b = a + 1; b < parts_.size(); ++b) {
+        if (!scene_.bodies[a].dynamic() && !scene_.bodies[b].dynamic()) continue;
+        const double width = std::min(widths_[a], widths_[b]);
+        for (const Part& part_a : parts_[a])
+          for (const Part& part_b : parts_[b]) {
+            const double share =
+                overlap(part_a, frames_[a], part_b, frames_[b], shallow * width) / width;
+            if (share <= f_.depth) continue;
+            f_.depth = share;
+            f_.depth_time = when;
+            f_.deep_a = static_cast<int>(a);
+            f_.deep_b = static_cast<int>(b);
+          }
+      }
+  }
+
+  void note_room(double when) {
+    const Room& room = scene_.room;
+    if (f_.lost_time >= 0) return;
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      if (!scene_.bodies[i].dynamic()) continue;
+      Vec3 x = frames_[i] * mass_center(i);
+      if (room.body) x = frames_[*room.body].to_local(x);
+      if ((x - room.lo).minCoeff() >= 0 && (room.hi - x).minCoeff() >= 0) continue;
+      f_.lost_time = when;
+      f_.lost_body = static_cast<int>(i);
+    }
+  }
+
+  Vec3 mass_center(std::size_t i) const {
+    return world_.body(static_cast<BodyId>(i)).shape->mass_properties().centroid;
+  }
+
+  // The scale is what was given: energy at the start above the least without motion so far, the
+  // work of kinematic bodies, and what lifts each body by its own width.
+  void note_energy(double when) {
+    const double total = world_.total_energy();
+    const double work = test::number_of(world_.statistics(), "kinematic_work");
+    double kinetic = 0, weights = 0;
+    const double acceleration = scene_.size / (scene_.time_unit * scene_.time_unit);
+    for (BodyId id = 0; id < world_.body_count(); ++id) {
+      if (!test::is_dynamic(world_, id)) continue;
+      kinetic += world_.kinetic_energy(id);
+      weights += world_.body(id).mass * acceleration * widths_[id];
+    }
+    if (when == 0) given_ = total;
+    lowest_still_ = std::min(lowest_still_, total - kinetic);
+    f_.energy_scale = std::max({f_.energy_scale, std::abs(work), given_ - lowest_still_, weights});
+    const double own = total - work;
+    const double rise = (own - lowest_) / f_.energy_scale;
+    if (rise > f_.rise) {
+      f_.rise = rise;
+      f_.rise_time = when;
+    }
+    lowest_ = std::min(lowest_, own);
+    f_.not_finite = f_.not_finite || !std::isfinite(total);
+  }
+
+  void note_pace(int sample) {
+    constexpr int tenth = samples / 10;
+    if (sample % tenth) return;
+    const double units = scene_.duration / 10 / scene_.time_unit;
+    const double moving = static_cast<double>(scene_.moving()), now = cpu();
+    f_.pace = std::max(f_.pace, (now - tenth_cpu_) / units / moving);
+    tenth_cpu_ = now;
+  }
+
+  World world_;
+  const DescribedScene& scene_;
+  double budget_;
+  Findings& f_;
+  std::vector<std::vector<Part>> parts_;
+  std::vector<double> widths_;
+  std::vector<Frame> frames_;
+  double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
+};
+
+// What is raised is a finding.
+template <class Run>
+void catching(Findings& findings, Run run) {
+  try {
+    run();
+  } catch (const std::bad_alloc&) {
+    // an arc that does not end; which limit it meets first depends on the machine
+    findings.out_of_time = true;
+    set_text(findings.error, "out of memory");
+  } catch (const std::exception& e) {
+    set_text(findings.error, e.what());
+  }
+}
+
+}  // namespace
+
+void run_judged(const DescribedScene& scene, double budget, Findings& findings) {
+  catching(findings, [&] { JudgedRun(scene, budget, findings).run(); });
+}
+
+void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, Findings& findings) {
+  catching(findings, [&] {
+    World world;
+    test::apply(world, schedule);
+    fill(world, scene);
+    test::advance_in_pieces(world, scene.duration, schedule.pieces);
+    set_text(findings.hash, world.history_hash());
+    findings.cpu = test::number_of(world.statistics(), "cpu_seconds");
+    findings.finished = true;
+  });
+}
+
+}  // namespace tw::fuzz

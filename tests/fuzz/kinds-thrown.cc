@@ -1,0 +1,159 @@
+// Kinds of scenes in which bodies are thrown at walls, seams, grooves and ramps.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <utility>
+
+#include "fuzz/draft.h"
+#include "fuzz/kinds.h"
+
+namespace tw::fuzz {
+
+void draw_bullet(Draft& draft) {
+  const double s = draft.size, width = 10 * s, thick = width * draft.random.real(0.01, 0.03);
+  if (draft.chance(0.5)) draft.float_freely();
+  // some rooms turn their walls' edges to the axes' corners
+  const Quat turned = draft.chance(0.5) ? draft.attitude() : Quat(1, 0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 edges = Vec3::Constant(width + 2 * thick), at = Vec3::Zero();
+      edges[axis] = thick;
+      at[axis] = side * 0.5 * (width + thick);
+      draft.add_fixed(box(edges), turned * at, turned);
+    }
+  draft.scene.room = {std::size_t{0}, Vec3::Zero(), Vec3::Zero()};
+  // in the frame of the first wall, which stands at -x
+  draft.scene.room.lo = Vec3(0.5 * thick, -0.5 * width, -0.5 * width);
+  draft.scene.room.hi = Vec3(width + 0.5 * thick, 0.5 * width, 0.5 * width);
+  const double speed = draft.log_uniform(3, 300) * draft.speed;
+  const int count = draft.whole(1, 4);
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at((k % 2 - 0.5) * 3 * s, (k / 2 - 0.5) * 3 * s, draft.random.real(-3, 3) * s);
+    const double diameter = s * draft.log_uniform(0.05, 1);
+    DescribedBody& body = draft.add_moving(
+        draft.chance(0.3) ? std::vector<Solid>{draft.thin_shape(s)} : draft.shape(diameter), at);
+    draft.toss(body, 0);
+    body.velocity = draft.direction() * speed;
+    body.spin = draft.vector(3) * (draft.chance(0.3) ? speed / s : 1 / draft.time);
+  }
+  // a dozen crossings
+  draft.scene.time_unit = draft.time = std::min(draft.time, width / speed);
+  draft.last(12);
+}
+
+// What slides over tiles or falls on them: anything, with some speed along them.
+static void throw_over(Draft& draft, int count, double reach, double level, double speeds) {
+  const double s = draft.size;
+  for (int k = 0; k < count; ++k) {
+    const double x = draft.random.real(-0.3, 0.3) * reach;
+    const Vec3 at(x, (k % 3 - 1) * 1.1 * s, level + (0.6 + 1.1 * (k / 3)) * s);
+    DescribedBody& body = draft.add_moving(draft.shape(s), at);
+    if (draft.chance(0.6)) body.pose.q = draft.attitude();
+    body.velocity = draft.vector(0.2 * draft.speed);
+    body.velocity.x() += speeds * draft.speed * draft.random.real(-1, 1);
+  }
+}
+
+void draw_seam(Draft& draft) {
+  const double s = draft.size, tile = s * draft.log_uniform(0.3, 2),
+               thick = draft.chance(0.5) ? 0.1 * tile : tile;
+  const int across = 8;
+  const double reach = 0.5 * across * tile;
+  DescribedBody joined;
+  joined.fixed = true;
+  const bool one_body = draft.chance(0.5);
+  for (int i = 0; i < across; ++i)
+    for (int j = 0; j < across; ++j) {
+      const Vec3 at(tile * (i + 0.5) - reach, tile * (j + 0.5) - reach, -0.5 * thick);
+      const Solid solid = box({tile, tile, thick});
+      if (one_body)
+        joined.solids.push_back(placed(solid, at));
+      else
+        draft.add_fixed(solid, at);
+    }
+  if (one_body) draft.add(joined, "tiles");
+  // nobody leaves the tiles
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double side : {-1.0, 1.0})
+      draft.add_fixed(half_space(side * Vec3::Unit(axis), -std::max(reach, 2.2 * s)), Vec3::Zero());
+  const double edge = std::max(reach, 2.2 * s);
+  draft.scene.room = {
+      std::nullopt, {-edge, -edge, reach < edge ? -1e6 * s : 0}, {edge, edge, 1e3 * s}};
+  throw_over(draft, draft.whole(1, 6), reach, 0, 2);
+  draft.last(8);
+}
+
+// Two wedges, one union or two bodies, whose common edge is the bottom of a V.
+void draw_groove(Draft& draft) {
+  const double s = draft.size, angle = draft.random.real(0.1, 1.2), length = 4 * s;
+  const double wide = 3 * s, high = wide * std::tan(angle), deep = 0.5 * s;
+  std::vector<Solid> wedges;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<Vec3> corners;
+    for (const double y : {-length, length})
+      for (const auto& [x, z] :
+           {std::pair{0.0, 0.0}, {0.0, -deep}, {side * wide, -deep}, {side * wide, high}})
+        corners.push_back({x, y, z});
+    wedges.push_back(hull(corners));
+  }
+  if (draft.chance(0.6)) {
+    DescribedBody joined;
+    joined.fixed = true;
+    joined.solids = wedges;
+    draft.add(joined, "groove");
+  } else {
+    for (const Solid& wedge : wedges) draft.add_fixed(wedge, Vec3::Zero());
+  }
+  for (const double side : {-1.0, 1.0}) {
+    draft.add_fixed(half_space({-side, 0, 0}, -wide), Vec3::Zero());
+    draft.add_fixed(half_space({0, -side, 0}, -length), Vec3::Zero());
+  }
+  draft.scene.room = {std::nullopt, {-wide, -length, 0}, {wide, length, 1e3 * s}};
+  const int count = draft.whole(1, 4);
+  for (int k = 0; k < count; ++k) {
+    // a spike there clears both slopes
+    const double clear = (0.75 + 0.35 * std::sin(angle)) / std::cos(angle) * s;
+    const Vec3 at(draft.random.real(-0.3, 0.3) * s, (k % 3 - 1) * 1.2 * s,
+                  clear + 1.2 * (k / 3) * s + (draft.chance(0.5) ? 0 : high));
+    if (draft.chance(0.4)) {
+      // a spike, its tip down, that may stand in the bottom edge
+      const double b = 0.25 * s;
+      const Solid spike = hull({{b, -b, 0.2 * s},
+                                {b, b, 0.2 * s},
+                                {-b, b, 0.2 * s},
+                                {-b, -b, 0.2 * s},
+                                {0, 0, -0.7 * s}});
+      DescribedBody& body = draft.add_moving({spike}, at);
+      if (k == 0) body.pose.p = Vec3(0, at.y(), 0.7 * s + 1e-4 * s);
+      body.velocity = draft.vector(0.3 * draft.speed);
+      if (k == 0) body.velocity.z() = 0;
+      continue;
+    }
+    DescribedBody& body = draft.add_moving(draft.shape(s), at);
+    body.pose.q = draft.attitude();
+    body.velocity = draft.vector(draft.speed);
+  }
+  draft.last(8);
+}
+
+void draw_ramp(Draft& draft) {
+  const double s = draft.size, angle = draft.random.real(0.1, 1.2);
+  const Quat tilt = rotation_by({0, angle, 0});
+  const double length = 10 * s, thick = draft.chance(0.5) ? 0.1 * s : 2 * s;
+  draft.add_fixed(half_space(Vec3::UnitZ(), 0), Vec3::Zero());
+  // its upper face ends in the floor at x = 0
+  draft.add_fixed(box({length, 6 * s, thick}), tilt * Vec3(-0.45 * length, 0, -0.5 * thick), tilt);
+  draft.add_fixed(box({draft.size * draft.random.real(0.05, 1), 40 * s, 4 * s}),
+                  {draft.random.real(3, 6) * s, 0, 1.9 * s});
+  draft.scene.room = {std::nullopt, Vec3(-1e3, -1e3, 0) * s, Vec3(1e3, 1e3, 1e3) * s};
+  const int count = draft.whole(1, 6);
+  for (int k = 0; k < count; ++k) {
+    const double up = 2 + 1.2 * (k / 3);
+    const Vec3 at = tilt * Vec3(-up * s, (k % 3 - 1) * 1.2 * s, s * draft.random.real(0.55, 1));
+    DescribedBody& body = draft.add_moving(draft.shape(s), at);
+    body.pose.q = draft.chance(0.5) ? draft.attitude() : tilt;
+    body.velocity = tilt * Vec3(draft.random.real(0, 2) * draft.speed, 0, 0);
+  }
+  draft.last(12);
+}
+
+}  // namespace tw::fuzz

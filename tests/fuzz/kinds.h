@@ -1,0 +1,29 @@
+// The kinds of random scenes, one procedure each: it fills a draft.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+namespace tw::fuzz {
+
+class Draft;
+
+// kinds-poured.cc
+void draw_heap(Draft& draft);
+void draw_thin(Draft& draft);
+void draw_spin(Draft& draft);
+void draw_piston(Draft& draft);
+void draw_drum(Draft& draft);
+void draw_shaker(Draft& draft);
+
+// kinds-built.cc
+void draw_lattice(Draft& draft);
+void draw_stack(Draft& draft);
+void draw_arch(Draft& draft);
+void draw_cards(Draft& draft);
+
+// kinds-thrown.cc
+void draw_bullet(Draft& draft);
+void draw_seam(Draft& draft);
+void draw_groove(Draft& draft);
+void draw_ramp(Draft& draft);
+
+}  // namespace tw::fuzz

@@ -1,0 +1,24 @@
+// What is known to be wrong with random scenes, by kind and seed.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "fuzz/verdict.h"
+
+namespace tw::fuzz {
+
+struct KnownFault {
+  std::string kind;
+  std::uint64_t seed;
+  Fault fault;
+  double value;  // share of the width or of the energy; of finished runs, else 0
+  const char* reason;
+};
+
+std::span<const KnownFault> known_faults();
+
+bool known_fault(const DescribedScene& scene, Fault fault);
+
+}  // namespace tw::fuzz

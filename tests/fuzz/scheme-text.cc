@@ -1,0 +1,80 @@
+// A described scene as a file that the command runs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "base/error.h"
+#include "fuzz/described-scene.h"
+
+namespace tw::fuzz {
+namespace {
+
+std::string text(const Vec3& v) {
+  return "#(" + show(v.x()) + " " + show(v.y()) + " " + show(v.z()) + ")";
+}
+
+std::string text(const Quat& q) {
+  return "#(" + show(q.w()) + " " + show(q.x()) + " " + show(q.y()) + " " + show(q.z()) + ")";
+}
+
+std::string text(const Solid& solid) {
+  switch (solid.kind) {
+    case SolidKind::ball: return "(sphere " + show(solid.radius) + ")";
+    case SolidKind::box:
+      return "(box " + show(solid.edges.x()) + " " + show(solid.edges.y()) + " " +
+             show(solid.edges.z()) + ")";
+    case SolidKind::cylinder:
+      return "(cylinder " + show(solid.radius) + " " + show(solid.length) + ")";
+    case SolidKind::half_space:
+      return "(half-space " + text(solid.normal) + " " + show(solid.offset) + ")";
+    case SolidKind::hull: break;
+  }
+  std::string points = "(convex '(";
+  for (const Vec3& p : solid.points) points += "\n      " + text(p);
+  return points + "))";
+}
+
+std::string shape_text(const DescribedBody& body) {
+  if (body.solids.size() == 1) return text(body.solids.front());
+  std::string shape = "(union";
+  for (const Solid& solid : body.solids)
+    shape += "\n    (placed " + text(solid) + " #:position " + text(solid.placement.p) +
+             " #:orientation " + text(solid.placement.q) + ")";
+  return shape + ")";
+}
+
+std::string text(const DescribedBody& body) {
+  std::string form =
+      "(add-body! #:name \"" + body.name + "\"\n  #:shape " + shape_text(body) + "\n ";
+  if (body.kinematic()) {
+    form += " #:motion (keyframes '(";
+    for (const Keyframe& frame : body.keyframes)
+      form += "\n    (" + show(frame.time) + " " + text(frame.position) +
+              (frame.orientation ? " " + text(*frame.orientation) : "") + ")";
+    return form + ")" + (body.smooth ? " #:smooth? #t))\n" : "))\n");
+  }
+  form += " #:position " + text(body.pose.p) + " #:orientation " + text(body.pose.q);
+  if (body.fixed) return form + " #:fixed? #t)\n";
+  return form + "\n  #:velocity " + text(body.velocity) + " #:angular-velocity " + text(body.spin) +
+         " #:density " + show(body.density) + ")\n";
+}
+
+}  // namespace
+
+std::string scheme_text(const DescribedScene& scene) {
+  std::string all = ";; fuzz-scenes --kind=" + scene.kind +
+                    " --seeds=" + std::to_string(scene.seed) + ": size " + show(scene.size) +
+                    " m, time unit " + show(scene.time_unit) + " s\n";
+  all += "(use-modules (timewarp))\n";
+  all += "(scene #:title \"" + scene.name() + "\" #:duration " + show(scene.duration) +
+         " #:gravity " + text(scene.gravity) + "\n  #:accuracy " + show(scene.accuracy) +
+         " #:fps " + show(60 / scene.duration) + ")\n";
+  all += "(set-contact-parameters! #t #t #:restitution " + show(scene.restitution) +
+         " #:friction " + show(scene.friction) + ")\n";
+  for (const DescribedBody& body : scene.bodies) all += text(body);
+  Vec3 center = Vec3::Zero();
+  double count = 0;
+  for (const DescribedBody& body : scene.bodies)
+    if (body.dynamic()) center += (body.pose.p - center) / ++count;
+  const Vec3 eye = center + Vec3(4, -12, 6) * scene.size;
+  return all + "(camera #:eye " + text(eye) + " #:target " + text(center) + ")\n";
+}
+
+}  // namespace tw::fuzz

@@ -1,0 +1,58 @@
+// The first seeds over all kinds: none has a fault but those that are known.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "fuzz/generator.h"
+#include "fuzz/known-seeds.h"
+#include "fuzz/verdict.h"
+#include "support/known-fault.h"
+#include "support/scene.h"
+
+namespace tw::fuzz {
+namespace {
+
+constexpr double budget = 5;  // s of CPU
+
+double bound_of(Fault fault) { return fault == Fault::deep ? depth_bound : energy_bound; }
+
+// A finished run repeats its numbers; how far another comes depends on the machine.
+bool has_number(const Verdict& verdict, Fault fault) {
+  return verdict.findings.finished && (fault == Fault::deep || fault == Fault::energy);
+}
+
+void expect_known(const Verdict& verdict, const KnownFault& known) {
+  if (!verdict.has(known.fault)) {
+    // a fast machine may be fast enough, a slow one may not come so far
+    EXPECT_TRUE(known.fault == Fault::slow || !verdict.findings.finished)
+        << verdict.scene.name() << " is no longer " << name_of(known.fault)
+        << ": take it from the table of what is known";
+  } else if (has_number(verdict, known.fault)) {
+    EXPECT_KNOWN_FAULT(verdict.value(known.fault), bound_of(known.fault), known.value)
+        << verdict.scene.name() << " is " << name_of(known.fault);
+  }
+}
+
+void expect_what_is_known(const Verdict& verdict) {
+  for (const Fault fault : verdict.faults)
+    EXPECT_TRUE(known_fault(verdict.scene, fault))
+        << verdict.scene.name() << " is " << name_of(fault) << ", which is not known:\n"
+        << verdict.line();
+  for (const KnownFault& known : known_faults())
+    if (known.kind == verdict.scene.kind && known.seed == verdict.scene.seed)
+      expect_known(verdict, known);
+}
+
+TEST(Seeds, have_no_faults_but_those_that_are_known) {
+  const std::uint64_t count = test::long_tests() ? 300 : 30;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    const Verdict verdict = judge(random_scene(kind_of_seed(seed), seed), {}, budget);
+    std::printf("%s\n", verdict.line().c_str());
+    std::fflush(stdout);
+    expect_what_is_known(verdict);
+  }
+}
+
+}  // namespace
+}  // namespace tw::fuzz

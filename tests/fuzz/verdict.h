@@ -1,0 +1,41 @@
+// The verdict on one scene: what is wrong, with numbers.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fuzz/described-scene.h"
+#include "fuzz/findings.h"
+
+namespace tw::fuzz {
+
+enum class Fault { crash, error, not_finite, lost, deep, energy, slow, hash };
+constexpr int fault_count = 8;
+
+// What may be at most, and is a fault beyond: shares of the least width, of the energy at play;
+// seconds of CPU per time unit and body.  Real time over 50 for a hundred bodies of a metre, whose
+// time unit is 0.32 s, is a pace of 0.16.
+constexpr double depth_bound = 0.02, energy_bound = 1e-3, pace_bound = 0.16;
+
+const char* name_of(Fault fault);
+
+struct Judges {
+  bool depth = true, energy = true, progress = true, hash = true;
+};
+
+struct Verdict {
+  DescribedScene scene;
+  Findings findings;
+  std::vector<Fault> faults;        // the worst first
+  std::string schedules;            // under which the hash is another
+  std::string dear;                 // schedules that took too long to tell
+  double value(Fault fault) const;  // the number that says how bad, NaN: there is none
+  bool has(Fault fault) const;
+  std::string line() const;
+};
+
+// `budget`: seconds of CPU for the plain run.
+Verdict judge(const DescribedScene& scene, const Judges& judges, double budget);
+
+}  // namespace tw::fuzz
