@@ -126,5 +126,16 @@ TEST(Valleys, a_wall_that_stands_on_the_ground_holds_corners_that_lie_in_the_gro
     EXPECT_EQ(pressing({-1e-4, 0.502, -depth}), 0) << depth;
 }
 
+// The plate ends just behind the wall's face; the corner, from below, is before the plate's end.
+TEST(Valleys, what_is_behind_the_ground_under_a_wall_is_not_held_by_the_wall) {
+  Ground ground;
+  ground.add(make_box({1, 1, 0.5}), at(0.5 - 3e-4, 0, -0.25));
+  ground.add(make_box({1, 1, 1}), at(-0.5, 0, 0.5));
+  const ShapePtr spike =
+      make_hull({{0, 0, 0}, {-0.2, 0.1, -0.1}, {-0.2, -0.1, -0.1}, {-0.2, 0, -0.3}});
+  const Points points = ground.meets(spike, at(-5e-4, 0, -1e-3), 1e-5, false);
+  for (const ManifoldPoint& p : points) EXPECT_GT(p.gap, 0) << p.normal.transpose();
+}
+
 }  // namespace
 }  // namespace tw::testing

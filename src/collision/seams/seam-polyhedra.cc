@@ -138,9 +138,7 @@ struct Exposure {
         const Polyhedron::Face& face = part.faces()[f];
         const double height = face.normal.dot(point) - face.offset;
         if (height < -seam::sunk * seam.size || height > seam.reach) continue;
-        const Vec3 foot = point - height * face.normal;
-        if (over_face(part, face, foot, 0)) continue;
-        if (goes_on_to(part, face, foot, world, seam.neighbours(of_a), seam.farthest(), seam.size))
+        if (goes_on_to(part, face, point, world, seam.neighbours(of_a), seam.farthest(), seam.size))
           heights.emplace_back(-height, f);
       }
       if (heights.empty() || is_known(world * point)) continue;

@@ -20,12 +20,16 @@ bool held(const std::vector<SeamNeighbour>& neighbours, const Vec3& point, doubl
 
 }  // namespace
 
-bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& foot,
+bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& point,
                 const Frame& world, const std::vector<SeamNeighbour>& neighbours, double farthest,
                 double size) {
+  const double height = face.normal.dot(point) - face.offset, slack = seam::same_point * size;
+  const Vec3 foot = point - height * face.normal;
+  if (over_face(part, face, foot, 0)) return false;
   const Vec3 border = nearest_on_face(part, face, foot);
   if ((border - foot).norm() > farthest) return false;
-  if (!held(neighbours, world * foot, -seam::same_point * size)) return false;
+  if (!held(neighbours, world * foot, -slack)) return false;
+  if (height < -slack && !held(neighbours, world * point, -slack)) return false;
 
   // to the left and to the right of straight beyond, at two places each, for one may be on a wall
   // between two neighbours

@@ -15,11 +15,12 @@
 
 namespace tw {
 
-// Whether `foot`, a point of the face's plane (frame of the polyhedron) that is not over the face,
-// is where the face goes on beneath its neighbours: beyond each side that the foot is beyond, a
-// neighbour rises above the face, and a neighbour holds the foot; no more than `farthest` (m) away
-// from the face.  `world`: the frame of the polyhedron; `size` (m) as in seams.h.
-bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& foot,
+// Whether the point (frame of the polyhedron), beside the face, is over or under what the face goes
+// on by beneath its neighbours: beyond each side that the foot of the point is beyond, a neighbour
+// rises above the face, and a neighbour holds the foot, no more than `farthest` (m) from the face.
+// A point under it is in a neighbour too: else it is on the far side of that, where there is no
+// valley.  `world`: the frame of the polyhedron; `size` (m) as in seams.h.
+bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& point,
                 const Frame& world, const std::vector<SeamNeighbour>& neighbours, double farthest,
                 double size);
 
