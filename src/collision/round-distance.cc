@@ -24,6 +24,9 @@ constexpr double touch = 1e-7;
 // how far B is moved in for the polytope, relative to the size
 constexpr double push = 1e-6;
 
+// what a plain axis must gain on the polytope's to be taken for it, relative to the size
+constexpr double lost_depth = 1e-9;
+
 // special axes this near are tried, rad
 constexpr double special = 1e-3;
 
@@ -120,8 +123,43 @@ RoundDistance apart_at(const Descent& d) {
   return result;
 }
 
+// The overlap along any axis bounds the depth: the best of those by which GJK parted the two, if it
+// did, and of a round core's own.  Where drums touch end to end or lie in each other with parallel
+// axes the polytope has no volume to begin with, and ends anywhere.
+Vec3 best_plain_axis(const SupportCore& a, const SupportCore& b, const Descent& first) {
+  const Vec3 between = b.center() - a.center();
+  Vec3 best = between.norm() > 0 ? Vec3(between.normalized()) : Vec3(Vec3::UnitZ());
+  double most = distance_along(a, b, best);
+  const auto offer = [&](const Vec3& axis) {
+    const double norm = axis.norm();
+    if (!(norm > 0)) return;
+    const Vec3 n = axis / norm;
+    const double distance = distance_along(a, b, n);
+    if (distance > most) {
+      most = distance;
+      best = n;
+    }
+  };
+  if (!first.overlap) offer(-first.simplex.v);
+  for (const SupportCore* core : {&a, &b}) {
+    if (core->polyhedron != nullptr) continue;
+    const Vec3 axis = core->axis();
+    const double along = axis.dot(between);
+    offer(along < 0 ? Vec3(-axis) : axis);
+    offer(between - along * axis);
+  }
+  return best;
+}
+
+// Between the points of both that are farthest along the normal, on the plane of A's.
+Vec3 touch_along(const SupportCore& a, const SupportCore& b, const Vec3& normal) {
+  const Vec3 on_a = a.support(normal), middle = 0.5 * (on_a + b.support(-normal));
+  return middle + normal.dot(on_a - middle) * normal;
+}
+
 RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
   const double size = a.size() + b.size();
+  const Vec3 plain = best_plain_axis(a, b, d);
   Vec3 inward = a.center() - b.center();
   if (!d.overlap && d.simplex.v.norm() > 0) inward = d.simplex.v;
   if (!(inward.norm() > 0)) inward = Vec3::UnitZ();
@@ -134,12 +172,23 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
     d = descend(a, b, shift);
   }
   RoundDistance result;
-  if (!d.overlap) return result;
+  if (!d.overlap) {
+    result.normal = plain;
+    result.distance = distance_along(a, b, plain);
+    result.point_a = touch_along(a, b, plain);
+    return result;
+  }
   const PolytopeDepth found = polytope_depth(
       a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, depth_accuracy * size);
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;
+  if (const double bound = distance_along(a, b, plain);
+      bound > result.distance + lost_depth * size) {
+    result.normal = plain;
+    result.distance = bound;
+    result.point_a = touch_along(a, b, plain);
+  }
   return result;
 }
 

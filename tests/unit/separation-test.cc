@@ -417,5 +417,27 @@ TEST(Separation, distance_scales_with_the_unit_of_length) {
   }
 }
 
+// Drums with one axis, end to end or deep in each other: differences of parallel faces, which have
+// no volume in some places.  Known: the least of what the caps and the walls overlap by.
+TEST(Separation, drums_with_parallel_axes_are_as_deep_as_caps_and_walls_say) {
+  Random random(29);
+  const ShapePtr drum = make_cylinder(0.5, 1);
+  double worst_touch = 0, worst_deep = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Frame first = random_frame(random, 1);
+    const Vec3 off = std::pow(10, uniform(random, -13, -7)) * random_direction(random);
+    const Separation touch =
+        parts(drum, first, drum, first * Frame(Mat3::Identity(), Vec3(0, 0, 1) + off));
+    worst_touch = std::max(worst_touch, std::abs(touch.distance - off.z()));
+
+    const Vec3 inside = uniform(random, 0, 0.4) * random_direction(random);
+    const Separation deep = parts(drum, first, drum, first * Frame(Mat3::Identity(), inside));
+    const double exact = std::min(1 - std::abs(inside.z()), 1 - inside.head<2>().norm());
+    worst_deep = std::max(worst_deep, std::abs(deep.distance + exact));
+  }
+  EXPECT_LT(worst_touch, 1e-12);
+  EXPECT_LT(worst_deep, 1e-8);
+}
+
 }  // namespace
 }  // namespace tw::testing
