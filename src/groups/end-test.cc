@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.h"
 #include "collision/seams/seams.h"
@@ -64,7 +65,9 @@ struct PairOnArc {
     for (const Body* body : {&a, &b}) {
       if (body->fixed()) continue;
       const MotionBounds bounds = trajectory(*body).bounds(from, to);
-      sum += bounds.path.size().norm() + bounds.turn * (to - from) * body->radius;
+      sum += bounds.path.size().norm();
+      // a plane that moves does not turn, and has no radius
+      if (bounds.turn > 0) sum += bounds.turn * (to - from) * body->radius;
     }
     return sum;
   }
@@ -80,12 +83,11 @@ double unseen_touch(const PairOnArc& pair, double from, double to, double allowe
   return find_root(excess, from, to, first, last).left;
 }
 
-// When a contact that was open at `from` and is not at `to` closes faster than `slow`; `never` if
-// it does not.
-double fast_touch(const GroupArc& arc, int contact, double from, double to, double slow) {
+// When a contact whose gap goes from `first` > 0 to `last` < 0 closes, if faster than `slow`; else
+// `never`.
+double fast_touch(const GroupArc& arc, int contact, double from, double to, double first,
+                  double last, double slow) {
   const auto gap = [&](double t) { return arc.contact_force(contact, t).gap; };
-  const double first = gap(from), last = gap(to);
-  if (!(first > 0 && last < 0)) return never;
   const double when = find_root(gap, from, to, first, last).left;
   const ContactForce f = arc.contact_force(contact, when);
   return -f.velocity.dot(f.normal) > slow ? when : never;
@@ -106,15 +108,22 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
       static_cast<int>(std::clamp(std::ceil(travel / (answer::travel_unlooked * size)), 1.0,
                                   static_cast<double>(answer::most_looks)));
   bool knows_neighbours = false;
+  thread_local std::vector<double> gaps;  // at the last look
+  gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
   double from = start;
   for (int i = 1; i <= looks; ++i) {
     const double to = i < looks ? start + length * i / looks : group.next_check;
-    double end = never;
+    double end = never, known = 0;
     each_contact(pair, [&](std::uint32_t c) {
-      end =
-          std::min(end, fast_touch(*group.arc, static_cast<int>(c), from, to, scales.fusion_speed));
+      const int contact = static_cast<int>(c);
+      const double last = group.arc->contact_force(contact, to).gap;
+      const double first = std::exchange(gaps[c - pair.first], last);
+      known = std::min(known, last);
+      if (first > 0 && last < 0)
+        end = std::min(end,
+                       fast_touch(*group.arc, contact, from, to, first, last, scales.fusion_speed));
     });
-    if (std::min(along.represented(to), 0.0) - along.deepest(to, false) > allowed) {
+    if (known - along.deepest(to, false) > allowed) {
       if (!knows_neighbours && (a.fixed() || b.fixed())) {
         const std::vector<BodyId> ground = surroundings.ground_around(a.dynamic() ? a : b);
         along.around_a = surroundings.seam_neighbours(a, ground);

@@ -23,11 +23,12 @@ TEST(EndTest, contacts_that_stand_for_all_that_touches_last_to_the_check) {
 }
 
 // A cube that stands on one edge and falls over flat: what comes down is seen before it is deep.
-TEST(EndTest, an_arc_ends_where_another_cube_comes_down_unseen) {
+void expect_early_end_on_a_floor(BodyKind kind) {
   SmallScene small;
   // one check a second: long after
   small.options.group_check_rate = 1;
   const BodyId floor = small.add_floor();
+  small.scene.bodies[floor]->info.kind = kind;
   const double tilt = 0.3, edge = 0.1, half = edge / 2;
   const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
   const double height = half * (std::cos(tilt) + std::sin(tilt));
@@ -47,6 +48,15 @@ TEST(EndTest, an_arc_ends_where_another_cube_comes_down_unseen) {
       for (const double z : {-half, half})
         lowest = std::min(lowest, (end.x + end.q * Vec3(x, y, z)).z());
   EXPECT_GT(lowest, -0.01 * edge);
+}
+
+TEST(EndTest, an_arc_ends_where_another_cube_comes_down_unseen) {
+  expect_early_end_on_a_floor(BodyKind::fixed);
+}
+
+// A half-space has no radius; it may move, but does not turn.
+TEST(EndTest, is_as_good_on_a_floor_that_moves) {
+  expect_early_end_on_a_floor(BodyKind::kinematic);
 }
 
 TEST(EndTest, is_done_once) {
