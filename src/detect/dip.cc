@@ -38,9 +38,8 @@ double first_dip(const Piece& piece, SimplexCaches& caches, double from, double 
     const double clear = certificate(piece, caches, t, depth);
     if (t > from && !(clear > t) && separation_at(piece, t).distance < -depth) return t;
     const double next = std::max(std::floor(clear / spacing) * spacing, after(t));
-    // times have no finer digits
-    if (!(next > t)) return never;
-    if (!(next < to)) return never;
+    // the end, or times have no finer digits
+    if (!(next > t && next < to)) return never;
     t = next;
   }
 }

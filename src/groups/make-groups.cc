@@ -183,15 +183,18 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   return group;
 }
 
-// Joins the places of successors with new arcs that are in contact, where may_join(i, j).
-template <class MayJoin>
-void join_by_pairs(const Regrouping& work, Components& components, MayJoin&& may_join) {
+// The successors with new arcs that hang together by contact pairs, those that rest apart from the
+// others.
+Components parts_of(const Regrouping& work) {
+  Components parts(work.successors.size());
   for (const ContactPair& pair : work.pairs) {
     const Successor *a = work.successor_of(pair.a()), *b = work.successor_of(pair.b());
     if (!work.changes(a) || !work.changes(b)) continue;
-    if (const std::size_t i = work.place_of(a), j = work.place_of(b); may_join(i, j))
-      components.join(i, j);
+    if (const std::size_t i = work.place_of(a), j = work.place_of(b);
+        work.rests[i] == work.rests[j])
+      parts.join(i, j);
   }
+  return parts;
 }
 
 }  // namespace
@@ -211,12 +214,12 @@ void make_groups(Regrouping& work) {
         held[work.place_of(member)] = true;
   for (std::size_t i = 0; i < count; ++i)
     if (held[i]) work.stillness[i] = stillness_of(work, work.successors[i]);
-  Components together(count);
-  join_by_pairs(work, together, [](std::size_t, std::size_t) { return true; });
-  work.rests = who_rests(work, together);
-  Components components(count);
-  join_by_pairs(work, components,
-                [&](std::size_t i, std::size_t j) { return work.rests[i] == work.rests[j]; });
+  work.rests.assign(count, false);
+  Components components = parts_of(work);
+  if (work.cause == Cause::check) {
+    work.rests = who_rests(work, components);
+    components = parts_of(work);
+  }
   count_fissions(work, held);
 
   // one group a component, its members ascending

@@ -80,7 +80,6 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
 std::vector<bool> who_rests(const Regrouping& work, Components& together) {
   const std::size_t count = work.successors.size();
   std::vector<bool> rests(count, false);
-  if (work.cause != Cause::check) return rests;
   for (std::size_t i = 0; i < count; ++i) {
     const Successor& successor = work.successors[i];
     rests[i] = work.changes(&successor) &&

@@ -184,54 +184,32 @@ TEST(Erleben, spikes_and_wedges_on_each_other) {
   }
 }
 
+// Tip down in the middle of a plate, moving along x.
+Case into(const ShapePtr& body, const ShapePtr& plate,
+          const std::function<double(const Vec3&)>& height, double duration, double speed) {
+  Case c{body, plate, {0, 2 + above, 0}, {0, -1, 0}, {speed, 0, 0}, duration};
+  c.height = height;
+  return c;
+}
+
 TEST(Erleben, a_spike_in_a_crack) {
-  expect_held({spike(),
-               crack(),
-               {0, 2 + above, 0},
-               {0, -1, 0},
-               {1, 0, 0},
-               0.9,
-               9.8,
-               {1, 0, 0},
-               over_crack,
-               0.75});
+  Case pushed = into(spike(), crack(), over_crack, 0.9, 1);
+  pushed.force = {1, 0, 0};
+  pushed.middle = 0.75;
+  expect_held(pushed);
   // upright it stays on its tip as long as rounding lets it
-  const BodyState end = expect_held({spike(),
-                                     crack(),
-                                     {0, 2 + above, 0},
-                                     {0, -1, 0},
-                                     Vec3::Zero(),
-                                     0.5,
-                                     9.8,
-                                     Vec3::Zero(),
-                                     over_crack});
+  const BodyState end = expect_held(into(spike(), crack(), over_crack, 0.5, 0));
   EXPECT_NEAR(end.position.y(), 2, 1e-3);
 }
 
 TEST(Erleben, a_wedge_in_a_crack) {
-  expect_held({wedge(),
-               crack(),
-               {0, 2 + above, 0},
-               {0, -1, 0},
-               {1, 0, 0},
-               0.9,
-               9.8,
-               {10, 0, 0},
-               over_crack,
-               1});
+  Case pushed = into(wedge(), crack(), over_crack, 0.9, 1);
+  pushed.force = {10, 0, 0};
+  pushed.middle = 1;
+  expect_held(pushed);
 }
 
-TEST(Erleben, a_spike_in_a_hole) {
-  expect_held({spike(),
-               hole(),
-               {0, 2 + above, 0},
-               {0, -1, 0},
-               {1, 0, 0},
-               0.9,
-               9.8,
-               Vec3::Zero(),
-               over_hole});
-}
+TEST(Erleben, a_spike_in_a_hole) { expect_held(into(spike(), hole(), over_hole, 0.9, 1)); }
 
 TEST(Erleben, sliding_spikes_and_wedges_feel_no_seams) {
   for (const ShapePtr& body : {spike(), wedge()}) {
