@@ -115,7 +115,9 @@
     (window ("window") "CELLS" ,positive #f)
     (adversary ("adversary") "SEED" ,adversary #f)
     (pieces ("pieces") "N" ,count #f)
-    (undo-redo ("undo-redo") #f #f #f)))
+    (undo-redo ("undo-redo") #f #f #f)
+    (write-states ("write-states") "FILE" ,text #f)
+    (compare-states ("compare-states") "FILE" ,text #f)))
 
 (define (long-name names) (or (find string? names) (string (car names))))
 

@@ -39,7 +39,9 @@
   (set! overrides alist))
 
 ;; Settings of the kernel that the command line can override.
-(define kernel-settings '(accuracy seed hash check undo-redo gvt-interval window group-check-rate))
+(define kernel-settings
+  '(accuracy seed hash check undo-redo gvt-interval window group-check-rate
+    write-states compare-states))
 
 (define (make-world)
   "Return a new, empty world."

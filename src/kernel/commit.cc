@@ -23,6 +23,9 @@ Commit::Commit(Simulation& simulation, const ActivePairs& pairs, CallbackBook& c
       delivery_(delivery) {}
 
 void Commit::begin_run(double until, double wall_end) {
+  const WorldOptions& options = sim_.options;
+  if (!trace_ && !(options.write_states.empty() && options.compare_states.empty()))
+    trace_ = std::make_unique<StateTrace>(sim_.scene, options.write_states, options.compare_states);
   until_ = until;
   wall_end_ = wall_end;
 }
@@ -106,10 +109,12 @@ void Commit::commit_states(double limit, bool inclusive) {
     for (; state && passed(state) && !state->error; state = state->next) commit_state(*state);
   }
   delivery_.sort_noted();
+  if (trace_) trace_->check(limit, inclusive);
 }
 
 void Commit::commit_state(State& state) {
   state.committed = true;
+  if (trace_) trace_->add(state);
   count(state);
   if (state.key.kind == KeyKind::callback)
     callbacks_.note_committed(state.key.id, state.next_callback);

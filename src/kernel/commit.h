@@ -11,7 +11,10 @@
 
 #include <exception>
 
+#include <memory>
 #include "kernel/counters.h"
+
+#include "kernel/state-trace.h"
 #include "timeline/key.h"
 
 namespace tw {
@@ -54,6 +57,7 @@ class Commit {
   double until_ = 0;
   double wall_end_ = never;
   long events_since_gvt_ = 0;
+  std::unique_ptr<StateTrace> trace_;  // null unless asked for
 };
 
 }  // namespace tw

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace tw {
 
@@ -24,6 +25,8 @@ struct WorldOptions {
   long gvt_interval = 0;      // events between computations of GVT; 0: automatic
   double window_cells = 0.7;  // claimed window, in cells of travel
   std::optional<AdversaryOptions> adversary;
+  std::string write_states;    // test mode: the file for every committed state (state-trace.h)
+  std::string compare_states;  // test mode: the file to compare them with
 };
 
 }  // namespace tw

@@ -55,6 +55,21 @@ std::uint64_t StateImage::checksum() const {
   return h.value();
 }
 
+std::string StateImage::text() const {
+  std::string text;
+  const char* field = nullptr;
+  for (const Word& word : words_) {
+    if (word.field == field) {
+      text += ',';
+    } else {
+      field = word.field;
+      text += std::string("\t") + field + '=';
+    }
+    text += word.value();
+  }
+  return text;
+}
+
 std::string StateImage::Word::value() const {
   return real ? show(std::bit_cast<double>(bits)) : std::to_string(bits);
 }

@@ -20,6 +20,8 @@ class StateImage {
  public:
   void add(const State& state);
   std::uint64_t checksum() const;
+  // "\tFIELD=VALUE,VALUE..." for each field in turn.
+  std::string text() const;
   // "velocity of ball-3: 1.0000001, before 1": the first field that differs from that of an image
   // made before; empty if none does.
   std::string first_difference(const Scene& scene, const StateImage& before) const;

@@ -45,6 +45,12 @@ void World::set_hash(bool on) {
 
 void World::set_check(bool on) { kernel_->simulation.options.check = on; }
 void World::set_undo_redo(bool on) { kernel_->simulation.options.undo_redo = on; }
+void World::set_write_states(const std::string& file) {
+  kernel_->simulation.options.write_states = file;
+}
+void World::set_compare_states(const std::string& file) {
+  kernel_->simulation.options.compare_states = file;
+}
 void World::set_gvt_interval(long events) { kernel_->simulation.options.gvt_interval = events; }
 
 void World::set_window_cells(double cells) {

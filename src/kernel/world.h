@@ -54,6 +54,8 @@ class World {
   void set_hash(bool on);                 // before the first run
   void set_check(bool on);
   void set_undo_redo(bool on);
+  void set_write_states(const std::string& file);    // before the first run
+  void set_compare_states(const std::string& file);  // before the first run
   void set_gvt_interval(long events);
   void set_window_cells(double cells);
   void set_group_check_rate(double rate);                         // before the first run

@@ -71,6 +71,10 @@ constexpr WorldSetting world_settings[] = {
     {"hash", [](World& w, SCM v, const char*) { w.set_hash(to_bool(v)); }},
     {"check", [](World& w, SCM v, const char*) { w.set_check(to_bool(v)); }},
     {"undo-redo", [](World& w, SCM v, const char*) { w.set_undo_redo(to_bool(v)); }},
+    {"write-states",
+     [](World& w, SCM v, const char* n) { w.set_write_states(to_file_name(v, n)); }},
+    {"compare-states",
+     [](World& w, SCM v, const char* n) { w.set_compare_states(to_file_name(v, n)); }},
     {"gvt-interval", [](World& w, SCM v, const char* n) { w.set_gvt_interval(to_integer(v, n)); }},
     {"window", [](World& w, SCM v, const char* n) { w.set_window_cells(to_real(v, n)); }},
 };

@@ -65,6 +65,21 @@
               ("--adversary=2,0.5") ("--window=3") ("--undo-redo") ("--stats=s.json")))
   (test-assert "but on the scene" (not (equal? hash (hash-of "-D" "height=1.01")))))
 
+;; ---- the states of two schedules ----
+
+(run "ball.scm" "--quiet" "--write-states=states.txt")
+(test-equal "the states don't depend on the schedule" 0
+            (run-status (run "ball.scm" "--quiet" "--compare-states=states.txt" "--adversary=2,0.5"
+                             "--pieces=3")))
+(let ((result (run "ball.scm" "--quiet" "--compare-states=states.txt" "-D" "height=1.01")))
+  (test-assert "another scene: status 1" (not (zero? (run-status result))))
+  (test-assert "time, body, key and field are named"
+    (string-match "differs from that of states.txt first at t = 0 s: ball with birth.*: position is .*,1.11 instead of .*,1.1"
+                  (run-errors result))))
+(test-assert "no file to compare with"
+  (string-match "cannot read the states of none.txt: No such file"
+                (run-errors (run "ball.scm" "--compare-states=none.txt"))))
+
 ;; ---- parameters ----
 
 (let ((result (run "ball.scm" "--until" "1" "-D" "height=0.5" "--define=label=a,\\\"b\\\"" "-D" "elastic?=#t"
