@@ -36,14 +36,17 @@ class BroadPhase {
       return;
     }
     moving_.overlapping(id, visit);
-    standing_around(id, visit);
+    standing_in(moving_.box(id), id, visit);
   }
-  // The standing ones alone, around a moving box.
+  // The standing ones alone that overlap any box; faster where that lies around the moving box
+  // `id`.
   template <class Visit>
-  void standing_around(std::uint32_t id, Visit&& visit) const {
+  void standing_in(const Aabb& box, std::uint32_t id, Visit&& visit) const {
     if (standing_.size() == 0) return;
-    const Aabb& box = moving_.box(id);
-    for (const Neighbour& other : zone_of(id).neighbours)
+    const Zone& zone = zone_of(id);
+    if (!zone.box.contains(box.lo) || !zone.box.contains(box.hi))
+      return standing_.overlapping(box, visit);
+    for (const Neighbour& other : zone.neighbours)
       if (other.box.overlaps(box)) visit(other.id);
   }
 

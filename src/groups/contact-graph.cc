@@ -264,7 +264,7 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
     const Body& body = *mine.body;
     if (!body.shape_P) continue;
     const std::vector<BodyId> candidates = candidates_of(work, body, looked_at);
-    const std::vector<BodyId> ground = work.surroundings.ground_around(body);
+    const std::vector<BodyId> ground = work.surroundings.ground_around(body, {mine.frame});
     for (const BodyId other : candidates) {
       const PlacedBody theirs = work.placed(other);
       const bool straight = body.id() < other;
@@ -280,8 +280,9 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
 
 void fuse(Regrouping& work, double interval) {
   const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
-  const std::vector<BodyId> ground =
-      work.surroundings.ground_around(a.body->dynamic() ? *a.body : *b.body);
+  const std::vector<BodyId> ground = a.body->dynamic()
+                                         ? work.surroundings.ground_around(*a.body, {a.frame})
+                                         : work.surroundings.ground_around(*b.body, {b.frame});
   connect(work, a, b, ground, interval, true);
   work.tally.fusions = 1;
 }

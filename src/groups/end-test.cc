@@ -107,7 +107,6 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   const int looks =
       static_cast<int>(std::clamp(std::ceil(travel / (answer::travel_unlooked * size)), 1.0,
                                   static_cast<double>(answer::most_looks)));
-  bool knows_neighbours = false;
   thread_local std::vector<double> gaps;  // at the last look
   gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
   double from = start;
@@ -124,11 +123,13 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
                        fast_touch(*group.arc, contact, from, to, first, last, scales.fusion_speed));
     });
     if (known - along.deepest(to, false) > allowed) {
-      if (!knows_neighbours && (a.fixed() || b.fixed())) {
-        const std::vector<BodyId> ground = surroundings.ground_around(a.dynamic() ? a : b);
+      if (a.fixed() || b.fixed()) {
+        const Body& mover = a.dynamic() ? a : b;
+        const Trajectory& path = along.trajectory(mover);
+        const std::vector<BodyId> ground =
+            surroundings.ground_around(mover, {path.frame(from), path.frame(to)});
         along.around_a = surroundings.seam_neighbours(a, ground);
         along.around_b = surroundings.seam_neighbours(b, ground);
-        knows_neighbours = true;
       }
       end = std::min(end, unseen_touch(along, from, to, allowed));
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/surroundings.h"
 
+#include "base/constants.h"
 #include "collision/seams/seams.h"
 #include "integrate/trajectory.h"
 
@@ -9,10 +10,14 @@
 
 namespace tw {
 
-std::vector<BodyId> Surroundings::ground_around(const Body& moving) const {
+std::vector<BodyId> Surroundings::ground_around(const Body& moving,
+                                                std::initializer_list<Frame> frames) const {
   std::vector<BodyId> ground;
   if (moving.unbounded) return ground;
-  grid_.standing_around(moving.id(), [&](BodyId id) {
+  Aabb place;
+  for (const Frame& frame : frames) place.add(moving.shape_P->bounds(frame));
+  place.grow(std::max(answer::contact_margin, seam::sunk) * moving.least_width);
+  grid_.standing_in(place, moving.id(), [&](BodyId id) {
     if (scene_.may_collide(moving, scene_.body(id))) ground.push_back(id);
   });
   std::sort(ground.begin(), ground.end());

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "collision/broad-phase.h"
@@ -22,8 +23,10 @@ class Surroundings {
     grid_.overlapping(body, visit);
     for (const BodyId other : unbounded_) visit(other);
   }
-  // The fixed bodies near a moving one that it may touch, ascending: they bury each other's edges.
-  std::vector<BodyId> ground_around(const Body& moving) const;
+  // The fixed bodies that a moving one may touch and whose boxes its own comes near, at one of the
+  // frames, ascending: they bury each other's edges.  A function of the frames alone: its claim,
+  // which holds it at all of its times, depends on the schedule.
+  std::vector<BodyId> ground_around(const Body& moving, std::initializer_list<Frame> frames) const;
   // The parts of those of them that stand beside a fixed body; of a body that moves there are none.
   std::vector<SeamNeighbour> seam_neighbours(const Body& body,
                                              const std::vector<BodyId>& ground) const;

@@ -128,10 +128,12 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   for (; state; state = state->next) {
     const double from = std::max(state->key.time, sim_.present.gvt);
     const double to = state->next ? std::min(state->next->key.time, end) : end;
-    if (to >= from) box.add(swept_bounds(body, state->trajectory(), from, to));
+    if (to < from) continue;
+    // checks find the contacts of members with what is so near
+    Aabb swept = swept_bounds(body, state->trajectory(), from, to);
+    if (state->trajectory().stepped()) swept.grow(answer::contact_margin * body.least_width);
+    box.add(swept);
   }
-  if (const State& tail = *sim_.graph.tail(body.process); tail.trajectory().stepped())
-    box.grow(answer::contact_margin * body.least_width);
   box.grow(cost::box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
 }

@@ -86,7 +86,7 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
   const Successor& mover = fixed == &a ? b : a;
-  const std::vector<BodyId> ground = surroundings.ground_around(*mover.body);
+  const std::vector<BodyId> ground = surroundings.ground_around(*mover.body, {placed(mover).frame});
   const auto& parts = fixed->body->shape_P->parts();
   if (ground.size() < 2 && parts.size() < 2) return false;
   const std::vector<SeamNeighbour> others = surroundings.seam_neighbours(*fixed->body, ground);

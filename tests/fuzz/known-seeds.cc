@@ -8,7 +8,6 @@ namespace tw::fuzz {
 namespace {
 
 const KnownFault table[] = {
-    {"piston", 4, Fault::hash, 0, "one schedule or another changes the history"},
     {"thin", 17, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
     // from 30 on: make check-long; what they look like, the causes were not looked into
     {"thin", 31, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},

@@ -31,6 +31,15 @@ struct Boxes {
     boxes[id] = box;
     phase.place(id, box, stands);
   }
+  // In a box that need not lie in the zone of `id`.
+  void expect_standing_in(const Aabb& box, std::uint32_t id, std::uint32_t first_standing) const {
+    std::set<std::uint32_t> expected, found;
+    for (std::uint32_t other = first_standing; other < boxes.size(); ++other)
+      if (box.overlaps(boxes[other])) expected.insert(other);
+    phase.standing_in(box, id,
+                      [&](std::uint32_t other) { EXPECT_TRUE(found.insert(other).second); });
+    ASSERT_EQ(found, expected) << "around box " << id;
+  }
   void expect_all_pairs(std::uint32_t first_standing) const {
     for (std::uint32_t id = 0; id < boxes.size(); ++id) {
       std::set<std::uint32_t> expected, found, standing, found_standing;
@@ -42,8 +51,9 @@ struct Boxes {
       phase.overlapping(id, [&](std::uint32_t other) { EXPECT_TRUE(found.insert(other).second); });
       ASSERT_EQ(found, expected) << "box " << id;
       if (id >= first_standing) continue;
-      phase.standing_around(id, [&](std::uint32_t other) { found_standing.insert(other); });
+      phase.standing_in(boxes[id], id, [&](std::uint32_t other) { found_standing.insert(other); });
       ASSERT_EQ(found_standing, standing) << "box " << id;
+      expect_standing_in(around(boxes[id].center(), 3 * boxes[id].size()), id, first_standing);
     }
   }
 };
