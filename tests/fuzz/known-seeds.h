@@ -19,6 +19,15 @@ struct KnownFault {
 
 std::span<const KnownFault> known_faults();
 
+// A scene beyond the first that had a fault once, and what that came from.
+struct MendedSeed {
+  std::string kind;
+  std::uint64_t seed;
+  const char* cause;
+};
+
+std::span<const MendedSeed> mended_seeds();
+
 bool known_fault(const DescribedScene& scene, Fault fault);
 
 }  // namespace tw::fuzz

@@ -54,5 +54,14 @@ TEST(Seeds, have_no_faults_but_those_that_are_known) {
   }
 }
 
+TEST(Seeds, that_had_faults_have_none_any_more) {
+  for (const MendedSeed& mended : mended_seeds()) {
+    const Verdict verdict = judge(random_scene(mended.kind, mended.seed), {}, budget);
+    std::printf("%s\n", verdict.line().c_str());
+    std::fflush(stdout);
+    EXPECT_TRUE(verdict.faults.empty()) << mended.cause << ":\n" << verdict.line();
+  }
+}
+
 }  // namespace
 }  // namespace tw::fuzz

@@ -31,8 +31,11 @@ const std::vector<SeamNeighbour>& SeamPair::neighbours(bool of_a) const {
 bool SeamPair::buries(bool on_a, const Vec3& point, const Vec3& normal, double angle) const {
   const SeamSide& side = on_a ? a : b;
   if (!side.has_seams) return false;
-  return buried_edge(on_a ? first() : second(), side.frame, point, on_a ? normal : Vec3(-normal),
-                     neighbours(on_a), size, angle);
+  // whatever stands out of a half-space makes a valley with it: what is in both touches both
+  const ConvexPart& part = on_a ? first() : second();
+  if (part.kind == PartKind::half_space) return false;
+  return buried_edge(part, side.frame, point, on_a ? normal : Vec3(-normal), neighbours(on_a), size,
+                     angle);
 }
 
 bool SeamPair::is_ghost(const ManifoldPoint& p, double angle) const {
