@@ -9,6 +9,7 @@ namespace tw {
 
 // A rigid body: what has a shape, a pose and contacts.
 using BodyId = std::uint32_t;
+constexpr BodyId no_body = 0xffffffffu;
 
 // Whatever owns a state queue (timeline/process.h).  A type of its own, so that nobody takes the
 // number of a body for it.

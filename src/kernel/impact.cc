@@ -53,10 +53,10 @@ ContactPoint sphere_contact(const Body& a, const PoseTwist& pa, const Body& b,
 bool simple(const Body& body) { return body.sphere_radius >= 0 || body.is_fixed_plane; }
 
 // The run of impacts after one more at `now`; impacts at one instant count once.
-ImpactRun continued(const ImpactRun& run, double now, double tau) {
-  if (now == run.last_time) return run;
-  if (now - run.last_time < tau) return {run.count + 1, now};
-  return {0, now};
+ImpactRun continued(const ImpactRun& run, BodyId partner, double now, double tau) {
+  if (now == run.last_time) return {run.count, now, partner};
+  if (now - run.last_time < tau) return {run.count + 1, now, partner};
+  return {0, now, partner};
 }
 
 // Where the two touch.
@@ -137,14 +137,20 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
   };
   const bool pressed = a.data.group || b.data.group || (pull(b) - pull(a)).dot(normal) < 0;
 
+  // what comes back to the same partner is pressed by its own motion, as a disc is that rolls
+  const auto comes_back = [](const Successor& d, const Successor& partner) {
+    return !d.body->dynamic() || d.data.impacts.partner == partner.body->id();
+  };
+  const bool presses = pressed || (comes_back(a, b) && comes_back(b, a));
   // what nothing presses together may knock about in a corner for a while; a true collapse goes on
   // to ever shorter intervals
   const double tau = std::min(slow / scales.gravity, scales.bounce_time()) *
-                     (pressed ? 1 : answer::free_run_share);
+                     (presses ? 1 : answer::free_run_share);
   bool quick = true;
-  for (Successor* successor : {&a, &b}) {
+  for (const auto& [successor, partner] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     if (!successor->body->dynamic()) continue;
-    successor->data.impacts = continued(successor->data.impacts, key.time, tau);
+    successor->data.impacts =
+        continued(successor->data.impacts, partner->body->id(), key.time, tau);
     quick = quick && successor->data.impacts.count >= answer::soft_run;
   }
   return (pressed && fastest < slow) || quick;

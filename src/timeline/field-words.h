@@ -55,6 +55,7 @@ template <class Put>
 void each_word(const ImpactRun& run, Put&& put) {
   put(std::uint64_t{run.count});
   put(run.last_time);
+  put(std::uint64_t{run.partner});
 }
 template <class Put>
 void each_word(const Tally& tally, Put&& put) {

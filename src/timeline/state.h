@@ -36,6 +36,7 @@ struct Group;
 struct ImpactRun {
   std::uint32_t count = 0;
   double last_time = -never;
+  BodyId partner = no_body;  // of the last one
 };
 
 // All of a state but its place in the graph.  What every prediction reads stands last, beside the

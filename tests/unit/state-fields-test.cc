@@ -42,7 +42,7 @@ void change(T& n) { n = !n; }
 void change(Vec3& v) { v.z() += 1; }
 void change(Quat& q) { q.w() += 1; }
 void change(Key& key) { key.id += 1; }
-void change(ImpactRun& run) { change(run.last_time); }
+void change(ImpactRun& run) { change(run.partner); }
 void change(Tally& tally) { tally.depth += 1; }
 void change(SlotsPtr& slots) { slots = std::make_shared<SomeSlots>(); }
 void change(std::exception_ptr& error) { error = std::make_exception_ptr(UserError("stop")); }
