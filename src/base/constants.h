@@ -99,6 +99,9 @@ inline constexpr double most_step_turn = 2;
 // Slow groups are followed more closely: down to this part of the tolerances, and not beyond those
 // of this accuracy (groups/step-tolerances.h).
 inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
+// Looser accuracies than this don't loosen the steps of groups: they took as many, and a cube that
+// slides down a slope was 20 % off at 1e-2.
+inline constexpr double loosest_steps = 1e-4;
 
 // ---- groups ----
 // Boxes of members reach this share of their size farther: a check finds in them whom a member may

@@ -14,23 +14,27 @@
 
 namespace tw {
 
+inline double accuracy_of_steps(double accuracy) {
+  return std::min(accuracy, answer::loosest_steps);
+}
+
 // Of one step of a contact group, m: `size` is the least width of its smallest member.  At the
 // default accuracy a tenth of the static depth (2.5e-4 size).
 inline double group_position_tolerance(double accuracy, double size) {
-  return 25 * accuracy * size;
+  return 25 * accuracy_of_steps(accuracy) * size;
 }
 
 // What moves slowly is followed more closely, as far as to the tolerances of an accuracy of 1e-6:
 // by the fastest member's speed as a share of sqrt(g size), to a tenth.  Else a heap that comes to
 // rest gains energy.
 inline double group_closeness(double accuracy, double share_of_speed) {
-  return std::min(
-      1.0, std::max({share_of_speed, answer::closest_steps, answer::finest_accuracy / accuracy}));
+  return std::min(1.0, std::max({share_of_speed, answer::closest_steps,
+                                 answer::finest_accuracy / accuracy_of_steps(accuracy)}));
 }
 
 // m/s: what gravity does to a body of that size within the time of its contact.
 inline double group_velocity_tolerance(double accuracy, double size, double gravity) {
-  return 100 * accuracy * std::sqrt(gravity * size);
+  return 100 * accuracy_of_steps(accuracy) * std::sqrt(gravity * size);
 }
 
 }  // namespace tw
