@@ -73,14 +73,23 @@ struct PairOnArc {
   }
 };
 
-// When the pair came to be deeper than its contacts know; `never` if it did not.
+// When the pair came to be deeper than its contacts know; `never` if it did not.  What has sunk far
+// into a valley is no longer found there: so the stretch is gone through in quarters.
 double unseen_touch(const PairOnArc& pair, double from, double to, double allowed) {
   const auto excess = [&](double t) {
     return std::min(pair.represented(t), 0.0) - pair.deepest(t, true) - allowed;
   };
-  const double first = excess(from), last = excess(to);
-  if (!(last > 0) || first >= 0) return never;
-  return find_root(excess, from, to, first, last).left;
+  constexpr int quarters = 4;
+  double begin = from, first = excess(from);
+  if (first >= 0) return never;
+  for (int i = 1; i <= quarters; ++i) {
+    const double end = i < quarters ? from + (to - from) * i / quarters : to;
+    const double last = excess(end);
+    if (last > 0) return find_root(excess, begin, end, first, last).left;
+    begin = end;
+    first = last;
+  }
+  return never;
 }
 
 // When a contact whose gap goes from `first` > 0 to `last` < 0 closes, if faster than `slow`; else

@@ -84,6 +84,26 @@ Vec3 middle_of(const Polyhedron& core, const Polyhedron::Face& face) {
   return sum / face.count;
 }
 
+// Points a probe's length away along the edges that hold the point and have the normal (part's
+// frame).
+std::vector<Vec3> along_edges(const Polyhedron& core, const Vec3& point, const Vec3& normal,
+                              double size) {
+  std::vector<Vec3> points;
+  for (const Polyhedron::Edge& edge : core.edges()) {
+    const Vec3& tail = core.vertex(edge.tail);
+    const Vec3 along = core.vertex(edge.head) - tail;
+    const double length = along.norm(), at = (point - tail).dot(along) / length;
+    const Vec3 direction = along / length;
+    const double margin = seam::buried_margin * size;
+    if ((tail + at * direction - point).norm() > margin || at < -margin || at > length + margin)
+      continue;
+    if (std::abs(direction.dot(normal)) > seam::face_angle) continue;
+    for (const double s : {at - seam::probe * size, at + seam::probe * size})
+      if (s > 0 && s < length) points.push_back(tail + s * direction);
+  }
+  return points;
+}
+
 }  // namespace
 
 double height_over(const SeamNeighbour& part, const Vec3& point) {
@@ -96,7 +116,15 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   const Frame world = frame * part.placement;
   const Polyhedron& core = *part.core;
   const int number = face_with(core, world.R.transpose() * normal);
-  if (number < 0) return denied(point, normal, neighbours, size, angle);
+  if (number < 0) {
+    if (!denied(point, normal, neighbours, size, angle)) return false;
+    // along an edge that dives into a neighbour the two make a valley: what presses there is a
+    // little way inside both
+    for (const Vec3& beside :
+         along_edges(core, world.to_local(point), world.R.transpose() * normal, size))
+      if (!denied(world * beside, normal, neighbours, size, angle)) return false;
+    return true;
+  }
   // far inside a face: bodies don't sink so deep that it could be an inner wall
   const Polyhedron::Face& face = core.face(number);
   const Vec3 local = world.to_local(point);
