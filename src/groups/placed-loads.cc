@@ -262,6 +262,7 @@ bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
   const Scene& scene = before.scene();
   const double now = before.key().time;
   std::size_t members = 0;
+  const Group* counted = nullptr;
   bool placed = false;
   for (const ProcessId process : struck) {
     const State& state = before.state(process);
@@ -269,7 +270,9 @@ bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
     // the time to fall so far
     const double speed = placed_speed(scene, body.least_width);
     placed = placed || now - placed_at(state) <= speed / scene.gravity_scale();
-    members += state.group ? state.group->members.size() : 1;
+    if (!state.group || state.group.get() != counted)
+      members += state.group ? state.group->members.size() : 1;
+    counted = state.group.get();
   }
   return placed && members <= answer::most_placed;
 }
