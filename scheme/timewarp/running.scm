@@ -90,7 +90,8 @@ bit, as if the world had never run further."
 
 (define (total-energy)
   "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity and in
-the springs of their contacts, J."
+the springs of their contacts, J.  What springs of bodies that were placed touching held from the start
+counts for nothing."
   (%total-energy (current-world)))
 
 (define (total-momentum)

@@ -58,6 +58,9 @@ inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 inline constexpr double depth_slack = 1e-12;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
+// What is placed touching starts loaded in groups of at most so many members: forces are found anew
+// with each that joins.
+inline constexpr std::size_t most_placed = 256;
 
 // ---- motion by a procedure ----
 // It is sampled in spans of this length on a grid from time 0, s: so far ahead of what is asked it
@@ -179,6 +182,14 @@ inline constexpr double grazing = 1e-5;
 inline constexpr std::uint32_t most_repeated = 2000;
 // More microsteps at one instant are an error that stops the two.
 inline constexpr std::uint32_t most_microsteps = 100000;
+
+// Loads at the start: inertia is so many times softer than the springs; Newton's steps at most, how
+// far each is cut, and what they leave, share of the weight; rounds.
+inline constexpr double balance_softness = 1e6, balance_residual = 1e-9;
+inline constexpr double least_balance_step = 0x1p-10;
+// A contact slides if it gets faster by more than this share of gravity.
+inline constexpr double balance_slide = 1e-6;
+inline constexpr int balance_steps = 60, balance_rounds = 4;
 
 // Pieces of one span of a motion by a procedure; more are an error: it is rough everywhere.
 inline constexpr std::size_t most_motion_pieces = 4096;

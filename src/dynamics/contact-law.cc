@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "dynamics/contact-law.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/never.h"
 
 namespace tw {
 
@@ -29,6 +31,36 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
   c.ct = std::sqrt(c.kt * mass);
   c.law = parameters.friction_law;
   return c;
+}
+
+double spring_force(const ContactConstants& law, double share, double depth) {
+  if (!(depth > 0)) return 0;
+  const double ratio = law.hardening > 0 ? depth / law.hardening : 0;
+  return share * law.k * depth * (1 + std::min(ratio * ratio, answer::hardening_cap));
+}
+
+double spring_energy(const ContactConstants& law, double share, double depth) {
+  if (!(depth > 0)) return 0;
+  const double ratio = law.hardening > 0 ? depth / law.hardening : 0, squared = ratio * ratio;
+  constexpr double cap = answer::hardening_cap;
+  const double hard = squared < cap ? 0.5 * squared : cap - 0.5 * cap * cap / squared;
+  return 0.5 * share * law.k * depth * depth * (1 + hard);
+}
+
+// The root of y + y^3 = x by Newton's method, from above; beyond the cap the law is linear.
+double spring_depth(const ContactConstants& law, double share, double force) {
+  if (!(force > 0)) return 0;
+  const double linear = force / (share * law.k);
+  if (!(law.hardening > 0)) return linear;
+  const double x = linear / law.hardening;
+  constexpr double cap = answer::hardening_cap;
+  if (x * x >= cap * (1 + cap) * (1 + cap)) return linear / (1 + cap);
+  double y = std::min(x, std::cbrt(x));
+  for (double last = never; y < last;) {
+    last = y;
+    y -= (y + y * y * y - x) / (1 + 3 * y * y);
+  }
+  return y * law.hardening;
 }
 
 }  // namespace tw

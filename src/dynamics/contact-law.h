@@ -1,8 +1,9 @@
 // The law of persistent contact: normal force and friction at one contact point.
 //
 //   N  = max(0, k d (1 + min((d/dh)^2, 100)) (1 + b d'))      Hunt-Crossley, hardening
-// with d the depth (m, negative: apart) and d' its rate.  `anchored` friction carries a tangential
-// stretch xi, in the frame of the reference body:
+// with d the depth (m, negative: apart) and d' its rate.  The depth is that of the overlap, or,
+// where what was placed touching starts loaded, more by the contact's offset.  `anchored` friction
+// carries a tangential stretch xi, in the frame of the reference body:
 //   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
@@ -35,5 +36,11 @@ struct ContactConstants {
 // masses over 100:1, which makes the contact five times as stiff and harden sooner.
 ContactConstants contact_constants(const ContactParameters& parameters, double mass, double size,
                                    double gravity, bool unequal);
+
+// The law without the damper, of a point with the share `share` of the pair's springs.
+double spring_force(const ContactConstants& law, double share, double depth);   // N
+double spring_energy(const ContactConstants& law, double share, double depth);  // J
+// The depth that presses with `force` >= 0, m.
+double spring_depth(const ContactConstants& law, double share, double force);
 
 }  // namespace tw

@@ -73,8 +73,9 @@ NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const Placed
 }
 
 // Whether the pair is in contact until the next check, by the points where it is or may be.
+// `before`: whether it was; `reach`: the gap up to which its contacts pressed.
 bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBody& a,
-                        const PlacedBody& b, bool before, double interval,
+                        const PlacedBody& b, bool before, double reach, double interval,
                         const ContactScales& scales) {
   const double slow = scales.fusion_speed;
   const double drop = scales.gravity * interval * interval;
@@ -85,10 +86,10 @@ bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBo
     const Vec3 where = p.core_point - p.radius * p.normal;
     const double parting = (other.velocity_at(where) - reference.velocity_at(where)).dot(p.normal);
     const bool comes = p.gap + 2 * std::min(parting, 0.0) * interval - drop <= 0;
-    touches = touches || p.gap <= 0;
+    touches = touches || p.gap <= reach;
     fast = fast || (parting < -slow && comes);
     if (before)
-      wanted = wanted || p.gap <= scales.depth() || comes;
+      wanted = wanted || p.gap <= reach + scales.depth() || comes;
     else
       wanted = wanted || (comes && std::abs(parting) < slow) || (p.gap <= 0 && parting > -slow);
   }
@@ -96,8 +97,16 @@ bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBo
   return wanted && (!fast || (before && touches));
 }
 
-// Each new contact takes the stretch of the nearest old one; equal features count as half as far.
-void match_stretches(Regrouping& work, const ContactPair& pair, const PairBefore& before_it) {
+// What is left of a contact's offset where it opens: as much less as it does, so that what was
+// pressed together by a load does not float when the load is gone.  Springs only lose by it.
+double released(double offset, double gap) {
+  return offset > 0 ? std::max(0.0, offset - std::max(0.0, gap))
+                    : std::max(offset, std::min(gap, 0.0));
+}
+
+// Each new contact takes the stretch and the offset of the nearest old one; equal features count as
+// half as far.
+void match_old(Regrouping& work, const ContactPair& pair, const PairBefore& before_it) {
   const ContactPair* old = before_it.pair;
   const Group& before = *before_it.owner;
   const GroupArc& arc = *before.arc;
@@ -123,6 +132,9 @@ void match_stretches(Regrouping& work, const ContactPair& pair, const PairBefore
     if (best == old->count) continue;
     taken[best] = true;
     const ContactTag& tag = before.tags[old->first + best];
+    const GroupContact& was = arc.start().contacts[old->first + best];
+    fresh.law_before = was.law;
+    fresh.contact.offset = released(was.offset, fresh.gap);
     Vec3 stretch =
         work.attitude(tag.reference) * arc.stretch(static_cast<int>(old->first + best), now);
     if (tag.reference != fresh.tag.reference) stretch = -stretch;
@@ -181,6 +193,13 @@ void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, con
   }
 }
 
+double reach_of(const PairBefore& old) {
+  double reach = 0;
+  each_contact(*old.pair,
+               [&](std::uint32_t c) { reach = std::max(reach, old.owner->reach_of(c)); });
+  return reach;
+}
+
 // Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the
 // ground.  Such a pair is in contact, with no contact that presses, or its collision checks would
 // see an overlap all the time.
@@ -197,11 +216,17 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
              const std::vector<BodyId>& ground, double interval, bool must) {
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
-  const ContactScales scales = contact_scales(work.scene(), body_a, body_b, work.masses);
-  const double size = scales.size, depth = scales.depth();
+  const std::uint64_t id = pair_id(body_a.id(), body_b.id());
+  const PairBefore* before = work.pair_before(id);
+  MassRange masses = work.masses;
+  if (before) masses.add(before->pair->masses);
+  const ContactScales scales = contact_scales(work.scene(), body_a, body_b, masses);
+  const double reach = before ? reach_of(*before) : 0;
+  const double size = scales.size, depth = reach + scales.depth();
   const double travel =
       2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
-  const double search_distance = depth + std::min(travel, answer::contact_margin * size - depth);
+  const double margin = std::max(answer::contact_margin * size, depth);
+  const double search_distance = depth + std::min(travel, margin - depth);
   if (!must && far_apart(a, b, search_distance)) return;
 
   thread_local std::vector<ManifoldPoint> points;
@@ -216,18 +241,20 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
       *body_a.shape_P, a.frame, near.seam_neighbours(body_a, ground), *body_b.shape_P, b.frame,
       near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
   for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
-  const std::uint64_t id = pair_id(body_a.id(), body_b.id());
-  const PairBefore* before = work.pair_before(id);
-  if (!must && !comes_into_contact(points, a, b, before, interval, scales) &&
+  if (!must && !comes_into_contact(points, a, b, before, reach, interval, scales) &&
       !is_ghost(points, a, b, distance))
     return;
 
-  ContactPair fresh{id, static_cast<std::uint32_t>(work.contacts.size()),
-                    static_cast<std::uint32_t>(points.size()), false};
+  ContactPair fresh{id,
+                    static_cast<std::uint32_t>(work.contacts.size()),
+                    static_cast<std::uint32_t>(points.size()),
+                    false,
+                    {}};
   for (const ManifoldPoint& p : points) work.contacts.push_back(new_contact(p, a, b, scales.law));
   if (before) {
     fresh.has_borne_load = before->pair->has_borne_load;
-    match_stretches(work, fresh, *before);
+    fresh.masses = before->pair->masses;
+    match_old(work, fresh, *before);
   }
   if (must) preload(work, fresh, a, b);
   work.pairs.push_back(fresh);
@@ -297,11 +324,12 @@ void carry(Regrouping& work, const PairBefore& old) {
   // between runs somebody may have set them anew
   const Scene& scene = work.scene();
   if (is_edit(work.key()) && !scene.may_collide(scene.body(pair.a()), scene.body(pair.b()))) return;
-  work.pairs.push_back(
-      {pair.id, static_cast<std::uint32_t>(work.contacts.size()), pair.count, pair.has_borne_load});
+  work.pairs.push_back({pair.id, static_cast<std::uint32_t>(work.contacts.size()), pair.count,
+                        pair.has_borne_load, pair.masses});
   each_contact(pair, [&](std::uint32_t c) {
     const ContactForce f = group.arc->contact_force(static_cast<int>(c), now);
-    NewContact contact{group.arc->start().contacts[c], group.tags[c], f.gap, f.normal, f.point};
+    const GroupContact& known = group.arc->start().contacts[c];
+    NewContact contact{known, group.tags[c], f.gap, f.normal, f.point, known.law};
     contact.contact.stretch = group.arc->stretch(static_cast<int>(c), now);
     work.contacts.push_back(contact);
   });

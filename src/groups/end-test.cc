@@ -107,7 +107,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
                  const ContactPair& pair) {
   const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
   PairOnArc along{group, pair, a, b, {}, {}};
-  const ContactScales scales = contact_scales(scene, a, b, group.masses);
+  const ContactScales scales = contact_scales(scene, a, b, pair.masses);
   const double allowed = answer::unseen_depth * scales.depth();
   const double travel = along.travel(), size = std::min(a.least_width, b.least_width);
   if (travel <= allowed) return group.next_check;

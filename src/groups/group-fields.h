@@ -17,6 +17,7 @@ void for_each_field(const Group& group, Visit&& visit) {
   visit("key of the group", motion, group.key);
   visit("members", motion, group.members);
   visit("birth", motion, group.birth);
+  visit("when it was placed", motion, group.placed_at);
   visit("next check", motion, group.next_check);
   std::vector<double> ends;
   for (std::uint32_t i = 0; i < group.members.size(); ++i) ends.push_back(group.end(i));
@@ -51,6 +52,7 @@ void each_word(const ContactPair& pair, Put&& put) {
   put(pair.id);
   put(std::uint64_t{pair.first} << 33 | std::uint64_t{pair.count} << 1 |
       std::uint64_t{pair.has_borne_load});
+  each_word(pair.masses, put);
 }
 template <class Put>
 void each_word(const ContactTag& tag, Put&& put) {
@@ -60,6 +62,7 @@ void each_word(const ContactTag& tag, Put&& put) {
 }
 template <class Put>
 void each_word(const GroupContact& contact, Put&& put) {
+  put(contact.offset);
   put(contact.share);
   each_word(contact.stretch, put);
 }

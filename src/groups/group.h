@@ -37,6 +37,7 @@ struct ContactPair {
   std::uint64_t id = 0;  // pair_id of the bodies
   std::uint32_t first = 0, count = 0;
   bool has_borne_load = false;  // since the two came together
+  MassRange masses;             // of all that hung together with them since: their law is for these
 
   BodyId a() const { return first_of(id); }
   BodyId b() const { return second_of(id); }
@@ -51,8 +52,9 @@ struct ContactTag {
 };
 
 struct Group : Counted<Group> {
-  Key key;           // of the discontinuity that made it
-  double birth = 0;  // when this set of members came together, s
+  Key key;                    // of the discontinuity that made it
+  double birth = 0;           // when this set of members came together, s
+  double placed_at = -never;  // when the last of them was put where it is, s (placed-loads.h)
   double next_check = never;
   bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
   bool at_rest = false;
@@ -88,6 +90,10 @@ struct Group : Counted<Group> {
   }
   // When its contacts are looked at for what holds at `when`: resting ones at their start alone.
   double contact_time(double when) const { return at_rest ? arc->start().time : when; }
+  // The gap up to which a contact presses, but for the law's own depth, m, >= 0.
+  double reach_of(std::uint32_t contact) const {
+    return std::max(arc->start().contacts[contact].offset, 0.0);
+  }
   ContactForce contact_at(std::uint32_t contact, double when) const {
     return arc->contact_force(static_cast<int>(contact), contact_time(when));
   }

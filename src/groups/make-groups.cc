@@ -9,6 +9,7 @@
 #include "groups/changes.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
+#include "groups/placed-loads.h"
 #include "groups/rest.h"
 #include "groups/share-stiffness.h"
 #include "groups/step-tolerances.h"
@@ -74,6 +75,20 @@ void start_members(const Regrouping& work, const Group& group, GroupStart& start
   start.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size, gravity);
 }
 
+// The law of a contact that stands becomes another one: its offset and its stretch go along so that
+// it presses and holds as it did.  For as long as two bodies are in contact their law gets stiffer
+// alone, and a stiffer spring has less energy at the same force.
+void change_law(NewContact& c, const ContactConstants& law) {
+  GroupContact& contact = c.contact;
+  contact.law = law;
+  if (!c.law_before) return;
+  const ContactConstants& was = *c.law_before;
+  if (was.k == law.k && was.hardening == law.hardening) return;
+  const double force = spring_force(was, contact.share, contact.offset - c.gap);
+  if (force > 0) contact.offset = spring_depth(law, contact.share, force) + c.gap;
+  if (law.kt > 0) contact.stretch *= was.kt / law.kt;
+}
+
 // Members, outside bodies and contacts as the integrator wants them.
 void start_arc(Regrouping& work, Group& group) {
   GroupStart start;
@@ -91,26 +106,33 @@ void start_arc(Regrouping& work, Group& group) {
     start.outside.push_back(outside_motion(work, id));
     return ~static_cast<int>(group.outside.size() - 1);
   };
+  std::vector<NewContact> contacts;
   for (ContactPair& pair : group.pairs) {
     const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
+    pair.masses.add(group.masses);
     const ContactConstants law = contact_scales(work.scene(), work.scene().body(pair.a()),
-                                                work.scene().body(pair.b()), group.masses)
+                                                work.scene().body(pair.b()), pair.masses)
                                      .law;
     each_contact(pair, [&](std::uint32_t c) {
-      NewContact& contact = work.contacts[c];
-      contact.contact.law = law;
+      // a copy: two groups may hold the pair
+      NewContact& contact = contacts.emplace_back(work.contacts[c]);
+      change_law(contact, law);
       contact.contact.a = index_of(contact.tag.reference);
       contact.contact.b = index_of(contact.tag.other);
       start.contacts.push_back(contact.contact);
       group.tags.push_back(contact.tag);
       group.gaps.push_back(contact.gap);
-      pair.has_borne_load = pair.has_borne_load || contact.gap < 0;
+      pair.has_borne_load = pair.has_borne_load || contact.gap < contact.reach();
     });
     pair.first = first;
   }
   // also what is in contact without a point is looked at along the arc (end-test.h)
   for (const ContactPair& pair : group.pairs)
     for (const BodyId id : {pair.a(), pair.b()}) index_of(id);
+  const auto has_struck = [&](std::size_t i) {
+    return group.contains(work.successors[i].process());
+  };
+  if (work.starts_loaded && (has_struck(0) || has_struck(1))) load_placed(work, start, contacts);
   group.arc = std::make_shared<GroupArc>(std::move(start));
 }
 
@@ -171,6 +193,8 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   const double border_end = take_pairs(work, *group);
   const Group* before = same_before(work, *group);
   set_check_times(work, before, border_end, *group);
+  for (const ProcessId member : members)
+    group->placed_at = std::max(group->placed_at, placed_at(work.before.state(member)));
 
   if (before && finds_contacts(work.cause)) group->first_step = before->arc->next_step();
   const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };

@@ -11,7 +11,9 @@
 namespace tw {
 namespace {
 
-bool touches(const NewContact& c) { return c.gap <= answer::touching * c.contact.law.depth; }
+bool touches(const NewContact& c) {
+  return c.gap <= c.reach() + answer::touching * c.contact.law.depth;
+}
 
 }  // namespace
 

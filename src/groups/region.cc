@@ -13,7 +13,7 @@ namespace {
 // Whether a contact pair carries a load at `when`.
 bool carries(const Group& owner, const ContactPair& pair, double when) {
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c)
-    if (owner.contact_at(c, when).gap <= 0) return true;
+    if (owner.contact_at(c, when).gap <= owner.reach_of(c)) return true;
   return false;
 }
 

@@ -8,6 +8,7 @@
 #include "groups/check-times.h"
 #include "groups/contact-graph.h"
 #include "groups/make-groups.h"
+#include "groups/placed-loads.h"
 #include "groups/propagation.h"
 
 namespace tw {
@@ -115,12 +116,14 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     if (successor.starts_arc()) insert(struck, successor.process());
 
   // the work list: the region grows until nobody beyond it would notice
-  Region region = region_of(before, struck, request.cause == Cause::edit);
+  const bool placed = request.cause == Cause::fusion && are_placed(before, struck);
+  Region region = region_of(before, struck, request.cause == Cause::edit || placed);
   for (;;) {
     if (!all_known(region, known)) return Waits{region};
     std::vector<Successor> successors = successors_of(region, before, given);
     Regrouping work(before, surroundings, request.cause, successors);
     work.reports_fissions = request.reports_fissions;
+    work.starts_loaded = placed;
     find_contacts(work, struck);
 
     // impulses that reach the border come first: then nothing is as it should be

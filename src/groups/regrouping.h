@@ -7,7 +7,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,6 +43,10 @@ struct NewContact {
   double gap = 0;               // m
   Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
   Vec3 point = Vec3::Zero();
+  std::optional<ContactConstants> law_before;  // none: the contact is new
+
+  // The gap up to which it presses, but for the law's own depth, m.
+  double reach() const { return std::max(contact.offset, 0.0); }
 };
 
 // A contact pair before the discontinuity, in the group that owns it.
@@ -55,6 +61,7 @@ struct Regrouping {
   const Surroundings& surroundings;
   Cause cause;
   bool reports_fissions = false;       // somebody wants to hear of them
+  bool starts_loaded = false;          // a fusion of what was placed touching
   std::vector<Successor>& successors;  // of all that take part
 
   Groups old;                            // whose members get new arcs, each once

@@ -147,7 +147,7 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
 
   // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2), or k (1 + cap) beyond the cap
   const Lanes zero = lanes(0), one = lanes(1);
-  const Lanes ratio = s.gap * pack.inverse_hardening, squared = ratio * ratio;
+  const Lanes ratio = s.depth * pack.inverse_hardening, squared = ratio * ratio;
   const Lanes slope = squared < lanes(answer::hardening_cap) ? one + lanes(3) * squared
                                                              : lanes(1 + answer::hardening_cap);
   const Lanes by_depth = s.N > zero ? pack.k * slope * (one - pack.damping * s.vn) : zero;

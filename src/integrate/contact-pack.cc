@@ -64,7 +64,7 @@ TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVe
 // N = max(0, k d (1 + min((d/dh)^2, cap)) (1 - b vn))
 TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
-  const Lanes depth = -o.gap, ratio = depth * pack.inverse_hardening;
+  const Lanes depth = o.depth = pack.offset - o.gap, ratio = depth * pack.inverse_hardening;
   const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
   const Lanes damped = one - pack.damping * o.vn;
   const LaneMask pressed = (depth > zero) & (damped > zero);
@@ -150,6 +150,7 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   set_lane(pack.point_b, lane, contact.point_b);
   pack.radius_a[lane] = contact.radius_a;
   pack.radius_b[lane] = contact.radius_b;
+  pack.offset[lane] = contact.offset;
   const ContactConstants& law = contact.law;
   pack.k[lane] = contact.share * law.k;
   pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
@@ -213,7 +214,7 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes zero = lanes(0), half = lanes(0.5), cap = lanes(answer::hardening_cap);
   // integral of k d (1 + min(r^2, cap)), r = d/dh: k d^2/2 (1 + r^2/2), beyond the cap
   // k d^2/2 (1 + cap) less what the cap cut off, k dh^2 cap^2/4
-  const Lanes depth = max(-state.gap, zero), ratio = depth * pack.inverse_hardening;
+  const Lanes depth = max(state.depth, zero), ratio = depth * pack.inverse_hardening;
   const Lanes squared = ratio * ratio;
   const Lanes over = cap * cap / max(squared, cap);
   const Lanes hard = squared < cap ? half * squared : cap - half * over;

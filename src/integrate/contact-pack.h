@@ -32,7 +32,7 @@ struct ContactPack {
   int contact[lane_count];                      // index in GroupStart::contacts
   int a[lane_count], b[lane_count];             // body slots
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
-  Lanes radius_a, radius_b;
+  Lanes radius_a, radius_b, offset;
   Lanes k, inverse_hardening, damping, mu, kt, ct;
 };
 
@@ -57,10 +57,10 @@ struct PackState {
   LaneVec n, l, ra, rb, sa, sb, wa, wb, vr, u, s;  // ra from the centre of a to the core point of b
   LaneVec arm;                                     // n = arm/|arm|, signed; point and line
   Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
-  Lanes gap, vn;
-  Lanes N, stiffness;          // stiffness = N/(1 - b vn)
-  LaneVec target;              // F* before the cut (anchored), u (smooth)
-  Lanes target_length, scale;  // F = scale target
+  Lanes gap, depth, vn;                            // depth = offset - gap
+  Lanes N, stiffness;                              // stiffness = N/(1 - b vn)
+  LaneVec target;                                  // F* before the cut (anchored), u (smooth)
+  Lanes target_length, scale;                      // F = scale target
   LaneMask slipping;
   LaneVec F, f, stretch_rate;  // the rate in a's frame
 };

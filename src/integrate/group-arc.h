@@ -73,7 +73,8 @@ struct GroupContact {
   Vec3 point_a = Vec3::Zero();  // a's frame: a point of the plane, of the line, or the core point
   Vec3 point_b = Vec3::Zero();  // b's frame
   double radius_a = 0, radius_b = 0;
-  double share = 1;  // of k, kt, ct
+  double offset = 0;  // m: the depth that presses is offset - gap
+  double share = 1;   // of k, kt, ct
   ContactConstants law;
   Vec3 stretch = Vec3::Zero();  // at the start, a's frame, tangential
 };

@@ -129,6 +129,7 @@ void Commit::commit_state(State& state) {
 
 void Commit::count(const State& state) {
   counters_.kinematic_work += state.tally.kinematic_work;
+  counters_.placed_energy += state.tally.placed_energy;
   counters_.max_penetration = std::max(counters_.max_penetration, state.tally.depth);
   // each ring is counted by its member with the least id
   const bool impact = state.key.kind == KeyKind::impact;

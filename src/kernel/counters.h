@@ -29,6 +29,7 @@ struct Counters : GroupCounters {
   std::uint64_t impulses_given_up = 0, declared_soft = 0;
   double momentum_dropped = 0;  // N s, at borders of regions
   double kinematic_work = 0;    // J, by kinematic bodies on dynamic ones
+  double placed_energy = 0;     // J, of contact springs that started loaded
   double max_penetration = 0;   // m, deepest overlap at impacts, in contacts and at frames
 
   // time of this thread, s

@@ -37,6 +37,8 @@ double total_energy(const Simulation& simulation, double when) {
     const PoseTwist p = point_at(simulation, body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * simulation.present.settings.gravity.dot(p.x);
   }
+  // what springs started with was given with the poses: it came from nowhere and counts for nothing
+  energy -= simulation.present.counters.placed_energy;
   return energy + elastic_energy(simulation.scene, states_at(simulation, when), when);
 }
 

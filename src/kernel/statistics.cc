@@ -117,6 +117,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"impacts_declared_soft", whole(counters.declared_soft)},
       {"momentum_dropped", counters.momentum_dropped},
       {"kinematic_work", kinematic_work},
+      {"placed_energy", counters.placed_energy},
       {"energy_start",
        counters.energy_known ? counters.energy_start : total_energy(simulation, present.time)},
       {"energy_end", total_energy(simulation, present.time)},

@@ -64,6 +64,7 @@ void each_word(const Tally& tally, Put&& put) {
   put(std::uint64_t{tally.impulses_given_up});
   put(std::uint64_t{tally.declared_soft});
   put(tally.kinematic_work);
+  put(tally.placed_energy);
   put(tally.momentum_dropped);
   put(tally.depth);
 }

@@ -14,6 +14,7 @@ struct Tally {
   // impact taken for a soft one because there were too many at its instant
   std::uint8_t impulses_given_up = 0, declared_soft = 0;
   double kinematic_work = 0;    // J, by impulses of kinematic bodies
+  double placed_energy = 0;     // J, of contact springs that started loaded
   double momentum_dropped = 0;  // N s, that bodies at the border of a region miss
   double depth = 0;             // m, of the deepest overlap at the points that touch
 
@@ -25,6 +26,7 @@ struct Tally {
     impulses_given_up = static_cast<std::uint8_t>(impulses_given_up + other.impulses_given_up);
     declared_soft = static_cast<std::uint8_t>(declared_soft + other.declared_soft);
     kinematic_work += other.kinematic_work;
+    placed_energy += other.placed_energy;
     momentum_dropped += other.momentum_dropped;
     depth = std::max(depth, other.depth);
   }

@@ -24,8 +24,8 @@ double gain_beyond_work(const World& world) {
          number_of(table, "kinematic_work");
 }
 
-// A box of 64 kg is carried up by 1 m and 0.5 m aside: m g h, and nothing beside but what the
-// contacts' springs took while the weight came on.
+// A box of 64 kg is carried up by 1 m and 0.5 m aside: m g h, and nothing beside.  The work is
+// known to 2e-5 of it.
 TEST(KinematicWork, of_a_lift_is_the_weight_times_the_way) {
   World world;
   set_contact_for_all(world, 0, 0.6);
@@ -36,8 +36,7 @@ TEST(KinematicWork, of_a_lift_is_the_weight_times_the_way) {
   EXPECT_NEAR(world.state(box).position.z(), 1.2, 1e-3);
   const double work = number_of(world.statistics(), "kinematic_work");
   EXPECT_NEAR(work, mg, 2e-4 * mg);
-  EXPECT_LE(gain_beyond_work(world), 1e-6 * mg);
-  EXPECT_GE(gain_beyond_work(world), -2e-4 * mg);
+  EXPECT_NEAR(gain_beyond_work(world), 0, 2e-5 * mg);
 }
 
 // A box put on a belt that runs at v is brought to v: half of the work is its kinetic energy, the
@@ -101,7 +100,8 @@ TEST(MaxPenetration, of_a_stack_is_the_depth_of_its_lowest_contact) {
   World world;
   set_contact_for_all(world, 0.2, 0.5);
   add_wall(world, Vec3::UnitZ(), 0);
-  for (int i = 0; i < 10; ++i) add_box(world, {1, 1, 1}, {0, 0, 0.5 + i});
+  // let down by 1e-5 m each: what is placed touching would not sink
+  for (int i = 0; i < 10; ++i) add_box(world, {1, 1, 1}, {0, 0, 0.5 + i + 1e-5 * (i + 1)});
   look_at_frames(world);
   Judge owner, at_rest;
   for (int i = 1; i <= 400; ++i) {

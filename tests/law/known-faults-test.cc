@@ -21,8 +21,8 @@ TEST(KnownFaults, a_heavy_cube_on_a_light_one_gains_energy) {
   EXPECT_KNOWN_FAULT(rise_of(heavy_blow_scene(1e3, 30)), sound, 7.4e-4);
 }
 
-TEST(KnownFaults, thin_rods_gain_energy) {
-  EXPECT_KNOWN_FAULT(rise_of(rod_scene(1000, 4)), sound, 5.4e-4);
+TEST(KnownFaults, thin_rods_gain_no_energy_any_more) {
+  EXPECT_LT(rise_of(rod_scene(1000, 4)), sound);
 }
 
 TEST(KnownFaults, that_get_worse_or_better_or_go_are_told) {

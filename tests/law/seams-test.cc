@@ -30,7 +30,8 @@ BodyState cross(int tiles, bool one_union, const ShapePtr& shape, double frictio
     floor.fixed = true;
     world.add_body(floor);
   }
-  const BodyId id = world.add_body(body_of(shape, {0, 0, 0.1}, {3, 0, 0}, spin));
+  // let down: what is placed touching and rolls starts loaded, and loses that at the first seam
+  const BodyId id = world.add_body(body_of(shape, {0, 0, 0.1 + 1e-5}, {3, 0, 0}, spin));
   world.advance(1);
   return world.state(id);
 }

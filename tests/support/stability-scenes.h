@@ -31,11 +31,12 @@ inline BodyId add_floor(World& world) {
 // ---- columns ----
 
 // `count` cubes of 0.2 m on top of each other; the top one weighs `ratio` times as much as the
-// others.
-inline void add_column(World& world, int count, double ratio) {
+// others.  Each is let down by `drop` more than what is below it, m: at 0 all is placed touching.
+inline void add_column(World& world, int count, double ratio, double drop = 0) {
   constexpr double edge = 0.2;
   for (int i = 0; i < count; ++i) {
-    BodyDef cube = body_of(make_box(Vec3::Constant(edge)), {0, 0, (i + 0.5) * edge}, Vec3::Zero());
+    const double height = (i + 0.5) * edge + (i + 1) * drop;
+    BodyDef cube = body_of(make_box(Vec3::Constant(edge)), {0, 0, height}, Vec3::Zero());
     cube.density = i == count - 1 ? 1000 * ratio : 1000;
     world.add_body(named(cube, "cube-" + std::to_string(i)));
   }
@@ -79,7 +80,7 @@ inline StabilityScene stiffness_scene(double stiffness, double duration) {
     settings.stiffness = stiffness;
     world.set_contact({}, {}, settings);
     add_floor(world);
-    add_column(world, 5, 1);
+    add_column(world, 5, 1, 1e-5);
   };
   return {"stiffness-" + show(stiffness), "5 cubes of 8 kg, stiffness " + show(stiffness) + " N/m",
           duration, true, fill};

@@ -52,5 +52,21 @@ TEST(ContactLaw, without_gravity_the_standard_one_stands_in) {
   EXPECT_EQ(zero.b, standard.b);
 }
 
+// To beyond where it hardens no more, ten hardening depths.
+TEST(ContactLaw, depth_of_a_force_is_the_inverse_of_the_force_and_the_energy_its_integral) {
+  ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
+  for (const double ratio : {1e-9, 0.01, 0.5, 1.0, 3.0, 9.9, 10.1, 40.0}) {
+    const double depth = ratio * c.hardening, step = 1e-5 * depth;
+    const double force = spring_force(c, 0.25, depth);
+    EXPECT_NEAR(spring_depth(c, 0.25, force), depth, 1e-14 * depth) << ratio;
+    const double slope =
+        (spring_energy(c, 0.25, depth + step) - spring_energy(c, 0.25, depth - step)) / (2 * step);
+    EXPECT_NEAR(slope, force, 1e-6 * force) << ratio;
+  }
+  EXPECT_EQ(spring_depth(c, 1, 0), 0);
+  EXPECT_EQ(spring_force(c, 1, -1e-3), 0);
+  EXPECT_EQ(spring_energy(c, 1, -1e-3), 0);
+}
+
 }  // namespace
 }  // namespace tw

@@ -37,7 +37,8 @@ struct CubeOnFloor : SmallScene {
 const double watch = 2 * std::sqrt(0.05 * std::sqrt(3.0) / 9.81);
 
 TEST(Rest, a_cube_that_settles_rests_after_the_watch) {
-  CubeOnFloor small(Vec3::Zero());
+  // too fast for one that was placed touching, whose contacts would be loaded
+  CubeOnFloor small({0, 0, -0.01});
   const double rested = small.run(5);
   EXPECT_TRUE(small.group_of(small.cube).at_rest);
   EXPECT_GE(rested, watch);

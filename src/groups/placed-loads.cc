@@ -1,0 +1,313 @@
+// Loads at the start.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/placed-loads.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "dynamics/impact-law.h"
+#include "integrate/body-matrix.h"
+
+namespace tw {
+namespace {
+
+using Mat36 = Eigen::Matrix<double, 3, 6>;
+
+// A contact that touches.  Rotations are counted as the way of the farthest point.
+struct Spring {
+  int a = -1, b = -1;  // members; -1: an outside body
+  Vec3 n = Vec3::UnitZ();
+  Mat36 Ja = Mat36::Zero(), Jb = Mat36::Zero();  // d = Ja u_a + Jb u_b
+  double k = 0, kt = 0, mu = 0;
+  std::size_t number = 0;  // of the contact
+  // at the present displacements, world frame, on b
+  Vec3 force = Vec3::Zero(), friction = Vec3::Zero();
+  Mat3 slope = Mat3::Zero();  // -df/dd
+  double load = 0;
+  bool slips = false;
+};
+
+class Balance {
+ public:
+  // `depth`: to which the softest contact carries its body, m.
+  Balance(const GroupStart& start, std::vector<Spring> springs, double depth, double gravity)
+      : start_(start),
+        springs_(std::move(springs)),
+        depth_(depth),
+        gravity_(gravity),
+        matrix_(members(), pairs()) {
+    const std::size_t count = start.members.size();
+    u_.assign(count, Vec6::Zero());
+    mass_.resize(count);
+    for (const GroupMember& m : start.members) {
+      Vec6 weight;
+      weight << m.force, m.torque / m.radius;
+      weight_.push_back(weight);
+    }
+  }
+
+  // False: no forces were found.
+  bool solve() { return at_once() || by_degrees(); }
+  const std::vector<Spring>& springs() const { return springs_; }
+  // Whether the contact begins to slide: not where others hold what slips a little.
+  bool slides(const Spring& s) const {
+    const Vec3 d = way(s, u_) - way(s, from_);
+    return s.slips && rate_ * (d - s.n.dot(d) * s.n).norm() > guard::balance_slide * gravity_;
+  }
+
+ private:
+  // All that touch hold and stick at first.
+  bool at_once() {
+    soften(guard::balance_softness);
+    for (int round = 0; round < guard::balance_rounds; ++round)
+      if (!settle(round == 0)) return false;
+    return true;
+  }
+
+  // Where Newton's steps do not find there: with inertia that gives way step by step.
+  bool by_degrees() {
+    std::fill(u_.begin(), u_.end(), Vec6::Zero());
+    for (double softness = 1; softness <= guard::balance_softness; softness *= 4) {
+      soften(softness);
+      if (!settle(softness == 1)) return false;
+    }
+    return true;
+  }
+
+  void soften(double softness) {
+    rate_ = gravity_ / (softness * depth_);
+    for (std::size_t i = 0; i < mass_.size(); ++i) {
+      const GroupMember& m = start_.members[i];
+      const Mat3 R = m.q.toRotationMatrix();
+      mass_[i].setZero();
+      mass_[i].topLeftCorner<3, 3>() = rate_ * m.mass * Mat3::Identity();
+      mass_[i].bottomRightCorner<3, 3>() =
+          rate_ / (m.radius * m.radius) * (R * m.moments.asDiagonal() * R.transpose());
+    }
+  }
+
+  int members() const { return static_cast<int>(start_.members.size()); }
+  std::vector<std::pair<int, int>> pairs() const {
+    std::vector<std::pair<int, int>> pairs;
+    for (const Spring& s : springs_)
+      if (s.a >= 0 && s.b >= 0) pairs.emplace_back(s.a, s.b);
+    return pairs;
+  }
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  static Vec3 way(const Spring& s, const std::vector<Vec6>& u) {
+    Vec3 d = Vec3::Zero();
+    if (s.a >= 0) d += s.Ja * u[at(s.a)];
+    if (s.b >= 0) d += s.Jb * u[at(s.b)];
+    return d;
+  }
+
+  void set_forces(bool all_hold) {
+    for (Spring& s : springs_) {
+      const Mat3 along = s.n * s.n.transpose(), across = Mat3::Identity() - along;
+      const Vec3 d = way(s, u_);
+      s.load = std::max(0.0, -s.k * s.n.dot(d));
+      const Vec3 wanted = -s.kt * (across * d);
+      const double length = wanted.norm(), limit = s.mu * s.load;
+      s.slips = !all_hold && s.load > 0 && length > limit;
+      if (all_hold || (s.load > 0 && !s.slips)) {
+        s.friction = wanted;
+        s.slope = s.k * along;
+        if (!all_hold || s.mu > 0) s.slope += s.kt * across;
+      } else if (s.load > 0) {
+        // F = mu N e
+        const Vec3 e = wanted / length;
+        s.friction = limit * e;
+        s.slope = s.k * along + s.mu * s.k * e * s.n.transpose() +
+                  limit * s.kt / length * (across - e * e.transpose());
+      } else {
+        s.friction = Vec3::Zero();
+        s.slope = Mat3::Zero();
+      }
+      s.force = s.load * s.n + s.friction;
+    }
+  }
+
+  // What is left over; its length in weights of the members, as the scale of gravity has them.
+  double set_residual() {
+    rest_ = weight_;
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] -= mass_[i] * (u_[i] - from_[i]);
+    for (const Spring& s : springs_) {
+      if (s.a >= 0) rest_[at(s.a)] += s.Ja.transpose() * s.force;
+      if (s.b >= 0) rest_[at(s.b)] += s.Jb.transpose() * s.force;
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < rest_.size(); ++i) {
+      const double weight = start_.members[i].mass * gravity_;
+      sum += rest_[i].squaredNorm() / (weight * weight);
+    }
+    return std::sqrt(sum);
+  }
+
+  void add_block(int row, int column, const Mat6& block) {
+    double* to = matrix_.at(matrix_.offset(row, column));
+    for (int c = 0; c < 6; ++c)
+      for (int r = 0; r < 6; ++r) to[6 * c + r] += block(r, c);
+  }
+
+  bool step() {
+    matrix_.clear();
+    for (int i = 0; i < members(); ++i) add_block(i, i, mass_[at(i)]);
+    for (const Spring& s : springs_) {
+      const Mat36* J[2] = {&s.Ja, &s.Jb};
+      const int body[2] = {s.a, s.b};
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 2; ++x)
+          if (body[y] >= 0 && body[x] >= 0)
+            add_block(body[y], body[x], J[y]->transpose() * s.slope * *J[x]);
+    }
+    right_.resize(6 * start_.members.size());
+    for (std::size_t i = 0; i < rest_.size(); ++i)
+      std::copy_n(rest_[i].data(), 6, right_.data() + 6 * i);
+    if (!matrix_.factor() || !matrix_.solve(right_.data())) return false;
+    return true;
+  }
+
+  void go(const std::vector<Vec6>& from, double share) {
+    for (std::size_t i = 0; i < u_.size(); ++i)
+      u_[i] = from[i] + share * Eigen::Map<const Vec6>(right_.data() + 6 * i);
+  }
+
+  // The displacements from `from_` on.  `anew`: from none, where all that touch hold and stick.
+  bool settle(bool anew) {
+    from_ = u_;
+    set_forces(anew);
+    double left = set_residual();
+    for (int i = 0; i < guard::balance_steps; ++i) {
+      if (!step()) return false;
+      // as far as less is left over
+      const std::vector<Vec6> here = u_;
+      const double before = anew && i == 0 ? never : left;
+      for (double share = 1; share >= guard::least_balance_step; share *= 0.5) {
+        go(here, share);
+        set_forces(false);
+        left = set_residual();
+        if (left < before) break;
+      }
+      if (left <= guard::balance_residual) return true;
+    }
+    return false;
+  }
+
+  const GroupStart& start_;
+  std::vector<Spring> springs_;
+  double depth_, gravity_, rate_ = 0;  // 1/tau^2
+  BodyMatrix matrix_;
+  std::vector<Mat6> mass_;
+  std::vector<Vec6> weight_, u_, from_, rest_;
+  std::vector<double> right_;
+};
+
+// How fast what was placed touching may be by the time the two meet, m/s.
+double placed_speed(const Scene& scene, double size) {
+  return std::sqrt(2 * answer::start_depth * size * scene.gravity_scale());
+}
+
+bool touches(const NewContact& c, double size) {
+  return c.gap <= c.reach() + answer::start_depth * size;
+}
+
+double smaller_size(const Scene& scene, const ContactTag& tag) {
+  return std::min(scene.body(tag.reference).least_width, scene.body(tag.other).least_width);
+}
+
+// Of the normal spring, and of the stretch as far as the cone holds it, J (pack_energy).
+double energy_of(const GroupContact& c, double gap) {
+  const double depth = c.offset - gap;
+  const double cone = c.law.mu * spring_force(c.law, c.share, depth), kt = c.share * c.law.kt;
+  const double normal = spring_energy(c.law, c.share, depth);
+  if (c.law.law != FrictionLaw::anchored || !(kt > 0)) return normal;
+  return normal + 0.5 * std::min(kt * c.stretch.squaredNorm(), cone * cone / kt);
+}
+
+Spring spring_of(const GroupStart& start, const NewContact& c, std::size_t number) {
+  const GroupContact& contact = start.contacts[number];
+  Spring s;
+  s.number = number;
+  s.n = c.normal;
+  s.k = contact.share * contact.law.k;
+  if (contact.law.law == FrictionLaw::anchored && contact.law.ct > 0) {
+    s.kt = contact.share * contact.law.kt;
+    s.mu = contact.law.mu;
+  }
+  const auto jacobian = [&](int member, double sign) {
+    const GroupMember& m = start.members[static_cast<std::size_t>(member)];
+    const Vec3 r = c.point - m.x;
+    Mat36 J;
+    J.leftCols<3>() = sign * Mat3::Identity();
+    // th x r = -[r]x th
+    J.rightCols<3>() = -sign / m.radius * cross_matrix(r);
+    return J;
+  };
+  if (contact.a >= 0) s.Ja = jacobian(s.a = contact.a, -1);
+  if (contact.b >= 0) s.Jb = jacobian(s.b = contact.b, 1);
+  return s;
+}
+
+}  // namespace
+
+double placed_at(const State& state) {
+  if (state.group) return state.group->placed_at;
+  const bool was_put = state.arc_key.kind == KeyKind::birth || is_edit(state.arc_key);
+  return was_put ? state.arc_time : -never;
+}
+
+bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
+  const Scene& scene = before.scene();
+  const double now = before.key().time;
+  std::size_t members = 0;
+  const Group* counted = nullptr;
+  bool placed = false;
+  for (const ProcessId process : struck) {
+    const State& state = before.state(process);
+    const Body& body = scene.body_of(process);
+    // the time to fall so far
+    const double speed = placed_speed(scene, body.least_width);
+    placed = placed || now - placed_at(state) <= speed / scene.gravity_scale();
+    if (!state.group || state.group.get() != counted)
+      members += state.group ? state.group->members.size() : 1;
+    counted = state.group.get();
+  }
+  return placed && members <= answer::most_placed;
+}
+
+void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewContact>& contacts) {
+  const Scene& scene = work.scene();
+  std::vector<Spring> springs;
+  double depth = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const NewContact& c = contacts[i];
+    const double size = smaller_size(scene, c.tag);
+    if (!touches(c, size)) continue;
+    const Vec3 relative = work.placed(c.tag.other).velocity_at(c.point) -
+                          work.placed(c.tag.reference).velocity_at(c.point);
+    if (relative.norm() > placed_speed(scene, size)) return;
+    depth = std::max(depth, start.contacts[i].law.depth);
+    springs.push_back(spring_of(start, c, i));
+  }
+  if (springs.empty()) return;
+  Balance balance(start, std::move(springs), depth, scene.gravity_scale());
+  if (!balance.solve()) return;
+
+  for (const Spring& s : balance.springs()) {
+    GroupContact& c = start.contacts[s.number];
+    const NewContact& looks = contacts[s.number];
+    work.tally.placed_energy -= energy_of(c, looks.gap);
+    c.offset =
+        s.load > 0 ? spring_depth(c.law, c.share, s.load) + looks.gap : std::min(looks.gap, 0.0);
+    c.stretch = Vec3::Zero();
+    if (s.kt > 0) {
+      const Vec3 stretch = (balance.slides(s) ? answer::preload_beyond : 1) / -s.kt * s.friction;
+      c.stretch = work.attitude(looks.tag.reference).conjugate() * stretch;
+    }
+    work.tally.placed_energy += energy_of(c, looks.gap);
+  }
+}
+
+}  // namespace tw
