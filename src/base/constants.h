@@ -32,8 +32,8 @@ inline constexpr double unequal_masses = 100;
 inline constexpr double most_unequal = 1000;
 // Of the small oscillation about the static depth; 0.3 to 0.7 serve.
 inline constexpr double damping_ratio = 0.5;
-// Depth beyond which a contact hardens no more, over its hardening depth.
-inline constexpr double hardening_cap = 100;
+// Depth beyond which a contact hardens no more, over its hardening depth; its square.
+inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
 // Smooth friction reaches three quarters of the cone at about this speed, m/s.
 inline constexpr double smooth_speed = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).

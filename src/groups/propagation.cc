@@ -13,6 +13,13 @@ namespace {
 
 bool touches(const NewContact& c) { return c.gap <= answer::touching * c.contact.law.depth; }
 
+// Beyond the depth where it hardens no more a spring bears any speed: it stops what comes within
+// sqrt(d0/g)/2000.  Impulses on a body that is squeezed there would go to and fro between the walls
+// without end, and leave it with a velocity that it does not have.
+double borne_speed(const NewContact& c, double slow) {
+  return -c.gap > answer::hardest_ratio * c.contact.law.hardening ? never : slow;
+}
+
 }  // namespace
 
 std::vector<ProcessId> propagate_impulses(Regrouping& work) {
@@ -39,7 +46,7 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
                           c.point,
                           0,
                           c.contact.law.mu,
-                          slow};
+                          borne_speed(c, slow)};
   };
 
   std::vector<ImpulseContact> touching_now;
