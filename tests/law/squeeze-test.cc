@@ -25,18 +25,19 @@ struct Press {
   World world;
   BodyId body, wall;
 
-  Press(const ShapePtr& shape, double least = gap, double back = 0.5) {
+  explicit Press(const ShapePtr& shape, double least = gap, double back = 0.5,
+                 double thickness = 0.2) {
     set_contact_for_all(world, 0.3, 0.5);
     add_wall(world, Vec3::UnitZ(), 0);
     BodyDef fixed;
-    fixed.shape = make_box({0.2, 2, 2});
-    fixed.position = {-0.1, 0, 0};
+    fixed.shape = make_box({thickness, 2, 2});
+    fixed.position = {-0.5 * thickness, 0, 0};
     fixed.fixed = true;
     world.add_body(fixed);
     body = world.add_body(body_of(shape, {0.11, 0, 0.1}, Vec3::Zero()));
     BodyDef moving;
     moving.shape = fixed.shape;
-    const Vec3 far(0.5, 0, 0), near(least + 0.1, 0, 0);
+    const Vec3 far(0.4 + 0.5 * thickness, 0, 0), near(least + 0.5 * thickness, 0, 0);
     moving.motion =
         make_keyframes({{0, far, {}}, {1, near, {}}, {2, near, {}}, {2 + back, far, {}}}, true);
     wall = world.add_body(moving);
@@ -110,6 +111,18 @@ TEST(Squeeze, what_nothing_holds_any_more_comes_out_at_the_depth_over_its_time) 
     EXPECT_NEAR(press.speed(), expected, 0.1 * expected) << kind.name;
     press.world.advance(2 + 2 * time_of_return());
     EXPECT_GT(press.x(), 0.5 * width - 0.01 * width) << kind.name;
+  }
+}
+
+// The shortest way out of either wall, 0.05 m thick, is on its far side then.
+TEST(Squeeze, between_thin_walls_that_change_places_it_stays_between_their_faces) {
+  for (const Squeezed& kind : shapes()) {
+    Press press(kind.shape, -0.1, 0.5, 0.05);
+    press.world.advance(1.9);
+    EXPECT_NEAR(press.x(), -0.05, 5e-3) << kind.name;
+    press.world.advance(3);
+    EXPECT_GT(press.x(), 0.5 * width - 1e-3) << kind.name;
+    EXPECT_LT(press.x(), 0.4) << kind.name;
   }
 }
 
