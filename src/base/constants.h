@@ -58,6 +58,9 @@ inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 inline constexpr double depth_slack = 1e-12;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
+// A body is squeezed from this overlap on either side on, over its least width: heaps stay below a
+// tenth of it.
+inline constexpr double squeezed_share = 0.02;
 
 // ---- motion by a procedure ----
 // It is sampled in spans of this length on a grid from time 0, s: so far ahead of what is asked it

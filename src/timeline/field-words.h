@@ -65,6 +65,9 @@ void each_word(const Tally& tally, Put&& put) {
   put(tally.kinematic_work);
   put(tally.momentum_dropped);
   put(tally.depth);
+  put(std::uint64_t{tally.squeezed});
+  put(tally.squeezed_depth);
+  put(tally.squeezed_share);
 }
 template <class Put>
 void each_word(const Collision& c, Put&& put) {
@@ -75,6 +78,8 @@ void each_word(const Collision& c, Put&& put) {
   each_word(c.normal, put);
   put(c.speed);
   put(c.impulse);
+  put(std::uint64_t{c.squeezed});
+  put(c.depth);
 }
 // Rows: their length first.
 template <class T, class Put>
