@@ -54,6 +54,10 @@ void each_word(const std::exception_ptr& error, Put&& put) {
 template <class Put>
 void each_word(const ImpactRun& run, Put&& put) {
   put(std::uint64_t{run.count});
+  put(std::uint64_t{run.wall});
+  put(std::uint64_t{run.strikes});
+  put(run.wall_time);
+  put(run.wall_speed);
   put(run.last_time);
 }
 template <class Put>

@@ -36,6 +36,11 @@ struct Group;
 struct ImpactRun {
   std::uint32_t count = 0;
   double last_time = -never;
+  // those of a kinematic body at one instant, the last ones: whose, how many, when, and how fast
+  // they approached, m/s
+  BodyId wall = 0;
+  std::uint32_t strikes = 0;
+  double wall_time = -never, wall_speed = 0;
 };
 
 // All of a state but its place in the graph.  What every prediction reads stands last, beside the

@@ -126,6 +126,25 @@ TEST(Squeeze, between_thin_walls_that_change_places_it_stays_between_their_faces
   }
 }
 
+// A plate comes down on what lies on the floor: what it strikes it strikes again at once, as fast.
+TEST(Squeeze, what_a_plate_pins_to_the_floor_is_a_contact_at_once) {
+  for (const Squeezed& kind : shapes()) {
+    World world;
+    set_contact_for_all(world, 0.3, 0.5);
+    add_wall(world, Vec3::UnitZ(), 0);
+    const BodyId body = world.add_body(body_of(kind.shape, {0, 0, 0.5 * width}, Vec3::Zero()));
+    BodyDef plate;
+    plate.shape = make_box({1, 1, 0.2});
+    plate.motion = make_keyframes({{0, {0, 0, 0.6}, {}}, {1, {0, 0, 0.2}, {}}}, false);
+    world.add_body(plate);
+    world.advance(1.5);
+    EXPECT_NEAR(world.state(body).position.z(), 0.25 * width, 1e-3) << kind.name;
+    const auto table = world.statistics();
+    EXPECT_LT(count_of(table, "collisions"), 100) << kind.name;
+    EXPECT_EQ(count_of(table, "impacts_declared_soft"), 0) << kind.name;
+  }
+}
+
 // Nowhere at all to go: the walls' faces meet and pass each other, in walls as thick as the body.
 TEST(Squeeze, between_walls_that_meet_it_stays_in_the_middle_and_comes_back) {
   for (const Squeezed& kind : shapes())
