@@ -163,9 +163,9 @@ inline constexpr double touch_per_accuracy = 0.1;
 // ever shorter intervals.
 inline constexpr std::uint32_t soft_run = 8;
 inline constexpr double free_run_share = 1e-2;
-// A body that a kinematic one strikes more often than this at one instant, each time at no less than
-// this share of the speed before, is pinned: a contact.  A wall that strikes the first of a row of
-// balls that touch strikes it once for each of them.
+// A body that a kinematic one strikes more often than this at one instant, each time at no less
+// than this share of the speed before, is pinned: a contact.  A wall that strikes the first of a
+// row of balls that touch strikes it once for each of them.
 inline constexpr std::uint32_t pinned_strikes = 32;
 inline constexpr double undiminished = 0.99;
 

@@ -191,9 +191,9 @@ bool is_ghost(const std::vector<ManifoldPoint>& points, const PlacedBody& a, con
   return std::none_of(points.begin(), points.end(), touches);
 }
 
-// Whether two parts were pushed so far into each other that the shortest way out is now on the other
-// side: as that of a body whose middle has passed the middle of a wall.  Convex ones that were not
-// meet from one side alone.
+// Whether two parts were pushed so far into each other that the shortest way out is now on the
+// other side: as that of a body whose middle has passed the middle of a wall.  Convex ones that
+// were not meet from one side alone.
 bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefore& before_it,
                        const PlacedBody& a, const ContactConstants& law, double now) {
   const auto deepest = std::min_element(points.begin(), points.end(),

@@ -40,13 +40,8 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   };
   const auto impulse_contact = [&](const NewContact& c) {
     const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
-    return ImpulseContact{slot_of(c.tag.reference),
-                          slot_of(c.tag.other),
-                          c.normal,
-                          c.point,
-                          0,
-                          c.contact.law.mu,
-                          borne_speed(c, slow)};
+    return ImpulseContact{slot_of(c.tag.reference), slot_of(c.tag.other), c.normal, c.point, 0,
+                          c.contact.law.mu,         borne_speed(c, slow)};
   };
 
   std::vector<ImpulseContact> touching_now;

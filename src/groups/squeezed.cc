@@ -46,9 +46,9 @@ class Pushes {
   }
   bool empty() const { return all_.empty(); }
   std::span<const Push> on(BodyId body) const {
-    const auto [first, last] = std::equal_range(
-        all_.begin(), all_.end(), Push{body},
-        [](const Push& x, const Push& y) { return x.body < y.body; });
+    const auto [first, last] =
+        std::equal_range(all_.begin(), all_.end(), Push{body},
+                         [](const Push& x, const Push& y) { return x.body < y.body; });
     return {first, last};
   }
   // The deepest two, each as deep as `least`, that push it against each other, `held` on both

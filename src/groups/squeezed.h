@@ -4,8 +4,8 @@
 // against each other (their forces are more than 120 degrees apart), and behind each stands what
 // does not give way: a fixed or kinematic body, or a dynamic one that is itself pushed along from
 // behind, and so on to a fixed or kinematic one, without the squeezed body in between.  So a body
-// at the bottom of a stack is not squeezed, however heavy the stack is.  It is squeezed until no two
-// contacts at half that depth push it so.
+// at the bottom of a stack is not squeezed, however heavy the stack is.  It is squeezed until no
+// two contacts at half that depth push it so.
 //
 // Asked at each discontinuity of its group, of the poses and contacts there: a function of what is
 // committed.

@@ -19,8 +19,8 @@ constexpr double depth = 0.5 * (width - gap);  // on either side
 
 double time_of_return() { return 20 * std::sqrt(2.5e-4 * width / g); }
 
-// A wall stands with its face at 0; another, `thickness` thick, comes down to `least` from the first
-// in [0, 1], stays until 2, and goes back in `back` seconds.
+// A wall stands with its face at 0; another, `thickness` thick, comes down to `least` from the
+// first in [0, 1], stays until 2, and goes back in `back` seconds.
 struct Press {
   World world;
   BodyId body, wall;
