@@ -8,10 +8,12 @@
   #:use-module (timewarp bodies)
   #:use-module (timewarp purity)
   #:use-module (ice-9 match)
+  #:use-module ((srfi srfi-1) #:select (first second third fourth fifth))
   #:export (add-callback! on-collision! observe!
             collision? collision-time collision-point collision-normal collision-speed
             collision-impulse collision-bodies
-            frame-time frame-index frame-views))
+            frame-time frame-index frame-views
+            squeezed-time squeezed-body squeezed-between squeezed-depth squeezed-share))
 
 (define-keyword-procedure (add-callback! targets procedure #:key start period)
   "Call PROCEDURE with the time and a view of each of TARGETS, a body or a list of bodies, at start
@@ -30,17 +32,21 @@ B; each is a body, a material, or #t for all.  It may run again after a rollback
 
 (define (observe! kind procedure)
   "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,
-'fission (with the collision) or 'frame (with the frame)."
+'fission (with the collision), 'frame (with the frame) or 'squeezed (with the squeezing: a body
+that has nowhere to go, once each time that it begins).  A body is squeezed when two contacts push
+it against each other, each deeper than 2 % of its least width, and what does not give way stands
+behind both; until none is deeper than 1 %."
   (%require-outside-callbacks "observe!")
   (let ((world (current-world))
         (place (caller-place)))
     (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))
     (match kind
-      ((or 'collision 'fusion 'fission) (%observe-collisions! world kind procedure place))
+      ((or 'collision 'fusion 'fission 'squeezed)
+       (%observe-collisions! world kind procedure place))
       ('frame
        (at-first-run! world (lambda ()
                               (%observe-frames! world procedure (world-fps world) place))))
-      (_ (bad-value "what to observe" kind "'collision, 'fusion, 'fission or 'frame")))
+      (_ (bad-value "what to observe" kind "'collision, 'fusion, 'fission, 'frame or 'squeezed")))
     (if #f #f)))
 
 ;; ---- collisions ----
@@ -91,3 +97,31 @@ B; each is a body, a material, or #t for all.  It may run again after a rollback
 (define (frame-views frame)
   "Return a list of views of all moving bodies in FRAME, which only look."
   (frame-part frame caddr))
+
+;; ---- squeezings ----
+
+(define (squeezed-part squeezing part)
+  (match squeezing
+    (((? real?) (? body?) ((? body?) (? body?)) (? real?) (? real?)) (part squeezing))
+    (_ (bad-value "the squeezing" squeezing "what an observer of 'squeezed is handed"))))
+
+(define (squeezed-time squeezing)
+  "Return the time from which the body of SQUEEZING is squeezed, s."
+  (squeezed-part squeezing first))
+
+(define (squeezed-body squeezing)
+  "Return the body that has nowhere to go in SQUEEZING."
+  (squeezed-part squeezing second))
+
+(define (squeezed-between squeezing)
+  "Return the list of the two bodies that push the body of SQUEEZING against each other; one body
+may do both."
+  (squeezed-part squeezing third))
+
+(define (squeezed-depth squeezing)
+  "Return the deeper one of the two overlaps of SQUEEZING at its time, m."
+  (squeezed-part squeezing fourth))
+
+(define (squeezed-share squeezing)
+  "Return the deeper overlap of SQUEEZING at its time as a share of the body's least width."
+  (squeezed-part squeezing fifth))

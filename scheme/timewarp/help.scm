@@ -28,7 +28,8 @@
      add-callback! on-collision! collision-time collision-point collision-normal
      collision-speed collision-impulse collision-bodies collision?)
     ("Observers" "procedures that look at what is final, once and in order"
-     observe! frame-time frame-index frame-views)
+     observe! frame-time frame-index frame-views squeezed-time squeezed-body squeezed-between
+     squeezed-depth squeezed-share)
     ("Running" "Ctrl-C interrupts; the world stays usable"
      run! run-for! step! simulate! checkpoint restore! statistics show-statistics state-queue
      total-energy total-momentum)

@@ -32,8 +32,8 @@ inline constexpr double unequal_masses = 100;
 inline constexpr double most_unequal = 1000;
 // Of the small oscillation about the static depth; 0.3 to 0.7 serve.
 inline constexpr double damping_ratio = 0.5;
-// Depth beyond which a contact hardens no more, over its hardening depth.
-inline constexpr double hardening_cap = 100;
+// Depth beyond which a contact hardens no more, over its hardening depth; its square.
+inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
 // Smooth friction reaches three quarters of the cone at about this speed, m/s.
 inline constexpr double smooth_speed = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
@@ -61,6 +61,9 @@ inline constexpr double start_depth = 1e-6;
 // What is placed touching starts loaded in groups of at most so many members: forces are found anew
 // with each that joins.
 inline constexpr std::size_t most_placed = 256;
+// A body is squeezed from this overlap on either side on, over its least width: heaps stay below a
+// tenth of it.
+inline constexpr double squeezed_share = 0.02;
 
 // ---- motion by a procedure ----
 // It is sampled in spans of this length on a grid from time 0, s: so far ahead of what is asked it
@@ -166,6 +169,11 @@ inline constexpr double touch_per_accuracy = 0.1;
 // ever shorter intervals.
 inline constexpr std::uint32_t soft_run = 8;
 inline constexpr double free_run_share = 1e-2;
+// A body that a kinematic one strikes more often than this at one instant, each time at no less
+// than this share of the speed before, is pinned: a contact.  A wall that strikes the first of a
+// row of balls that touch strikes it once for each of them.
+inline constexpr std::uint32_t pinned_strikes = 32;
+inline constexpr double undiminished = 0.99;
 
 }  // namespace tw::answer
 

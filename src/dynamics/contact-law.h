@@ -1,9 +1,12 @@
 // The law of persistent contact: normal force and friction at one contact point.
 //
-//   N  = max(0, k d (1 + min((d/dh)^2, 100)) (1 + b d'))      Hunt-Crossley, hardening
+//   N  = max(0, k d (1 + min((d/dh)^2, 100)) (1 + b e d'))    Hunt-Crossley, hardening
+//   e  = min(1, 10 dh/d)
 // with d the depth (m, negative: apart) and d' its rate.  The depth is that of the overlap, or,
-// where what was placed touching starts loaded, more by the contact's offset.  `anchored` friction
-// carries a tangential stretch xi, in the frame of the reference body:
+// where what was placed touching starts loaded, more by the contact's offset.  Beyond 10 dh it is a
+// spring beside a damper, N = 101 k (d + tau d') with tau = 10 dh b, and lets a depth go at d/tau
+// at most.  `anchored` friction carries a tangential stretch xi, in the frame of the reference
+// body:
 //   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).

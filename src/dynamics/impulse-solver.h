@@ -56,7 +56,7 @@ struct ImpulseContact {
   Vec3 normal = Vec3::UnitZ();  // unit, from a to b
   Vec3 point = Vec3::Zero();    // m
   double restitution = 0, friction = 0;
-  double bears = 0;  // m/s: an approach up to this needs no impulse
+  double bears = 0;  // m/s: an approach up to this needs no impulse; may be infinite
 };
 
 // How a solution ended.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "groups/components.h"
+#include "groups/squeezed.h"
 
 namespace tw {
 namespace {
@@ -61,8 +62,14 @@ void count_fissions(Regrouping& work, const std::vector<bool>& held) {
 }
 
 void note_changes(Regrouping& work) {
+  note_squeezed(work);
+  const auto is_squeezed = [&](BodyId id) {
+    const Successor* successor = work.successor_of(id);
+    return successor && successor->data.squeezed_since < never;
+  };
   for (const ContactPair& pair : work.pairs)
-    each_contact(pair, [&](std::uint32_t c) { work.tally.note_gap(work.contacts[c].gap); });
+    if (!is_squeezed(pair.a()) && !is_squeezed(pair.b()))
+      each_contact(pair, [&](std::uint32_t c) { work.tally.note_gap(work.contacts[c].gap); });
   bool changed = false;
   std::size_t lasting = 0;
   for (const PairBefore& old : work.pairs_before) {

@@ -10,8 +10,8 @@ namespace tw {
 // something.
 void count_fissions(Regrouping& work, const std::vector<bool>& held);
 
-// Which pairs went, which came: counted, and reported as fissions where bodies parted; and how deep
-// they are.  After count_fissions.
+// Which pairs went, which came: counted, and reported as fissions where bodies parted; who is
+// squeezed; and how deep the others are.  After count_fissions.
 void note_changes(Regrouping& work);
 
 // Puts the tally and the report on the first state that enters the graph: once all is decided.

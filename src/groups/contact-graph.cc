@@ -210,6 +210,29 @@ bool is_ghost(const std::vector<ManifoldPoint>& points, const PlacedBody& a, con
   return std::none_of(points.begin(), points.end(), touches);
 }
 
+// Whether two parts were pushed so far into each other that the shortest way out is now on the
+// other side: as that of a body whose middle has passed the middle of a wall.  Convex ones that
+// were not meet from one side alone.
+bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefore& before_it,
+                       const PlacedBody& a, const ContactConstants& law, double now) {
+  const auto deepest = std::min_element(points.begin(), points.end(),
+                                        [](const auto& x, const auto& y) { return x.gap < y.gap; });
+  if (deepest == points.end() || -deepest->gap < answer::hardest_ratio * law.hardening)
+    return false;
+  const Group& group = *before_it.owner;
+  double depth = 0;
+  Vec3 before = Vec3::Zero();  // from a to b, at the deepest
+  each_contact(*before_it.pair, [&](std::uint32_t c) {
+    if (group.tags[c].parts != deepest->pair) return;
+    const ContactForce f = group.contact_at(c, now);
+    if (-f.gap <= depth) return;
+    depth = -f.gap;
+    before = group.tags[c].reference == a.body->id() ? f.normal : Vec3(-f.normal);
+  });
+  const Vec3 fresh = deepest->reference_is_a ? deepest->normal : Vec3(-deepest->normal);
+  return before.dot(fresh) < -0.5;
+}
+
 // Adds the pair if it touches or may touch before the next check; `must`: in any case.  `ground`:
 // the fixed bodies around the one that moves.
 void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
@@ -241,6 +264,9 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
       *body_a.shape_P, a.frame, near.seam_neighbours(body_a, ground), *body_b.shape_P, b.frame,
       near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
   for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
+  // it stays on the side that it came from
+  if (before && is_pushed_through(points, *before, a, scales.law, work.now()))
+    return carry(work, *before);
   if (!must && !comes_into_contact(points, a, b, before, reach, interval, scales) &&
       !is_ghost(points, a, b, distance))
     return;

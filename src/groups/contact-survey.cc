@@ -87,7 +87,7 @@ double deepest_contact(const Scene& scene, const StateOf& state_of, double when)
   for (const auto& body : scene.bodies) {
     if (!body->dynamic()) continue;
     const State& state = state_of(body->id());
-    if (!state.group || state.group->at_rest) continue;
+    if (!state.group || state.group->at_rest || state.squeezed_since < never) continue;
     const Group& group = *state.group;
     for (const std::uint32_t number : group.pairs_of(state.member)) {
       const ContactPair& pair = group.pairs[number];
@@ -96,6 +96,7 @@ double deepest_contact(const Scene& scene, const StateOf& state_of, double when)
       if (other < body->id() && group.contains(scene.process_of(other)) &&
           state_of(other).group.get() == &group)
         continue;
+      if (scene.body(other).dynamic() && state_of(other).squeezed_since < never) continue;
       each_contact(
           pair, [&](std::uint32_t c) { depth = std::max(depth, -group.contact_at(c, when).gap); });
     }

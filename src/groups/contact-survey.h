@@ -37,7 +37,7 @@ ContactSurvey survey_contacts(const Scene& scene, const StateOf& state_of, doubl
 double elastic_energy(const Scene& scene, const StateOf& state_of, double when);
 
 // The deepest contact of moving groups, m >= 0: what rests is as deep as it was when it came to
-// rest.
+// rest, and what is squeezed is told by itself.
 double deepest_contact(const Scene& scene, const StateOf& state_of, double when);
 
 // The work that kinematic bodies do through contacts on the body of `state`, from the start of its

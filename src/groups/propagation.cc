@@ -15,6 +15,13 @@ bool touches(const NewContact& c) {
   return c.gap <= c.reach() + answer::touching * c.contact.law.depth;
 }
 
+// Beyond the depth where it hardens no more a spring bears any speed: it stops what comes within
+// sqrt(d0/g)/2000.  Impulses on a body that is squeezed there would go to and fro between the walls
+// without end, and leave it with a velocity that it does not have.
+double borne_speed(const NewContact& c, double slow) {
+  return -c.gap > answer::hardest_ratio * c.contact.law.hardening ? never : slow;
+}
+
 }  // namespace
 
 std::vector<ProcessId> propagate_impulses(Regrouping& work) {
@@ -35,13 +42,8 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   };
   const auto impulse_contact = [&](const NewContact& c) {
     const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
-    return ImpulseContact{slot_of(c.tag.reference),
-                          slot_of(c.tag.other),
-                          c.normal,
-                          c.point,
-                          0,
-                          c.contact.law.mu,
-                          slow};
+    return ImpulseContact{slot_of(c.tag.reference), slot_of(c.tag.other), c.normal, c.point, 0,
+                          c.contact.law.mu,         borne_speed(c, slow)};
   };
 
   std::vector<ImpulseContact> touching_now;

@@ -145,13 +145,15 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
     set_smooth(pack, s, o);
   o.vbend = dot(o.n, o.bend);
 
-  // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2), or k (1 + cap) beyond the cap
+  // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2); beyond the cap K b is constant
+  // and dN/dd = K' = k (1 + cap)
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes ratio = s.depth * pack.inverse_hardening, squared = ratio * ratio;
-  const Lanes slope = squared < lanes(answer::hardening_cap) ? one + lanes(3) * squared
-                                                             : lanes(1 + answer::hardening_cap);
-  const Lanes by_depth = s.N > zero ? pack.k * slope * (one - pack.damping * s.vn) : zero;
-  o.kb = s.stiffness * pack.damping;
+  const Lanes slope = squared < lanes(answer::hardening_cap)
+                          ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
+                          : lanes(1 + answer::hardening_cap);
+  const Lanes by_depth = s.N > zero ? pack.k * slope : zero;
+  o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
   if (pack.feature != ContactFeature::plane) o.g = o.g - o.kb * turn_normal(pack, o, o.vr);
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;

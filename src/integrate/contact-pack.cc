@@ -61,12 +61,14 @@ TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVe
   o.gap = sign * length - pack.radius_a - pack.radius_b;
 }
 
-// N = max(0, k d (1 + min((d/dh)^2, cap)) (1 - b vn))
+// N = max(0, k d (1 + min((d/dh)^2, cap)) (1 - b vn)), b less beyond the cap
 TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes depth = o.depth = pack.offset - o.gap, ratio = depth * pack.inverse_hardening;
   const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
-  const Lanes damped = one - pack.damping * o.vn;
+  const Lanes ease = min(one, lanes(answer::hardest_ratio) / max(ratio, lanes(1e-300)));
+  o.damping = ease * pack.damping;
+  const Lanes damped = one - o.damping * o.vn;
   const LaneMask pressed = (depth > zero) & (damped > zero);
   o.stiffness = pressed ? pack.k * depth * hard : zero;
   o.N = o.stiffness * damped;

@@ -58,6 +58,7 @@ struct PackState {
   LaneVec arm;                                     // n = arm/|arm|, signed; point and line
   Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
   Lanes gap, depth, vn;                            // depth = offset - gap
+  Lanes damping;                                   // b at this depth
   Lanes N, stiffness;                              // stiffness = N/(1 - b vn)
   LaneVec target;                                  // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;                      // F = scale target

@@ -131,6 +131,9 @@ void Commit::count(const State& state) {
   counters_.kinematic_work += state.tally.kinematic_work;
   counters_.placed_energy += state.tally.placed_energy;
   counters_.max_penetration = std::max(counters_.max_penetration, state.tally.depth);
+  counters_.squeezed += state.tally.squeezed;
+  counters_.squeezed_depth = std::max(counters_.squeezed_depth, state.tally.squeezed_depth);
+  counters_.squeezed_share = std::max(counters_.squeezed_share, state.tally.squeezed_share);
   // each ring is counted by its member with the least id
   const bool impact = state.key.kind == KeyKind::impact;
   const bool call = state.key.kind == KeyKind::callback && state.changed;

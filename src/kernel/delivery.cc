@@ -40,8 +40,8 @@ void Delivery::remove_sink(const FrameSink* sink) {
 }
 
 void Delivery::note(const std::shared_ptr<const Report>& report) {
-  if (observers_.empty()) return;
-  for (const Collision& told : *report) undelivered_.emplace_back(report, &told);
+  for (const Collision& told : *report)
+    if (observed(told.kind)) undelivered_.emplace_back(report, &told);
 }
 
 // What one discontinuity tells has one key: in the order told.

@@ -54,9 +54,12 @@ bool simple(const Body& body) { return body.sphere_radius >= 0 || body.is_fixed_
 
 // The run of impacts after one more at `now`; impacts at one instant count once.
 ImpactRun continued(const ImpactRun& run, BodyId partner, double now, double tau) {
-  if (now == run.last_time) return {run.count, now, partner};
-  if (now - run.last_time < tau) return {run.count + 1, now, partner};
-  return {0, now, partner};
+  ImpactRun next = run;
+  next.partner = partner;
+  if (now == run.last_time) return next;
+  next.count = now - run.last_time < tau ? run.count + 1 : 0;
+  next.last_time = now;
+  return next;
 }
 
 // Where the two touch.
@@ -117,6 +120,22 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   return found.empty();
 }
 
+// Whether a kinematic body has struck another again and again at this instant, as fast as at first:
+// it has it against something that does not give way, and would strike it for ever.  Notes this
+// strike.
+bool is_pinned(const Key& key, double fastest, Successor& a, Successor& b) {
+  const Successor* wall = a.body->kinematic() ? &a : b.body->kinematic() ? &b : nullptr;
+  if (!wall) return false;
+  ImpactRun& run = (wall == &a ? b : a).data.impacts;
+  const bool again = run.wall == wall->body->id() && run.wall_time == key.time &&
+                     fastest >= answer::undiminished * run.wall_speed;
+  run.strikes = again ? run.strikes + 1 : 1;
+  run.wall = wall->body->id();
+  run.wall_time = key.time;
+  run.wall_speed = fastest;
+  return run.strikes > answer::pinned_strikes;
+}
+
 // Slow and pressed together, or a quick run of impacts: counts this one.  `fastest`: approach, m/s.
 bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fastest, Successor& a,
              Successor& b) {
@@ -126,6 +145,7 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
       contact_scales(scene, *a.body, *b.body, {std::min(mass_a, mass_b), std::max(mass_a, mass_b)});
   const double slow = scales.fusion_speed;
   if (key.microstep > 1 && fastest <= guard::grazing * slow) return true;
+  if (is_pinned(key, fastest, a, b)) return true;
   if (key.microstep > guard::most_repeated) {
     (a.enters() ? a : b).data.tally.declared_soft = 1;
     return true;

@@ -125,6 +125,13 @@ std::optional<double> next_time(SCM result) {
   return scm_to_double(result);
 }
 
+// (time body (a b) depth share)
+SCM from_squeezing(const Collision& told, SCM world) {
+  return scm_list_5(scm_from_double(told.time), from_body(world, told.squeezed),
+                    scm_list_2(from_body(world, told.body1), from_body(world, told.body2)),
+                    scm_from_double(told.depth), scm_from_double(told.depth_share));
+}
+
 // When a callback that names no start is called first: at once, which is just after the present
 // where the present is committed already.
 double default_start(const World& world) {
@@ -208,18 +215,23 @@ TW_PRIMITIVE(add_collision_callback, "%on-collision!",
 
 TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
              (SCM world, SCM kind, SCM procedure, SCM place),
-             "Call a procedure with every committed collision, fusion or fission.") {
+             "Call a procedure with every committed collision, fusion, fission or squeezing.") {
   const std::string name = to_symbol_name(kind, "what to observe");
-  const CollisionKind wanted = name == "fusion"    ? CollisionKind::fusion
-                               : name == "fission" ? CollisionKind::fission
-                                                   : CollisionKind::collision;
+  const CollisionKind wanted = name == "fusion"     ? CollisionKind::fusion
+                               : name == "fission"  ? CollisionKind::fission
+                               : name == "squeezed" ? CollisionKind::squeezed
+                                                    : CollisionKind::collision;
   const auto hook =
       std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
   to_world(world).add_collision_observer(
-      [hook](const Collision& collision) {
-        SCM arguments[] = {from_collision(collision, false, hook->box->handle)};
-        call_hook(*hook, arguments, collision.time, [&] {
-          return body_names(hook->box->world, std::array{collision.body1, collision.body2});
+      [hook](const Collision& told) {
+        const SCM handle = hook->box->handle;
+        const bool squeezed = told.kind == CollisionKind::squeezed;
+        SCM arguments[] = {squeezed ? from_squeezing(told, handle)
+                                    : from_collision(told, false, handle)};
+        call_hook(*hook, arguments, told.time, [&] {
+          return (squeezed ? hook->box->world.body(told.squeezed).name + " between " : "") +
+                 body_names(hook->box->world, std::array{told.body1, told.body2});
         });
       },
       wanted);

@@ -1,5 +1,8 @@
 // Scheme primitives: worlds, their settings, and running them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cstdio>
+#include <utility>
+
 #include "record/statistics-json.h"
 #include "script/file-names.h"
 #include "script/primitive.h"
@@ -55,6 +58,25 @@ SCM from_value(const std::variant<std::int64_t, double, std::string>& value) {
   return from_string(std::get<std::string>(value));
 }
 
+// One line on standard error, once a world: what has nowhere to go is no error, but seldom meant.
+void warn_of_squeezing(World& world) {
+  world.add_collision_observer(
+      [&world, warned = false](const Collision& told) mutable {
+        if (std::exchange(warned, true)) return;
+        const auto name = [&](BodyId id) { return world.body(id).name; };
+        const std::string sides = told.body1 == told.body2
+                                      ? "within " + name(told.body1)
+                                      : "between " + name(told.body1) + " and " + name(told.body2);
+        std::fprintf(stderr,
+                     "timewarp: warning: at %s s %s is squeezed %s, %.2g m deep, %.1f %% of its "
+                     "least width; it has nowhere to go (told once; see `squeezed' in the "
+                     "statistics, and (observe! 'squeezed ...))\n",
+                     show(told.time).c_str(), name(told.squeezed).c_str(), sides.c_str(),
+                     told.depth, 100 * told.depth_share);
+      },
+      CollisionKind::squeezed);
+}
+
 struct WorldSetting {
   const char* name;
   void (*set)(World&, SCM value, const char* name);
@@ -83,7 +105,9 @@ constexpr WorldSetting world_settings[] = {
 
 TW_PRIMITIVE(make_world, "%make-world", (), "Return a new, empty world.") {
   require_outside_callbacks("make-world");
-  return make_world_handle();
+  const SCM handle = make_world_handle();
+  warn_of_squeezing(to_world(handle));
+  return handle;
 }
 
 TW_PRIMITIVE(world_properties, "%world-table", (SCM world), "Return the world's hash table.") {

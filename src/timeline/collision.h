@@ -10,10 +10,11 @@
 
 namespace tw {
 
-enum class CollisionKind : unsigned char { collision, fusion, fission };
+enum class CollisionKind : unsigned char { collision, fusion, fission, squeezed };
 
 // A committed or just computed collision, as callbacks and observers see it; observers also see the
-// fusions of two processes at a contact and the fissions, one for each contact that broke.
+// fusions of two processes at a contact, the fissions, one for each contact that broke, and who is
+// squeezed from then on between body1 and body2 (which may be one), along the normal.
 struct Collision {
   CollisionKind kind = CollisionKind::collision;
   Key key;
@@ -23,6 +24,8 @@ struct Collision {
   Vec3 normal = Vec3::UnitZ();  // unit, world, from body1 to body2
   double speed = 0;             // approach speed there before the impulse, m/s, positive
   double impulse = 0;           // sum of the normal impulses, N s
+  BodyId squeezed = 0;
+  double depth = 0, depth_share = 0;  // m, and over its least width: of the deeper of two overlaps
 };
 
 // What one discontinuity tells observers.

@@ -54,6 +54,10 @@ void each_word(const std::exception_ptr& error, Put&& put) {
 template <class Put>
 void each_word(const ImpactRun& run, Put&& put) {
   put(std::uint64_t{run.count});
+  put(std::uint64_t{run.wall});
+  put(std::uint64_t{run.strikes});
+  put(run.wall_time);
+  put(run.wall_speed);
   put(run.last_time);
   put(std::uint64_t{run.partner});
 }
@@ -67,6 +71,9 @@ void each_word(const Tally& tally, Put&& put) {
   put(tally.placed_energy);
   put(tally.momentum_dropped);
   put(tally.depth);
+  put(std::uint64_t{tally.squeezed});
+  put(tally.squeezed_depth);
+  put(tally.squeezed_share);
 }
 template <class Put>
 void each_word(const Collision& c, Put&& put) {
@@ -77,6 +84,8 @@ void each_word(const Collision& c, Put&& put) {
   each_word(c.normal, put);
   put(c.speed);
   put(c.impulse);
+  put(std::uint64_t{c.squeezed});
+  put(c.depth);
 }
 // Rows: their length first.
 template <class T, class Put>

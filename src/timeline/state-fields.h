@@ -42,6 +42,7 @@ void for_each_field(Data& data, Visit&& visit) requires std::is_base_of_v<StateD
   visit("whether it changed", told, data.changed);
   visit("report", told, data.report);
   visit("tally", told, data.tally);
+  visit("squeezed since", told, data.squeezed_since);
 }
 
 }  // namespace tw

@@ -37,6 +37,11 @@ struct ImpactRun {
   std::uint32_t count = 0;
   double last_time = -never;
   BodyId partner = no_body;  // of the last one
+  // those of a kinematic body at one instant, the last ones: whose, how many, when, and how fast
+  // they approached, m/s
+  BodyId wall = 0;
+  std::uint32_t strikes = 0;
+  double wall_time = -never, wall_speed = 0;
 };
 
 // All of a state but its place in the graph.  What every prediction reads stands last, beside the
@@ -52,6 +57,7 @@ struct StateData {
   double next_callback = never;          // callbacks without a period: their next time
   std::shared_ptr<const Report> report;  // what observers will hear (on one state of the ring)
   Tally tally;                           // for statistics (on one state of the ring)
+  double squeezed_since = never;         // s; never: it is not squeezed (groups/squeezed.h)
 
   // the contact group that the body is in from here on, and its place there; null: it is isolated
   std::shared_ptr<Group> group;

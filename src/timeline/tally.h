@@ -17,8 +17,15 @@ struct Tally {
   double placed_energy = 0;     // J, of contact springs that started loaded
   double momentum_dropped = 0;  // N s, that bodies at the border of a region miss
   double depth = 0;             // m, of the deepest overlap at the points that touch
+  // bodies that begin to be squeezed; the deepest overlap of what is, m and over its least width
+  std::uint16_t squeezed = 0;
+  double squeezed_depth = 0, squeezed_share = 0;
 
   void note_gap(double gap) { depth = std::max(depth, -gap); }
+  void note_squeezed(double most, double share) {
+    squeezed_depth = std::max(squeezed_depth, most);
+    squeezed_share = std::max(squeezed_share, share);
+  }
   void add(const Tally& other) {
     fusions = static_cast<std::uint16_t>(fusions + other.fusions);
     fissions = static_cast<std::uint16_t>(fissions + other.fissions);
@@ -29,6 +36,8 @@ struct Tally {
     placed_energy += other.placed_energy;
     momentum_dropped += other.momentum_dropped;
     depth = std::max(depth, other.depth);
+    squeezed = static_cast<std::uint16_t>(squeezed + other.squeezed);
+    note_squeezed(other.squeezed_depth, other.squeezed_share);
   }
 };
 

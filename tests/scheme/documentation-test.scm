@@ -58,7 +58,8 @@
    keyframes set-contact-parameters! disable-collisions! enable-collisions! add-callback!
    on-collision! collision-time collision-point collision-normal collision-speed collision-impulse
    position orientation velocity angular-velocity kinetic-energy slot slot? applied-force
-   applied-torque body-name random-real! observe! run! run-for! step! simulate! statistics
+   applied-torque body-name random-real! observe! squeezed-time squeezed-body squeezed-between
+   squeezed-depth squeezed-share run! run-for! step! simulate! statistics
    contacts contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
    contact-slipping? show-statistics state-queue checkpoint restore! total-energy total-momentum camera light sky render!))
 

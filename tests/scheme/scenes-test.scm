@@ -80,6 +80,18 @@
     (every (lambda (k) (still? (format #f "box-~a" k))) (iota 10))))
 
 (in-world ()
+  (load-scene-named "gallery/compactor" '((squeeze . "0.7")))
+  (let ((all '("crate" "ball" "drum")))
+    (run! #:until 1.9)
+    (test-assert "plate and floor of the compactor share the overlap"
+      (every (lambda (name) (close? 0.14 (at name 2) 1e-3)) all))
+    (run! #:until 2.5)
+    (test-assert "as the plate goes up nobody is thrown"
+      (every (lambda (name) (< 0.198 (at name 2) 0.3)) all))
+    (run! #:until 3)
+    (test-equal "each is told of once a stroke" 3 (assq-ref (statistics) 'squeezed))))
+
+(in-world ()
   (load-scene-named "gallery/newtons-cradle")
   (run! #:until 0.6)
   (test-assert "the last ball of the cradle leaves with the first one's speed"

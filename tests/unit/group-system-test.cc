@@ -48,7 +48,7 @@ class Slide : public Trajectory {
   }
 };
 
-enum class Regime { sticking, slipping, apart };
+enum class Regime { sticking, slipping, apart, deep };  // deep: where it hardens no more
 
 struct Case {
   ContactFeature feature;
@@ -90,7 +90,7 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     c.radius_b = draw.in(0.05, 0.2);
     c.radius_a = draw.in(0.05, 0.2);
     c.law.k = draw.in(50, 100);
-    c.law.hardening = 0.03;
+    c.law.hardening = kind.regime == Regime::deep ? 0.0015 : 0.03;
     c.law.b = 0.2;
     c.law.kt = 0.8 * c.law.k;
     c.law.ct = draw.in(5, 10);
@@ -228,7 +228,7 @@ constexpr ContactFeature features[] = {ContactFeature::plane, ContactFeature::li
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const ContactFeature feature : features) {
-    for (const Regime regime : {Regime::sticking, Regime::slipping, Regime::apart})
+    for (const Regime regime : {Regime::sticking, Regime::slipping, Regime::apart, Regime::deep})
       cases.push_back({feature, FrictionLaw::anchored, regime});
     cases.push_back({feature, FrictionLaw::smooth, Regime::slipping});
     cases.push_back({feature, FrictionLaw::smooth, Regime::apart});

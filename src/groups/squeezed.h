@@ -1,0 +1,24 @@
+// Who is squeezed: pressed from two sides by what does not give way, so that it has nowhere to go.
+//
+// A body is squeezed from when two contacts, each deeper than a share of its least width, push it
+// against each other (their forces are more than 120 degrees apart), and behind each stands what
+// does not give way: a fixed or kinematic body, or a dynamic one that is itself pushed along from
+// behind, and so on to a fixed or kinematic one, without the squeezed body in between.  So a body
+// at the bottom of a stack is not squeezed, however heavy the stack is.  It is squeezed until no
+// two contacts at half that depth push it so.
+//
+// Asked at each discontinuity of its group, of the poses and contacts there: a function of what is
+// committed.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "groups/regrouping.h"
+
+namespace tw {
+
+// Notes in the successors with new arcs who is squeezed from here on and since when; counts and
+// reports those whose squeezing begins.
+void note_squeezed(Regrouping& work);
+
+}  // namespace tw
