@@ -25,7 +25,8 @@ struct Pair {
   Key from;                                // safe time, as a key
   Key checked_start;                       // start of the piece whose common start has been checked
   double next_check = 0;                   // grid time of the next query on this piece
-  bool started = false;  // checked_start and next_check hold for the present piece
+  double touch = 0;      // depth that counts as touching on this piece, m; 0: not asked yet
+  bool started = false;  // these three hold for the present piece
   bool pending = false;  // an impact is known:
   Key impact;
   bool parked = false;  // one of the processes has stopped

@@ -12,6 +12,37 @@ namespace {
 
 double checks_of(World& world) { return count_of(world.statistics(), "checks"); }
 
+// Two that begin a little in each other, and neither close nor part, are done with at once.
+TEST(Standstill, what_begins_in_each_other_and_stays_so_is_not_looked_at_again) {
+  for (const double depth : {1e-7, 1e-10, 1e-13}) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    world.add_body(body_of(make_box({1, 1, 1}), {0, 0, 0}, Vec3::Zero()));
+    world.add_body(body_of(make_box({1, 1, 1}), {1 - depth, 0, 0}, Vec3::Zero()));
+    world.add_body(body_of(make_cylinder(0.5, 1), {0, 0, 1 - depth}, Vec3::Zero()));
+    // and one that parts slowly
+    world.add_body(body_of(make_box({1, 1, 1}), {0, 1 - depth, 0}, {0, 1e-9, 0}));
+    world.advance(1);
+    EXPECT_LT(checks_of(world), 100) << depth;
+    EXPECT_EQ(count_of(world.statistics(), "collisions"), 0) << depth;
+  }
+}
+
+// But what turns back is met where it was, not deeper.
+TEST(Standstill, what_begins_in_another_gets_no_deeper) {
+  World world;
+  set_contact_for_all(world, 0.5, 0.3);
+  add_wall(world, Vec3::UnitZ(), 0);
+  constexpr double depth = 5e-7;
+  const BodyId box = world.add_body(body_of(make_box({1, 1, 1}), {0, 0, 0.5 - depth}, {0, 0, 1}));
+  for (int i = 1; i <= 100; ++i) {
+    world.advance(0.01 * i);
+    // the springs give way to a soft impact by this much
+    EXPECT_GT(world.state(box).position.z(), 0.5 - 1e-3);
+  }
+  EXPECT_GE(count_of(world.statistics(), "collisions"), 1);
+}
+
 // Drums in touch along lines, hit by one, or lying in a row: pairs that slide, roll and tilt
 // against each other along the line.
 TEST(Standstill, drums_in_touch_along_lines_go_on) {
