@@ -180,6 +180,9 @@ inline constexpr std::uint32_t most_repeated = 2000;
 // More microsteps at one instant are an error that stops the two.
 inline constexpr std::uint32_t most_microsteps = 100000;
 
+// Numbers in the record of one arc (half a gigabyte); more are an error that stops the group.
+inline constexpr std::size_t most_arc_numbers = std::size_t{1} << 26;
+
 // Pieces of one span of a motion by a procedure; more are an error: it is rough everywhere.
 inline constexpr std::size_t most_motion_pieces = 4096;
 

@@ -153,8 +153,8 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
 void test_end(const Scene& scene, const Surroundings& surroundings, Group& group,
               GroupCounters& counters) {
   if (group.end_tested || group.at_rest) return;
+  group.arc->extend_patiently(group.next_check);
   group.end_tested = true;
-  group.arc->extend(group.next_check);
   std::vector<EarlyEnd> early_ends;
   for (const ContactPair& pair : group.pairs) {
     const double end = early_end(scene, surroundings, group, pair);
