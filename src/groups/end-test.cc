@@ -155,6 +155,9 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   if (group.end_tested || group.at_rest) return;
   group.arc->extend_patiently(group.next_check);
   group.end_tested = true;
+  const GroupCounts effort = group.arc->counts();
+  if (effort.steps + effort.rejected > counters.dearest_arc.tried())
+    counters.dearest_arc = {effort.steps, effort.rejected, group.arc->start().time, group.members};
   std::vector<EarlyEnd> early_ends;
   for (const ContactPair& pair : group.pairs) {
     const double end = early_end(scene, surroundings, group, pair);

@@ -169,6 +169,11 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
 // Looks at one grid point; true if there is an impact at or before it (then pair.impact).
 bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   ++counters_.checks;
+  if (++pair.looks > counters_.dearest_pair_checks) {
+    counters_.dearest_pair_checks = pair.looks;
+    counters_.dearest_pair[0] = pair.a;
+    counters_.dearest_pair[1] = pair.b;
+  }
   double clear = certificate(piece, pair.caches, when, slack_of(piece));
   if (!(clear > when)) clear = certificate(piece, pair.caches, when, depth_at_touch(pair, piece));
   counters_.certificates += clear > -never;
