@@ -118,6 +118,9 @@ inline constexpr double contact_margin = 0.1;
 // to this times a power of two, s, so that the checks of all groups meet.
 inline constexpr double most_travel = 0.05, finest_check_times = 0.0175, check_unit = 1.0 / 480;
 inline constexpr int most_halvings = 5;
+// A body that reaches no farther from its axis of least moment than this share of its radius is
+// slender: what spins about such an axis hardly moves.
+inline constexpr double slender = 0.25;
 // The end test looks so often that what a pair may travel between two looks is at most this share
 // of the smaller one; at most so many times, and no arc ends before this share of the finest
 // interval.
@@ -198,6 +201,9 @@ inline constexpr double least_balance_step = 0x1p-10;
 // A contact slides if it gets faster by more than this share of gravity.
 inline constexpr double balance_slide = 1e-6;
 inline constexpr int balance_steps = 60, balance_rounds = 4;
+
+// Numbers in the record of one arc (half a gigabyte); more are an error that stops the group.
+inline constexpr std::size_t most_arc_numbers = std::size_t{1} << 26;
 
 // Pieces of one span of a motion by a procedure; more are an error: it is rough everywhere.
 inline constexpr std::size_t most_motion_pieces = 4096;

@@ -24,7 +24,7 @@ constexpr double touch = 1e-7;
 // how far B is moved in for the polytope, relative to the size
 constexpr double push = 1e-6;
 
-// what a plain axis must gain on the polytope's to be taken for it, relative to the size
+// what a plain axis must gain on the polytope's for its own witness points, relative to the size
 constexpr double lost_depth = 1e-9;
 
 // special axes this near are tried, rad
@@ -183,11 +183,12 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;
-  if (const double bound = distance_along(a, b, plain);
-      bound > result.distance + lost_depth * size) {
+  // any axis along which they overlap less is nearer to the truth; where they touch along a line or
+  // end to end the polytope's errs by its accuracy, and nothing that slides there would be apart
+  if (const double bound = distance_along(a, b, plain); bound > result.distance) {
+    if (bound > result.distance + lost_depth * size) result.point_a = touch_along(a, b, plain);
     result.normal = plain;
     result.distance = bound;
-    result.point_a = touch_along(a, b, plain);
   }
   return result;
 }

@@ -25,8 +25,10 @@ struct Pair {
   Key from;                                // safe time, as a key
   Key checked_start;                       // start of the piece whose common start has been checked
   double next_check = 0;                   // grid time of the next query on this piece
-  bool started = false;  // checked_start and next_check hold for the present piece
-  bool pending = false;  // an impact is known:
+  double touch = 0;         // depth that counts as touching on this piece, m; 0: not asked yet
+  std::uint64_t looks = 0;  // at grid points, for statistics
+  bool started = false;     // these three hold for the present piece
+  bool pending = false;     // an impact is known:
   Key impact;
   bool parked = false;  // one of the processes has stopped
   EventQueue::Handle event = EventQueue::none;

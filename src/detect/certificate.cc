@@ -48,6 +48,30 @@ double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec
   return least;
 }
 
+// How high a cylinder reaches along a direction in its frame, above its centre.
+double cylinder_top(const ConvexPart& part, const Vec3& along) {
+  return part.half_length * std::abs(along.z()) + part.radius * std::hypot(along.x(), along.y());
+}
+
+// When a cylinder `gap` > 0 below the plane may reach it, but for its turning at the rate `rate`
+// and the pull `pull`.  Its top is at h(s) = cylinder_top(n + s m), which is convex: over [0, S] it
+// rises by no more than the chord's slope, at most cylinder_top(m).  Long chords count what goes
+// up at one end only once it is the top: what stands on the plane along a line or on a face, and
+// turns off it, is not there at once.
+double cylinder_reach(const ConvexPart& part, double gap, double rate, double pull, const Vec3& n,
+                      const Vec3& m) {
+  constexpr double longer = 4;
+  const double top = cylinder_top(part, n);
+  double reached = first_zero(gap, rate - cylinder_top(part, m), pull);
+  while (reached < cost::soon) {
+    const double to = longer * reached, slope = (cylinder_top(part, n + to * m) - top) / to;
+    const double least = std::min(to, first_zero(gap, rate - slope, pull));
+    if (!(least > reached)) break;
+    reached = least;
+  }
+  return reached;
+}
+
 // The least over the core points of a part; `sign` +1: the part lies below the plane, -1 above.
 double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& plane, double sign,
                   bool as_ball) {
@@ -72,13 +96,8 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   const double pull = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) -
                       side.bend * side.body->radius;
   if (part.kind == PartKind::cylinder) {
-    // the highest point and the fastest, which need not be the same one
-    const auto most = [&](const Vec3& along) {
-      return part.half_length * std::abs(along.z()) +
-             part.radius * std::hypot(along.x(), along.y());
-    };
-    const double gap = c - height - most(n_P);
-    return gap > 0 ? first_zero(gap, u - speed - most(m_P), pull) : 0;
+    const double gap = c - height - cylinder_top(part, n_P);
+    return gap > 0 ? cylinder_reach(part, gap, u - speed, pull, n_P, m_P) : 0;
   }
   double least = never;
   for (const Vec3& vertex : part.core->vertices()) {

@@ -54,6 +54,8 @@ struct Body {
   Pose X_BP, X_PB;
   ShapePtr shape_P;           // the shape in P; null: touches nothing
   double radius = 0;          // of the ball about the origin of P that holds the shape, m
+  int slender_axis = -1;      // of P, about which it is slender (base/constants.h); -1: about none
+  double girth = 0;           // how far it reaches from that axis, m
   double least_width = 0;     // the `size` of contact parameters, m
   double sphere_radius = -1;  // >= 0: a single sphere centred on P
   double turn_excess = 0;     // max |Ii - Ij| / Ik: bounds the angular acceleration

@@ -5,6 +5,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "dynamics/body.h"
 #include "dynamics/pose-twist.h"
 
@@ -17,9 +20,19 @@ struct PlacedBody {
 
   PlacedBody(const Body& b, const PoseTwist& p) : body(&b), point(p), frame(p.frame()) {}
   Vec3 velocity_at(const Vec3& where) const { return point.velocity_at(where); }
+  // A bound on how fast any point of the surface moves against the centre, m/s: |w| radius, and of
+  // what is slender about an axis as far as it turns otherwise than about that.
+  double turning_speed() const {
+    const double all = point.w.norm() * body->radius;
+    if (body->slender_axis < 0) return all;
+    const Vec3 axis = frame.R.col(body->slender_axis);
+    const double along = axis.dot(point.w);
+    return std::min(all,
+                    (point.w - along * axis).norm() * body->radius + std::abs(along) * body->girth);
+  }
   // A bound on how fast any point of the surface moves now, m/s; a ball's rolls in its place.
   double surface_speed() const {
-    const double turn = body->sphere_radius >= 0 ? 0 : point.w.norm() * body->radius;
+    const double turn = body->sphere_radius >= 0 ? 0 : turning_speed();
     return point.v.norm() + (turn > 0 ? turn : 0);
   }
   // The same with what rolls in its place, as rest asks: a ball that spins does not rest.

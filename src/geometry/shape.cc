@@ -90,6 +90,18 @@ double radius_about_origin_of(const ConvexPart& part) {
   return radius;
 }
 
+double radius_about_line_of(const ConvexPart& part, const Vec3& direction) {
+  if (part.kind == PartKind::half_space) return infinity;
+  const auto off = [&](const Vec3& p) { return p.cross(direction).norm(); };
+  if (part.kind == PartKind::polyhedron) {
+    double radius = 0;
+    for (const Vec3& v : part.core->vertices()) radius = std::max(radius, off(part.placement * v));
+    return radius;
+  }
+  const Vec3 cap = part.half_length * part.placement.R.col(2), p = part.placement.p;
+  return std::max(off(p + cap), off(p - cap)) + part.radius;
+}
+
 ConvexPart polyhedron_part(Polyhedron polyhedron) {
   ConvexPart part;
   part.kind = PartKind::polyhedron;
@@ -140,6 +152,13 @@ Aabb Shape::bounds(const Frame& frame) const {
   Aabb box;
   for (const ConvexPart& part : parts_) box.add(part_bounds(part, frame));
   return box;
+}
+
+double Shape::radius_about_line(const Vec3& direction) const {
+  double radius = 0;
+  for (const ConvexPart& part : parts_)
+    radius = std::max(radius, radius_about_line_of(part, direction.normalized()));
+  return radius;
 }
 
 ShapePtr make_sphere(double radius) {

@@ -62,6 +62,8 @@ class Shape {
   // The smallest ball around the frame's origin that holds the shape (bound by the parts'
   // farthest points, exact for spheres, cylinders and polyhedra), m.
   double radius_about_origin() const { return radius_about_origin_; }
+  // No point is farther from the line through the origin, m (exact but for tilted cylinders).
+  double radius_about_line(const Vec3& direction) const;
   // The shape's bounds when its frame is placed at `frame`, m.  Exact for spheres, cylinders,
   // boxes and hulls.
   Aabb bounds(const Frame& frame) const;

@@ -4,8 +4,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
+
+#include "dynamics/ids.h"
 
 namespace tw {
+
+// The arc that took most: steps taken and rejected, and whose it was.
+struct DearestArc {
+  std::uint64_t steps = 0, rejected = 0;
+  double start = 0;  // s
+  std::vector<ProcessId> members;
+
+  std::uint64_t tried() const { return steps + rejected; }
+};
 
 struct GroupCounters {
   // steps of groups, discarded ones too; each is an integration
@@ -16,6 +28,7 @@ struct GroupCounters {
   // groups, as made
   std::uint64_t groups = 0, manifolds = 0, early_ends = 0;
   std::uint64_t largest_group_bodies = 0, largest_group_contacts = 0;
+  DearestArc dearest_arc;
 
   void add(const GroupCounters& other) {
     integrations += other.integrations;
@@ -29,6 +42,7 @@ struct GroupCounters {
     early_ends += other.early_ends;
     largest_group_bodies = std::max(largest_group_bodies, other.largest_group_bodies);
     largest_group_contacts = std::max(largest_group_contacts, other.largest_group_contacts);
+    if (other.dearest_arc.tried() > dearest_arc.tried()) dearest_arc = other.dearest_arc;
   }
 };
 

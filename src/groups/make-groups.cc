@@ -52,7 +52,7 @@ TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
   if (theirs.at_rest) return successor.data.follows;
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
-  theirs.arc->extend(theirs.next_check);
+  theirs.arc->extend_patiently(theirs.next_check);
   return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(),
                              theirs.next_check);
 }

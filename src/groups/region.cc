@@ -56,7 +56,7 @@ double deviation(const Before& before, const Group& group, const Body& body) {
   const double end = group.arc->reached();
   const GroupSample now = group.arc->evaluate(group.member_of(body.process), end);
   // an arc that began at this very instant need not be complete
-  if (!old.group->at_rest) old.group->arc->extend(end);
+  if (!old.group->at_rest) old.group->arc->extend_patiently(end);
   const PoseTwist was = old.trajectory().at(end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
@@ -146,7 +146,7 @@ std::vector<ProcessId> who_notices(Regrouping& work) {
   std::vector<ProcessId> found;
   for (const auto& group : work.made) {
     if (!group->has_border) continue;
-    if (!group->at_rest) group->arc->extend(group->next_check);
+    if (!group->at_rest) group->arc->extend_patiently(group->next_check);
     for (const ContactPair& pair : group->pairs) {
       const BodyId other = work.lies_beyond(pair.a()) ? pair.a() : pair.b();
       if (!work.lies_beyond(other)) continue;

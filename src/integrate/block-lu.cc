@@ -90,13 +90,33 @@ TW_BLOCK void subtract_product_vector(const double* a, const double* x, double* 
   store(sum, y);
 }
 
+// The unit of the second half of a block's columns in terms of the first.  The halves have units of
+// their own (speeds and forces, angular momenta and torques): a pivot is large or small only in
+// units in which the four quarters, the largest of each, are balanced.  With VV, VL, LV, LL: rows
+// and columns times 1/sqrt(VV) and 1/sqrt(LL) make the diagonal ones 1, and u then makes VL as
+// large as LV.
+double unit_of_half(const double* a) {
+  double most[2][2] = {};
+  for (int j = 0; j < B; ++j)
+    for (int i = 0; i < B; ++i) {
+      double& quarter = most[2 * i / B][2 * j / B];
+      quarter = std::max(quarter, std::abs(a[B * j + i]));
+    }
+  const double squared = (most[0][0] / most[1][1]) * (most[1][0] / most[0][1]);
+  // nothing couples the halves, or only one way: then any unit will do, or none
+  return squared >= 0 && std::isfinite(squared) ? std::sqrt(squared) : 1;
+}
+
 // a <- -a^-1 by Gauss-Jordan with partial pivoting: rows of the transpose
 bool invert_negative(double* a) {
   int swapped[B];
+  const double unit = unit_of_half(a);
+  double units[B] = {1, 1, 1, unit, unit, unit};
   for (int k = 0; k < B; ++k) {
     int p = k;
     for (int i = k + 1; i < B; ++i)
-      if (std::abs(a[B * i + k]) > std::abs(a[B * p + k])) p = i;
+      if (units[i] * std::abs(a[B * i + k]) > units[p] * std::abs(a[B * p + k])) p = i;
+    std::swap(units[k], units[p]);
     const double pivot = a[B * p + k];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
     swapped[k] = p;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/interruption.h"
 #include "integrate/group-stepper.h"
 #include "integrate/member-trajectory.h"
 
@@ -143,6 +144,17 @@ bool GroupArc::extend(double time) {
   while (d.record.reached() < to && d.failure.empty())
     if (!d.stepper.step()) d.fail();
   return d.record.reached() >= to;
+}
+
+bool GroupArc::extend_patiently(double time) {
+  Data& d = *data_;
+  constexpr int between_looks = 16;
+  for (int step = 1; d.record.reached() < std::min(time, d.start.end) && d.failure.empty();
+       ++step) {
+    if (step % between_looks == 0) raise_if_interrupted();
+    if (!d.stepper.step()) d.fail();
+  }
+  return extend(time);
 }
 
 GroupSample GroupArc::evaluate(int member, double time) const {

@@ -126,6 +126,9 @@ class GroupArc : public Counted<GroupArc> {
   const GroupStart& start() const;
   // Integrates as far as `time` (at most to the end).  False: it stopped before; see failure().
   bool extend(double time);
+  // The same; may be given up between two steps (base/interruption.h): for those who have changed
+  // nothing yet.
+  bool extend_patiently(double time);
   double reached() const;  // how far it is integrated, s
   // Where the members' trajectories end: at the arc's end, or earlier where somebody found out that
   // it does not hold so far.  Told once, before anybody relies on them.

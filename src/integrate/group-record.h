@@ -29,6 +29,8 @@ class GroupRecord {
   int steps() const { return static_cast<int>(times_.size()) - 1; }
   double start() const { return times_.front(); }
   double reached() const { return times_.back(); }
+  // How many it holds: its memory in doubles.
+  std::size_t numbers() const { return nodes_.size() + steps_.size(); }
   double time(int node) const { return times_[static_cast<std::size_t>(node)]; }
 
   // y of the step that begins at the last node, theta = 0; sets the attitudes of the system.

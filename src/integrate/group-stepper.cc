@@ -159,6 +159,7 @@ void GroupStepper::accept(double time, GroupScratch& s) {
 
 // one accepted step; false: failed
 bool GroupStepper::step() {
+  if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
   GroupScratch& s = scratch();
   const double time = record_.reached(), left = start_.end - time;
   // outside bodies that do not move

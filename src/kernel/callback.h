@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/interruption.h"
 #include "dynamics/body.h"
 #include "timeline/collision.h"
 #include "timeline/slots.h"
@@ -40,13 +41,6 @@ class StateView {
   virtual void set_pose(const Vec3& position, const Quat& orientation) = 0;
   // Uniform in [0, 1), from the generator that lives in the state.
   virtual double draw_random() = 0;
-};
-
-// Thrown by a callback or observer to stop the run at once (Ctrl-C): not an error of the scene,
-// nothing is recorded, and the event is processed again when the run goes on.
-class Interrupted : public std::exception {
- public:
-  const char* what() const noexcept override { return "interrupted"; }
 };
 
 // A user's callback.  May run again after a rollback.  Any other exception than Interrupted

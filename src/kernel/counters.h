@@ -13,6 +13,9 @@ struct Counters : GroupCounters {
   std::uint64_t events = 0, events_postponed = 0, claims = 0, checks = 0, certificates = 0,
                 predictions = 0;
   std::uint64_t candidates = 0, pairs_made = 0, gvt_computations = 0;
+  // of a pair for as long as its boxes overlap: looks at grid points, and whose they were
+  std::uint64_t dearest_pair_checks = 0;
+  BodyId dearest_pair[2] = {};
   double pair_sum = 0;  // live pairs, summed over processed events: for the average
 
   // rollback

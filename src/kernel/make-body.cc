@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/limits.h"
 #include "dynamics/placed-body.h"
 #include "geometry/mass-properties.h"
@@ -59,6 +60,12 @@ void resolve_shape(Body& body, const BodyDef& def) {
   body.unbounded = !body.shape_P->bounded();
   body.radius = body.shape_P->radius_about_origin();
   body.least_width = body.shape_P->least_width();
+  if (body.dynamic()) {
+    int axis = 0;
+    body.moments.minCoeff(&axis);
+    body.girth = body.shape_P->radius_about_line(Vec3::Unit(axis));
+    if (body.girth < answer::slender * body.radius) body.slender_axis = axis;
+  }
   const ConvexPart& part = body.shape_P->parts().front();
   const bool at_center = part.bound_center.norm() <= 1e-15 * part.bound_radius;
   if (body.shape_P->is_sphere() && at_center) body.sphere_radius = part.radius;

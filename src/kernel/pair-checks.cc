@@ -41,6 +41,17 @@ double slack_of(const Piece& piece) {
   return answer::depth_slack * std::min(piece.body_a->least_width, piece.body_b->least_width);
 }
 
+// How deep the two may be, m, before it counts as penetration: as deep as they are when the piece
+// begins, and a slack.  What begins in each other and does not close (that would be an impact)
+// stays so, or parts as slowly as it likes: without this it were looked at at every grid point.
+double depth_at_touch(Pair& pair, const Piece& piece) {
+  if (!(pair.touch > 0)) {
+    const double start = separation_at(piece, piece.start_time()).distance;
+    pair.touch = std::max(-start, 0.0) + slack_of(piece);
+  }
+  return pair.touch;
+}
+
 bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
 
 }  // namespace
@@ -158,7 +169,13 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
 // Looks at one grid point; true if there is an impact at or before it (then pair.impact).
 bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   ++counters_.checks;
-  const double clear = certificate(piece, pair.caches, when, slack_of(piece));
+  if (++pair.looks > counters_.dearest_pair_checks) {
+    counters_.dearest_pair_checks = pair.looks;
+    counters_.dearest_pair[0] = pair.a;
+    counters_.dearest_pair[1] = pair.b;
+  }
+  double clear = certificate(piece, pair.caches, when, slack_of(piece));
+  if (!(clear > when)) clear = certificate(piece, pair.caches, when, depth_at_touch(pair, piece));
   counters_.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
@@ -167,16 +184,17 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
   return find_crossing(pair, piece, std::max(piece.start_time(), when - answer::check_grid), when);
 }
 
-// The crossing of 0 or, where the left end touches already, of the slack, where the two are deeper
-// at `when`; true if they approach there.
+// The crossing of 0 or, where the left end touches already, of the depth at touch, where the two
+// are deeper at `when`; true if they approach there.
 bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, double when) const {
-  const double slack = slack_of(piece);
   const double right = separation_at(piece, when).distance;
-  if (right >= -slack) return false;
+  if (right >= -slack_of(piece)) return false;
+  const double touch = depth_at_touch(pair, piece);
+  if (right >= -touch) return false;
   const double left = separation_at(piece, start).distance;
   double impact_time = when;
-  if (left > -slack) {
-    const double level = left > 0 ? 0 : slack;
+  if (left > -touch) {
+    const double level = left > 0 ? 0 : touch;
     const auto f = [&](double t) { return separation_at(piece, t).distance + level; };
     impact_time = find_root(f, start, when, left + level, right + level).left;
   }
@@ -206,6 +224,7 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
   if (!pair.started || pair.checked_start != piece.start) {
     pair.started = true;
     pair.checked_start = piece.start;
+    pair.touch = 0;
     // an impact at the common start that was rolled back is found again from its own key on
     if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
       if ((check_common_start(pair, piece) || check_between(pair, piece, piece.start_time())) &&

@@ -3,6 +3,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "kernel/arc-accounts.h"
 #include "kernel/delivery.h"
@@ -21,6 +24,21 @@ std::int64_t peak_resident_bytes() {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+// Names of bodies: the first few, and how many there are.
+std::string names_of(const Scene& scene, std::span<const BodyId> bodies) {
+  constexpr std::size_t most = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, bodies.size()); ++i)
+    text += (i > 0 ? ", " : "") + scene.body(bodies[i]).info.name;
+  return bodies.size() > most ? text + ", .. (" + std::to_string(bodies.size()) + ")" : text;
+}
+
+std::vector<BodyId> bodies_of(const Scene& scene, const std::vector<ProcessId>& members) {
+  std::vector<BodyId> bodies;
+  for (const ProcessId member : members) bodies.push_back(scene.body_of(member).id());
+  return bodies;
 }
 
 }  // namespace
@@ -109,6 +127,13 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"implicit_steps", whole(counters.implicit_steps + steps)},
       {"rejected_steps", whole(counters.rejected_steps)},
       {"factorizations", whole(counters.factorizations + factorizations)},
+      {"dearest_pair_checks", whole(counters.dearest_pair_checks)},
+      {"dearest_pair",
+       counters.dearest_pair_checks > 0 ? names_of(scene, counters.dearest_pair) : std::string()},
+      {"dearest_arc_steps", whole(counters.dearest_arc.steps)},
+      {"dearest_arc_rejected", whole(counters.dearest_arc.rejected)},
+      {"dearest_arc_start", counters.dearest_arc.start},
+      {"dearest_arc_bodies", names_of(scene, bodies_of(scene, counters.dearest_arc.members))},
       {"gvt_computations", whole(counters.gvt_computations)},
       {"peak_states", whole(graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},

@@ -11,6 +11,7 @@
 
 #include <csignal>
 
+#include "base/cpu-clock.h"
 #include "kernel/callback.h"
 #include "script/primitive.h"
 #include "script/values.h"
@@ -151,6 +152,22 @@ SCM call_scheme(SCM procedure, std::span<SCM> arguments) {
   if (state.finished) return state.result;
   if (state.interrupted) throw Interrupted();
   throw_described(state);
+}
+
+void look_for_signals() {
+  constexpr double between_looks = 0.1;  // s
+  static double last = 0;
+  const double now = wall_seconds();
+  if (now - last < between_looks) return;
+  last = now;
+  static const SCM tick = scm_gc_protect_object(
+      scm_c_make_gsubr("%tick", 0, 0, 0, reinterpret_cast<scm_t_subr>(+[]() -> SCM {
+                         scm_async_tick();
+                         return SCM_UNSPECIFIED;
+                       })));
+  call_scheme(tick, {});
+  // nobody's procedure: it does not count
+  --guile_calls;
 }
 
 bool inside_call() { return call_depth > 0; }

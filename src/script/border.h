@@ -49,6 +49,10 @@ struct BadValue {
 // Interrupted (kernel/callback.h).
 SCM call_scheme(SCM procedure, std::span<SCM> arguments);
 
+// Has the handlers of signals that wait run, ten times a second at most; throws Interrupted where
+// one asks for it.
+void look_for_signals();
+
 // True while a procedure called by call_scheme runs.
 bool inside_call();
 

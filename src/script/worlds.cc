@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/interruption.h"
 #include "record/statistics-json.h"
 #include "script/file-names.h"
 #include "script/primitive.h"
@@ -146,6 +147,7 @@ TW_PRIMITIVE(advance, "%advance!", (SCM world, SCM until, SCM slice),
              "Run for a slice of wall time; true when everything up to `until` is committed.") {
   WorldBox& box = quiet_box(world, "run!");
   const CallCounter counter(box);
+  const InterruptionCheck check(look_for_signals);
   return scm_from_bool(box.world.advance(to_real(until, "until"), to_real(slice, "slice")) ==
                        RunStatus::finished);
 }
@@ -153,6 +155,7 @@ TW_PRIMITIVE(advance, "%advance!", (SCM world, SCM until, SCM slice),
 TW_PRIMITIVE(step, "%step!", (SCM world), "Process one event; false if there is none.") {
   WorldBox& box = quiet_box(world, "step!");
   const CallCounter counter(box);
+  const InterruptionCheck check(look_for_signals);
   return scm_from_bool(box.world.step());
 }
 

@@ -10,25 +10,14 @@ namespace {
 const KnownFault table[] = {
     {"thin", 17, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
     // from 30 on: make check-long; what they look like, the causes were not looked into
-    {"thin", 31, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
-    {"lattice", 43, Fault::slow, 0, "drums in touch along a line or end to end"},
-    {"lattice", 85, Fault::slow, 0, "drums in touch along a line or end to end"},
     {"thin", 87, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
-    {"thin", 115, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
     {"lattice", 127, Fault::slow, 0, "drums in touch along a line or end to end"},
-    {"lattice", 141, Fault::slow, 0, "drums in touch along a line or end to end"},
-    {"thin", 143, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
     {"shaker", 146, Fault::energy, 0.0082, "between the slabs of a shaken room"},
-    {"thin", 171, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
-    {"lattice", 183, Fault::slow, 0, "drums in touch along a line or end to end"},
     {"heap", 196, Fault::energy, 0.27, "a corner at the foot of a wall, or a fusion"},
     {"thin", 199, Fault::energy, 0.0052,
      "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
     {"thin", 199, Fault::slow, 0, "a rod or plate of 1:100 or thinner: an arc that hardly goes on"},
-    {"lattice", 211, Fault::slow, 0, "drums in touch along a line or end to end"},
-    {"cards", 250, Fault::slow, 0, "cards that lie on each other"},
     {"bullet", 273, Fault::slow, 0, "a fast body sinks into a thin wall between two checks"},
-    {"lattice", 281, Fault::slow, 0, "drums in touch along a line or end to end"},
     {"stack", 296, Fault::slow, 0, "a fall on unlike masses"},
 };
 

@@ -72,6 +72,29 @@ TEST(BodyMatrix, solves_random_graphs_of_bodies_to_1e_12) {
   }
 }
 
+// Speeds and angular momenta: in SI units the latter's numbers are tiny for a small body, and what
+// they do to forces is huge.  Powers of two change no digit of an elimination, only the pivots that
+// it finds large.
+TEST(BodyMatrix, units_of_angular_momentum_do_not_matter) {
+  for (const double unit : {0x1p-100, 0x1p-40, 0x1p40}) {
+    BodyMatrix matrix(1, {});
+    Eigen::MatrixXd twin = fill(matrix, 1, {}, 20, 7);
+    twin.rightCols(3) /= unit;
+    twin.bottomRows(3) *= unit;
+    // two rows of forces depend on the momenta alike, by a third as much
+    twin.block<1, 3>(1, 3) = 0.3 * twin.block<1, 3>(0, 3);
+    Eigen::Map<Eigen::MatrixXd>(matrix.at(matrix.offset(0, 0)), B, B) = twin;
+    ASSERT_TRUE(matrix.factor());
+    Eigen::VectorXd expected = Eigen::VectorXd::LinSpaced(B, -1, 2);
+    expected.tail(3) *= unit;
+    Eigen::VectorXd x = twin * expected;
+    ASSERT_TRUE(matrix.solve(x.data()));
+    x.tail(3) /= unit;
+    expected.tail(3) /= unit;
+    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-13) << unit;
+  }
+}
+
 TEST(BodyMatrix, one_body_is_pivoted_within_its_block) {
   BodyMatrix matrix(1, {});
   const Eigen::MatrixXd twin = fill(matrix, 1, {}, 0, 3);

@@ -29,5 +29,16 @@ TEST(PlacedBody, a_ball_that_spins_in_its_place_does_not_rest_but_sweeps_nothing
   EXPECT_DOUBLE_EQ(turning(ball).surface_speed(), 5);
 }
 
+// What spins about the axis along which it is long moves its surface by its girth alone.
+TEST(PlacedBody, what_is_slender_turns_slowly_about_its_axis) {
+  Body rod;
+  rod.radius = 0.5;
+  rod.slender_axis = 2;
+  rod.girth = 0.01;
+  EXPECT_DOUBLE_EQ(turning(rod).surface_speed(), 5 + 2 * 0.01);
+  rod.slender_axis = 0;
+  EXPECT_DOUBLE_EQ(turning(rod).surface_speed(), 5 + 2 * 0.5);
+}
+
 }  // namespace
 }  // namespace tw

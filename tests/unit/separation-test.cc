@@ -439,5 +439,24 @@ TEST(Separation, drums_with_parallel_axes_are_as_deep_as_caps_and_walls_say) {
   EXPECT_LT(worst_deep, 1e-8);
 }
 
+// Side by side: what lies along a line slides past the other for as long as it does, if distance
+// and normal are exact.
+TEST(Separation, drums_side_by_side_touch_to_the_last_digits) {
+  Random random(31);
+  const ShapePtr drum = make_cylinder(0.04, 0.08);
+  double worst_distance = 0, worst_normal = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Frame first = random_frame(random, 1);
+    const double angle = uniform(random, 0, 2 * pi);
+    const Vec3 aside(std::cos(angle), std::sin(angle), 0);
+    const Vec3 off(0.08 * aside.x(), 0.08 * aside.y(), uniform(random, -0.06, 0.06));
+    const Separation touch = parts(drum, first, drum, first * Frame(Mat3::Identity(), off));
+    worst_distance = std::max(worst_distance, std::abs(touch.distance));
+    worst_normal = std::max(worst_normal, (touch.normal - first.R * aside).norm());
+  }
+  EXPECT_LT(worst_distance, 1e-15);
+  EXPECT_LT(worst_normal, 1e-14);
+}
+
 }  // namespace
 }  // namespace tw::testing
