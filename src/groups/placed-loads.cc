@@ -21,6 +21,8 @@ struct Spring {
   Mat36 Ja = Mat36::Zero(), Jb = Mat36::Zero();  // d = Ja u_a + Jb u_b
   double k = 0, kt = 0, mu = 0;
   std::size_t number = 0;  // of the contact
+  // where the two slide already: which way friction acts on b, unit; else zero
+  Vec3 sliding = Vec3::Zero();
   // at the present displacements, world frame, on b
   Vec3 force = Vec3::Zero(), friction = Vec3::Zero();
   Mat3 slope = Mat3::Zero();  // -df/dd
@@ -52,6 +54,7 @@ class Balance {
   const std::vector<Spring>& springs() const { return springs_; }
   // Whether the contact begins to slide: not where others hold what slips a little.
   bool slides(const Spring& s) const {
+    if (!s.sliding.isZero()) return true;
     const Vec3 d = way(s, u_) - way(s, from_);
     return s.slips && rate_ * (d - s.n.dot(d) * s.n).norm() > guard::balance_slide * gravity_;
   }
@@ -108,6 +111,13 @@ class Balance {
       const Mat3 along = s.n * s.n.transpose(), across = Mat3::Identity() - along;
       const Vec3 d = way(s, u_);
       s.load = std::max(0.0, -s.k * s.n.dot(d));
+      if (!s.sliding.isZero()) {
+        s.friction = s.mu * s.load * s.sliding;
+        s.slope = all_hold || s.load > 0 ? Mat3(s.k * (s.n + s.mu * s.sliding) * s.n.transpose())
+                                         : Mat3(Mat3::Zero());
+        s.force = s.load * s.n + s.friction;
+        continue;
+      }
       const Vec3 wanted = -s.kt * (across * d);
       const double length = wanted.norm(), limit = s.mu * s.load;
       s.slips = !all_hold && s.load > 0 && length > limit;
@@ -287,9 +297,12 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
     if (!touches(c, size)) continue;
     const Vec3 relative = work.placed(c.tag.other).velocity_at(c.point) -
                           work.placed(c.tag.reference).velocity_at(c.point);
-    if (relative.norm() > placed_speed(scene, size)) return;
+    const double closing = relative.dot(c.normal);
+    if (std::abs(closing) > placed_speed(scene, size)) return;
     depth = std::max(depth, start.contacts[i].law.depth);
     springs.push_back(spring_of(start, c, i));
+    const Vec3 slip = relative - closing * c.normal;
+    if (slip.norm() > placed_speed(scene, size)) springs.back().sliding = -slip.normalized();
   }
   if (springs.empty()) return;
   Balance balance(start, std::move(springs), depth, scene.gravity_scale());

@@ -2,17 +2,18 @@
 //
 // A spring that is born without a load lets the weight fall on it: a stack sinks and trembles, a
 // box on a slope slips a little before its friction holds.  So where a body touches others from the
-// place that it was put at, and they hardly move against each other, the group's contacts begin
-// with the forces that their springs would settle to, and each contact's gap is offset by the depth
-// that makes this force.
+// place that it was put at, and they hardly part or close, the group's contacts begin with the
+// forces that their springs would settle to, and each contact's gap is offset by the depth that
+// makes this force.
 //
 // With u the displacements (and rotations) of the members, linear in the contacts' displacements
 // d = J u, the springs k and kt of the contacts and their cones:
-//   M (u - u')/tau^2 = W + J^T f(u),   N = k max(0, -n.d),   F = -kt (1 - n n^T) d cut to mu N
-// solved for u by Newton's method, again from u' = u until nothing more comes.  Where there is a
-// balance the left side goes to 0: of all forces that hold the group these have the least energy in
-// the springs.  Where there is none the left side is the acceleration of what begins to move, and
-// the forces are those at which it does.  A function of the bodies and contacts alone.
+//   M (u - u')/tau^2 = W + J^T f(u),   N = k max(0, -n.d),   F = -kt (1 - n n^T) d cut to mu N,
+// or F = -mu N slip/|slip| where the two slide already; solved for u by Newton's method, again from
+// u' = u until nothing more comes.  Where there is a balance the left side goes to 0: of all forces
+// that hold the group these have the least energy in the springs.  Where there is none the left
+// side is the acceleration of what begins to move, and the forces are those at which it does.  A
+// function of the bodies and contacts alone.
 //
 // The energy in these springs is given with the poses; it is counted apart (Tally::placed_energy).
 //
@@ -33,8 +34,8 @@ double placed_at(const State& state);
 // members begin without loads.
 bool are_placed(const Before& before, const std::vector<ProcessId>& struck);
 
-// Gives the contacts of a group at its start their loads, if all that touch there hardly move
-// against each other.  `contacts`: those of the start, as they look now.
+// Gives the contacts of a group at its start their loads, if all that touch there hardly
+// part or close.  `contacts`: those of the start, as they look now.
 void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewContact>& contacts);
 
 }  // namespace tw

@@ -159,7 +159,14 @@ void Claims::claim_window(const Body& body) {
     placed_[body.id()] = true;
     drop_parted_pairs(body);
     const std::uint64_t candidates = counters_.candidates;
-    find_partners(body, before);
+    try {
+      find_partners(body, before);
+    } catch (...) {
+      // Ctrl-C in a motion's procedure: some may not have been met, so it is claimed anew
+      process.claim = before;
+      schedule_advance(body);
+      throw;
+    }
     const bool alone = counters_.candidates == candidates;
     process.lonely_claims =
         alone ? std::min(process.lonely_claims + 1, cost::patience + cost::most_doublings) : 0;

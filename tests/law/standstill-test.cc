@@ -10,7 +10,9 @@
 namespace tw::test {
 namespace {
 
-double checks_of(World& world) { return count_of(world.statistics(), "checks"); }
+double checks_of(World& world) {
+  return static_cast<double>(count_of(world.statistics(), "checks"));
+}
 
 // Two that begin a little in each other, and neither close nor part, are done with at once.
 TEST(Standstill, what_begins_in_each_other_and_stays_so_is_not_looked_at_again) {

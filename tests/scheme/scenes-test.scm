@@ -123,6 +123,40 @@
   (test-assert "one that does not spin lies" (< (uprightness "falls") 0.8)))
 
 (in-world ()
+  (load-scene-named "gallery/arch" '((thrown? . "#f")))
+  (let ((before (at "stone-12" 2)))
+    (run! #:until 1)
+    (test-assert "the arch stands" (close? before (at "stone-12" 2) 4e-3))))
+
+(in-world ()
+  (load-scene-named "gallery/card-house" '((thrown? . "#f")))
+  (let ((before (map position (world-bodies))))
+    (run! #:until 1)
+    (test-assert "the card house stands"
+      (every (lambda (was now) (< (norm (v- now was)) 1e-2)) before (map position (world-bodies))))))
+
+(in-world ()
+  (load-scene-named "gallery/chain" '((links . "6")))
+  (run! #:until 1.5)
+  (test-assert "the chain holds"
+    (every (lambda (k)
+             (< (norm (v- (position (find-body (format #f "link-~a" (1+ k))))
+                          (position (find-body (format #f "link-~a" k)))))
+                0.17))
+           (iota 5))))
+
+(in-world ()
+  (load-scene-named "gallery/turntable")
+  (run! #:until 4)
+  (test-assert "the turntable keeps what stands near its middle" (> (at "load-0" 2) 0.1))
+  (test-assert "and loses what stands at its rim" (< (at "load-23" 2) -0.3)))
+
+(in-world ()
+  (load-scene-named "gallery/conveyor")
+  (run! #:until 3)
+  (test-assert "the belt carries its load to the dam" (< 2.6 (at "load-0" 0) 2.9)))
+
+(in-world ()
   (load-scene-named "gallery/kapla-tower" '((floors . "2")))
   (run! #:until 2)
   (test-assert "a small Kapla tower stands" (close? (* 2 0.1326) (+ 0.0039 (at "plank-15" 2)) 1e-3)))
