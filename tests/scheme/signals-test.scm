@@ -21,13 +21,13 @@
 
 ;; Sends SIGNAL after a second; one that doesn't end by it is killed after five (status 137).
 (define (ended-by signal . args)
-  (shell (format #f "timeout --preserve-status -k 5 -s ~a 1 ~a ~a" signal timewarp
+  (shell (format #f "timeout --foreground --preserve-status -k 5 -s ~a 1 ~a ~a" signal timewarp
                  (string-join args " "))))
 
 ;; Sends SIGNAL to a REPL that is given EXPRESSIONS and then waits for more.
 (define (at-open-prompt signal expressions)
   (shell (format #f "(rm -f input; mkfifo input; exec 3<>input; echo '~a' >&3; \
-timeout --preserve-status -k 5 -s ~a 2 ~a -q <&3)" expressions signal timewarp)))
+timeout --foreground --preserve-status -k 5 -s ~a 2 ~a -q <&3)" expressions signal timewarp)))
 
 (for-each
  (lambda (signal status)
