@@ -27,7 +27,8 @@ void clip_by_plane(std::vector<Vec3>& polygon, const Vec3& inward, double offset
     const bool inside = height >= -slack;
     if (inside) kept.push_back(here);
     if (inside != (next_height >= -slack))
-      kept.push_back(here + (next - here) * (height / (height - next_height)));
+      // both may lie beyond, one within the slack: then the crossing is at that one's end
+      kept.push_back(here + (next - here) * std::clamp(height / (height - next_height), 0.0, 1.0));
   }
   polygon.swap(kept);
 }

@@ -71,7 +71,8 @@ void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side
     const bool inside = here_in >= -slack;
     if (inside) kept.push_back(here);
     if (inside != (next_in >= -slack)) {
-      const double t = here_in / (here_in - next_in);
+      // both may lie beyond, one within the slack: then the crossing is at that one's end
+      const double t = std::clamp(here_in / (here_in - next_in), 0.0, 1.0);
       kept.push_back({here.point + t * (next.point - here.point),
                       here.height + t * (next.height - here.height), inside ? ~number : here.next});
     }
