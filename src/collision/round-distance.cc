@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/round-distance.h"
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "collision/expanding-polytope.h"
@@ -160,17 +162,23 @@ Vec3 touch_along(const SupportCore& a, const SupportCore& b, const Vec3& normal)
 RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
   const double size = a.size() + b.size();
   const Vec3 plain = best_plain_axis(a, b, d);
-  Vec3 inward = a.center() - b.center();
-  if (!d.overlap && d.simplex.v.norm() > 0) inward = d.simplex.v;
-  if (!(inward.norm() > 0)) inward = Vec3::UnitZ();
-  inward.normalize();
-  // moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry
-  const Vec3 oblique(0.048, 0.06, 0.064);
+  // Moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry.
+  // Where they touch to rounding GJK's direction is noise and may part them: towards the other's
+  // centre whatever touches overlaps, if it is not moved aside and out, as along a wide floor.
+  const Vec3 aside(0.048, 0.06, 0.064);
+  const double gap = d.overlap ? 0 : d.simplex.v.norm();
+  const Vec3 between = a.center() - b.center();
+  const Vec3 central = between.norm() > 0 ? Vec3(between.normalized()) : Vec3(Vec3::UnitZ());
+  const Vec3 shortest = gap > 0 ? Vec3(d.simplex.v / gap) : central;
+  const std::array<std::pair<Vec3, Vec3>, 4> ways{
+      {{shortest, aside}, {central, aside}, {central, -aside}, {shortest, -aside}}};
   Vec3 shift = Vec3::Zero();
-  for (double more = push * size; !d.overlap && more < size; more *= 10) {
-    shift = d.simplex.v.norm() * inward + more * (inward + oblique);
-    d = descend(a, b, shift);
-  }
+  for (double more = push * size; !d.overlap && more < size; more *= 10)
+    for (std::size_t i = 0; !d.overlap && i < ways.size(); ++i) {
+      const auto& [inward, oblique] = ways[i];
+      shift = gap * inward + more * (inward + oblique);
+      d = descend(a, b, shift);
+    }
   RoundDistance result;
   if (!d.overlap) {
     result.normal = plain;

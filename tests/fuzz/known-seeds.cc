@@ -25,6 +25,9 @@ const MendedSeed mended[] = {
     {"heap", 196, "a corner at the foot of a wall"},
     {"lattice", 183, "drums in touch along a line were looked at at every grid point"},
     {"cards", 278, "an edge along another one was cut far beyond its end"},
+    {"groove", 360, "the edge at the end of a slope, beyond a box, was taken for one deep in it"},
+    {"ramp", 46, "a rim that touched a face to rounding was found as deep as the plate is thick"},
+    {"bullet", 945, "a rim that touched a face to rounding was found as deep as the wall is thick"},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
 };
 

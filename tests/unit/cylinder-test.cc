@@ -128,6 +128,31 @@ TEST(Cylinder, distance_is_proven_by_a_slab_and_two_points) {
   RecordProperty("worst_slab", std::to_string(worst));
 }
 
+// The rim of a disc in the face of a wide plate, to rounding: no more is known of a direction than
+// that they touch, and both centres lie in nearly one plane.
+TEST(Cylinder, a_rim_that_touches_a_wide_face_to_rounding_is_not_deep) {
+  Random random(7);
+  const Vec3 edges(953.4171115238494, 572.0502669143095, 9.534171115238493);
+  const ShapePtr plate = make_box(edges), disc = make_cylinder(46.8765404984617, 17.33209996074106);
+  const Frame on(Pose{{-424.0948451486165, 0, 65.11248423879162},
+                      Quat(0.9966622115176161, 0, 0.0816359977755808, 0)});
+  const Vec3 up = on.R.col(2);
+  double worst = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 x(-111.28631381140133, -113.56932216404056, 28.0430116924613);
+    const Quat q(0.9898350000669067, -0.001740050856522191, 0.07596562510236635,
+                 -0.12022008429696898);
+    Quat near(q.coeffs() + 1e-15 * Eigen::Vector4d(uniform(random, -1, 1), uniform(random, -1, 1),
+                                                   uniform(random, -1, 1), uniform(random, -1, 1)));
+    const Frame frame(Pose{x + 4e-14 * random_vector(random, 1), near.normalized()});
+    const double along = frame.R.col(2).dot(up), half = disc->parts()[0].half_length;
+    const double low = up.dot(frame.p - on.p) - 0.5 * edges.z() - half * along -
+                       disc->parts()[0].radius * std::sqrt(1 - along * along);
+    worst = std::max(worst, std::abs(parts(plate, on, disc, frame).distance - low));
+  }
+  EXPECT_LT(worst, 1e-11);
+}
+
 // No axis of many separates by less than the depth.
 TEST(Cylinder, depth_is_the_least_of_many_axes_and_that_of_its_own) {
   Random random(3);
