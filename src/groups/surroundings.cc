@@ -10,6 +10,22 @@
 
 namespace tw {
 
+namespace {
+
+// Whether a fixed half-space, or a union with one, holds some of the box.
+bool reaches(const Body& unbounded, const Aabb& box) {
+  const Frame frame(unbounded.motion->pose(0));
+  const Vec3 center = 0.5 * (box.lo + box.hi), half = 0.5 * box.size();
+  const auto& parts = unbounded.shape_P->parts();
+  return std::any_of(parts.begin(), parts.end(), [&](const ConvexPart& part) {
+    if (part.kind != PartKind::half_space) return true;
+    const Vec3 normal = frame.R * part.normal;
+    return normal.dot(center - frame.p) - part.offset <= normal.cwiseAbs().dot(half);
+  });
+}
+
+}  // namespace
+
 std::vector<BodyId> Surroundings::ground_around(const Body& moving,
                                                 std::initializer_list<Frame> frames) const {
   std::vector<BodyId> ground;
@@ -17,9 +33,12 @@ std::vector<BodyId> Surroundings::ground_around(const Body& moving,
   Aabb place;
   for (const Frame& frame : frames) place.add(moving.shape_P->bounds(frame));
   place.grow(std::max(answer::contact_margin, seam::sunk) * moving.least_width);
-  grid_.standing_in(place, moving.id(), [&](BodyId id) {
+  const auto add = [&](BodyId id) {
     if (scene_.may_collide(moving, scene_.body(id))) ground.push_back(id);
-  });
+  };
+  grid_.standing_in(place, moving.id(), add);
+  for (const BodyId id : unbounded_)
+    if (scene_.body(id).fixed() && reaches(scene_.body(id), place)) add(id);
   std::sort(ground.begin(), ground.end());
   return ground;
 }

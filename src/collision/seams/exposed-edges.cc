@@ -194,7 +194,9 @@ struct EdgeThrough {
     if (!low.falling) return under_face(low.s, *low.rising);
     ExposedPoint p;
     const int across = edge_between(other, low.falling->face, low.rising->face);
-    if (across >= 0 && crossing(across, stretch, p)) return p;
+    // of edges apart the normal points away from the other's inside, not from the part's
+    const bool apart = low.falling->at(low.s) > 0;
+    if (across >= 0 && crossing(across, stretch, p) && !(apart && p.gap < 0)) return p;
     return between(low.s, *low.falling, *low.rising);
   }
 };
