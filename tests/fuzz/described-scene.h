@@ -48,6 +48,7 @@ struct DescribedBody {
 struct Room {
   std::optional<std::size_t> body;  // absent: the world
   Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();
+  double rim = never;  // m: whose centre was above this may go over the walls
 };
 
 struct DescribedScene {

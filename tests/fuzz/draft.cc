@@ -165,6 +165,7 @@ void Draft::add_pit(double half, double height) {
         add_fixed(half_space(side * Vec3::Unit(axis), -half), Vec3::Zero());
     return;
   }
+  scene.room.rim = height;
   const double thick = 0.5 * half, foot = style == 1 ? thick : 0;
   add_fixed(box({4 * half, 4 * half, 2 * thick}), {0, 0, -thick});
   for (int axis = 0; axis < 2; ++axis)

@@ -125,6 +125,14 @@ TEST(JudgedRun, tells_who_leaves_the_room_and_when) {
   EXPECT_LT(findings.rise, 1e-12);
 }
 
+TEST(JudgedRun, lets_go_over_the_rim) {
+  DescribedScene scene = falling_ball();
+  scene.room.rim = 1.5;
+  Findings findings;
+  run_judged(scene, 10, findings);
+  EXPECT_LT(findings.lost_time, 0);
+}
+
 TEST(JudgedRun, tells_of_overlaps_and_of_errors) {
   DescribedScene scene = falling_ball();
   scene.bodies.push_back(scene.bodies.front());

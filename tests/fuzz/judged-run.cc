@@ -101,10 +101,13 @@ class JudgedRun {
   void note_room(double when) {
     const Room& room = scene_.room;
     if (f_.lost_time >= 0) return;
+    over_rim_.resize(frames_.size(), false);
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       if (!scene_.bodies[i].dynamic()) continue;
       Vec3 x = frames_[i] * mass_center(i);
       if (room.body) x = frames_[*room.body].to_local(x);
+      over_rim_[i] = over_rim_[i] || x.z() > room.rim;
+      if (over_rim_[i]) continue;
       if ((x - room.lo).minCoeff() >= 0 && (room.hi - x).minCoeff() >= 0) continue;
       f_.lost_time = when;
       f_.lost_body = static_cast<int>(i);
@@ -156,6 +159,7 @@ class JudgedRun {
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
   std::vector<Frame> frames_;
+  std::vector<bool> over_rim_;
   double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
 };
 
