@@ -302,6 +302,10 @@ inline constexpr double probe = 0.01;
 // far as anything moves between two checks.  What is nearer than this to a piece may overlap its
 // neighbours.
 inline constexpr double sunk = answer::most_travel;
+// Along a valley between round pieces: the least sine between their normals, the least cosine by
+// which a normal may turn on the way out of the neighbours, and how many of them that may take.
+inline constexpr double valley = 0.1, same_side = 0.95;
+inline constexpr int most_around = 4;
 // How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
 inline constexpr double shrinking[] = {0.98, 0.9};
 

@@ -137,5 +137,37 @@ TEST(Valleys, what_is_behind_the_ground_under_a_wall_is_not_held_by_the_wall) {
   for (const ManifoldPoint& p : points) EXPECT_GT(p.gap, 0) << p.normal.transpose();
 }
 
+// Between the ball and the bar of a dumbbell: the edge of a box is held by both, however the
+// dumbbell is turned about its axis.
+TEST(Valleys, an_edge_in_the_crease_of_a_dumbbell_is_held_by_both_pieces) {
+  const Pose along_x{Vec3::Zero(), rotation_by({0, pi / 2, 0})};
+  const auto ball = [](double x) {
+    return place_shape(make_sphere(0.13), {{x, 0, 0}, Quat::Identity()});
+  };
+  const ShapePtr dumbbell =
+      make_union({ball(-0.34), ball(0.34), place_shape(make_cylinder(0.05, 0.68), along_x)});
+  const ShapePtr box = make_box({0.1, 0.3, 0.1});
+  const Vec3 crease(0.22, 0, 0.05), bar(0, 0, 1), sphere = (crease - Vec3(0.34, 0, 0)) / 0.13;
+  int held = 0, cases = 0;
+  for (const double depth : {1e-6, 1e-4, 1e-3, 3e-3})
+    for (const double tilt : {0.05, 0.2, 0.35}) {
+      // as deep in the one as in the other
+      const Vec3 edge = crease + depth * Vec3((1 - sphere.z()) / -sphere.x(), 0, -1);
+      const Frame turn = turned({0, tilt, 0}, Vec3::Zero());
+      const Frame frame(turn.R, edge - turn * Vec3(0.05, 0, -0.05));
+      Points points;
+      manifold_at_seams(*dumbbell, Frame(), {}, *box, frame, {}, 1e-4, 0.1, points);
+      const auto holds = [&](const Vec3& normal) {
+        return std::any_of(points.begin(), points.end(), [&](const ManifoldPoint& p) {
+          const Vec3 outward = p.reference_is_a ? p.normal : Vec3(-p.normal);
+          return outward.dot(normal) > 0.99 && std::abs(p.gap + depth) < 0.1 * depth + 1e-9;
+        });
+      };
+      held += holds(bar) + holds(sphere);
+      cases += 2;
+    }
+  EXPECT_EQ(held, cases);
+}
+
 }  // namespace
 }  // namespace tw::testing

@@ -19,6 +19,7 @@ namespace {
 struct Nearest {
   Vec3 point;       // of the part; the query itself where that is inside
   double distance;  // signed
+  Vec3 outward;     // unit, away from the part
 };
 
 Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
@@ -26,22 +27,25 @@ Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
   if (part.kind == PartKind::half_space) {
     const Vec3 normal = q.frame.R * part.normal;
     const double height = normal.dot(point - q.frame.p) - part.offset;
-    return {height > 0 ? Vec3(point - height * normal) : point, height};
+    return {height > 0 ? Vec3(point - height * normal) : point, height, normal};
   }
   const Frame world = q.frame * part.placement;
   if (part.kind == PartKind::sphere) {
     const Vec3 out = point - world.p;
     const double length = out.norm();
-    if (length <= part.radius) return {point, length - part.radius};
-    return {world.p + out * (part.radius / length), length - part.radius};
+    const Vec3 outward = length > 0 ? Vec3(out / length) : Vec3(Vec3::UnitZ());
+    if (length <= part.radius) return {point, length - part.radius, outward};
+    return {world.p + part.radius * outward, length - part.radius, outward};
   }
   if (part.kind == PartKind::cylinder) {
     const NearestOnCylinder near =
         nearest_on_cylinder(part.radius, part.half_length, world.to_local(point));
-    return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance};
+    return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance,
+            world.R * near.normal};
   }
   const NearestToPoint near = nearest_to_point(*part.core, world.to_local(point));
-  return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance};
+  return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance,
+          world.R * near.normal};
 }
 
 // Whether a face plane of a polyhedron proves that the point is farther from it than this.
@@ -104,6 +108,38 @@ std::vector<Vec3> along_edges(const Polyhedron& core, const Vec3& point, const V
   return points;
 }
 
+// Whether a ball or a cylinder comes out of its neighbours near a point of its surface that they
+// hold, with nearly this normal: the two make a valley there, and what presses in it is a little
+// way inside both.
+bool comes_out_beside(const ConvexPart& part, const Frame& frame, const Vec3& point,
+                      const Vec3& normal, const std::vector<SeamNeighbour>& neighbours, double size,
+                      double angle) {
+  const SeamNeighbour self{&part, frame};
+  Vec3 at = point, outward = normal;
+  for (int step = 0; step < seam::most_around; ++step) {
+    const SeamNeighbour* holder = nullptr;
+    Nearest held{Vec3::Zero(), seam::same_point * size, Vec3::Zero()};
+    for (const SeamNeighbour& q : neighbours) {
+      const Nearest here = nearest_of(q, at);
+      if (!(here.distance <= held.distance)) continue;
+      held = here;
+      holder = &q;
+    }
+    if (!holder) return !denied(at, outward, neighbours, size, angle);
+    const Vec3 along = held.outward - outward.dot(held.outward) * outward;
+    const double sine = along.norm();
+    if (!(sine > seam::valley)) return false;
+    const double farther = std::max(-held.distance, 0.0) + 0.1 * seam::probe * size;
+    at += farther / (sine * sine) * along;
+    if ((at - point).norm() > seam::sunk * size) return false;
+    const Nearest back = nearest_of(self, at);
+    at -= back.distance * back.outward;
+    outward = back.outward;
+    if (outward.dot(normal) < seam::same_side) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 double height_over(const SeamNeighbour& part, const Vec3& point) {
@@ -112,7 +148,9 @@ double height_over(const SeamNeighbour& part, const Vec3& point) {
 
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
                  const std::vector<SeamNeighbour>& neighbours, double size, double angle) {
-  if (part.kind != PartKind::polyhedron) return denied(point, normal, neighbours, size, angle);
+  if (part.kind != PartKind::polyhedron)
+    return denied(point, normal, neighbours, size, angle) &&
+           !comes_out_beside(part, frame, point, normal, neighbours, size, angle);
   const Frame world = frame * part.placement;
   const Polyhedron& core = *part.core;
   const int number = face_with(core, world.R.transpose() * normal);

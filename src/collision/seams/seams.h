@@ -28,7 +28,8 @@ struct SeamNeighbour {
 // has there.  A body with a positive distance to them all keeps its nearest contact: if c is its
 // point nearest to the part, then Q is nearer to c than the part is.  The normal of a face is that
 // of a ghost only where the face is denied all around the point too (an inner wall, not the bottom
-// of a valley).
+// of a valley), and that of a ball or cylinder only where its surface does not come out of the
+// neighbours near by (the crease between a ball and a bar is a valley).
 //
 // `size` (m) is that of the bodies in contact: points within 1e-5 of it are the same point, and
 // normals within `angle` (rad) the same normal.  Source of the problem: doc/numerics.md, "Contact
