@@ -90,6 +90,15 @@ void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& inc
   p.reference_point = p.core_point - p.gap * p.normal;
 }
 
+// Where both bodies move, a corner of the reference face presses on the incident face: along the
+// normal of that, or what slides would rise or sink with every step aside.
+void stand_on_face(const Vec3& incident_normal, ManifoldPoint& p) {
+  std::swap(p.core_point, p.reference_point);
+  p.gap *= -incident_normal.dot(p.normal);
+  p.normal = incident_normal;
+  p.reference_is_a = !p.reference_is_a;
+}
+
 // A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is
 // ground, `both_move` that neither is.
 void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool both_move, int face,
@@ -128,6 +137,8 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
         follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
       if (both_move) stand_on_edges(reference, face, incident, placed, world, found.key, p);
     }
+    if (found.key >> 60 == face_corner && both_move)
+      stand_on_face(world.R * (placed.R * incident.face(incident_face).normal), p);
     out.push_back(p);
   }
 }

@@ -362,5 +362,31 @@ TEST(Manifold, the_crossing_of_an_edge_and_a_border_nears_as_fast_as_the_bodies)
   }
 }
 
+// Two plates across each other, tilted a little: corners of one lie over the face of the other, of
+// both, and edges cross.  Whatever way they slide, every point nears as fast as its normal says.
+TEST(Manifold, points_of_tilted_faces_near_as_fast_as_the_bodies) {
+  const ShapePtr plate = make_box({2, 1, 0.1}), other = make_box({1.6, 1.2, 0.1});
+  const double step = 1e-5;
+  int corners = 0;
+  for (const double tilt : {0.005, 0.02, 0.035}) {
+    Frame over = turned({0.6 * tilt, tilt, 0}, {0, 0, 0});
+    over = Frame(rotation_by({0, 0, 0.1}).toRotationMatrix() * over.R, Vec3(0.7, 0.3, 0.12));
+    const Points points = manifold_of(plate, Frame(), other, over, 0.2);
+    ASSERT_GE(points.size(), 4u);
+    for (const Vec3& slide : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, -2, 0.1)}) {
+      Frame later = over;
+      later.p += step * slide;
+      for (const ManifoldPoint& now : manifold_of(plate, Frame(), other, later, 0.2))
+        for (const ManifoldPoint& p : points) {
+          if (p.feature != now.feature) continue;
+          const double predicted = slide.dot(p.normal) * (p.reference_is_a ? 1 : -1);
+          EXPECT_NEAR((now.gap - p.gap) / step, predicted, 1e-6) << "tilt " << tilt;
+          corners += p.reference_is_a ? 0 : 1;
+        }
+    }
+  }
+  EXPECT_GE(corners, 9);
+}
+
 }  // namespace
 }  // namespace tw::testing
