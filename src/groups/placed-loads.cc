@@ -268,6 +268,11 @@ double placed_at(const State& state) {
   return was_put ? state.arc_time : -never;
 }
 
+bool is_just_placed(const Scene& scene, const Body& body, const State& state, double now) {
+  const double time_to_fall = placed_speed(scene, body.least_width) / scene.gravity_scale();
+  return now - placed_at(state) <= time_to_fall;
+}
+
 bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
   const Scene& scene = before.scene();
   const double now = before.key().time;
@@ -277,9 +282,7 @@ bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
   for (const ProcessId process : struck) {
     const State& state = before.state(process);
     const Body& body = scene.body_of(process);
-    // the time to fall so far
-    const double speed = placed_speed(scene, body.least_width);
-    placed = placed || now - placed_at(state) <= speed / scene.gravity_scale();
+    placed = placed || is_just_placed(scene, body, state, now);
     if (!state.group || state.group.get() != counted)
       members += state.group ? state.group->members.size() : 1;
     counted = state.group.get();

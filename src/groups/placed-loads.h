@@ -29,6 +29,10 @@ namespace tw {
 // When what is in this state was put where it is, as far as its state tells, s; -never: long ago.
 double placed_at(const State& state);
 
+// Whether that was so lately that it cannot have fallen farther since than bodies may overlap when
+// they come into the world.
+bool is_just_placed(const Scene& scene, const Body& body, const State& state, double now);
+
 // Whether the fusion of the first two of `struck` is one of bodies that were placed touching: what
 // falls farther than bodies may overlap when they come into the world was not.  Groups of too many
 // members begin without loads.

@@ -23,6 +23,7 @@
 #include "detect/approach.h"
 #include "detect/dip.h"
 #include "detect/exact-impact.h"
+#include "groups/placed-loads.h"
 #include "kernel/active-pairs.h"
 #include "kernel/simulation.h"
 #include "math/root.h"
@@ -37,17 +38,28 @@ double grid_after(double t) {
   return (std::floor(t / answer::check_grid) + 1) * answer::check_grid;
 }
 
-double slack_of(const Piece& piece) {
-  return answer::depth_slack * std::min(piece.body_a->least_width, piece.body_b->least_width);
+double width_of(const Piece& piece) {
+  return std::min(piece.body_a->least_width, piece.body_b->least_width);
+}
+double slack_of(const Scene& scene, const Piece& piece) {
+  // what is placed touching is to be found at once, for its loads
+  const auto is_integrated = [&](const Body& body, const State& state) {
+    return state.trajectory().stepped() && !is_just_placed(scene, body, state, piece.start_time());
+  };
+  const bool integrated =
+      is_integrated(*piece.body_a, *piece.a) && is_integrated(*piece.body_b, *piece.b);
+  return (integrated ? answer::stepped_slack : answer::depth_slack) * width_of(piece);
 }
 
 // How deep the two may be, m, before it counts as penetration: as deep as they are when the piece
-// begins, and a slack.  What begins in each other and does not close (that would be an impact)
-// stays so, or parts as slowly as it likes: without this it were looked at at every grid point.
-double depth_at_touch(Pair& pair, const Piece& piece) {
+// begins, and as deep again within limits, or a slack.  What begins in each other and does not
+// close (that would be an impact) stays so, or parts or creeps on as slowly as it likes: without
+// this it were looked at at every grid point.
+double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
   if (!(pair.touch > 0)) {
-    const double start = separation_at(piece, piece.start_time()).distance;
-    pair.touch = std::max(-start, 0.0) + slack_of(piece);
+    const double overlap = std::max(-separation_at(piece, piece.start_time()).distance, 0.0);
+    const double deeper = std::min(overlap, answer::creep_share * width_of(piece));
+    pair.touch = overlap + std::max(deeper, slack_of(scene, piece));
   }
   return pair.touch;
 }
@@ -174,8 +186,9 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
     counters_.dearest_pair[0] = pair.a;
     counters_.dearest_pair[1] = pair.b;
   }
-  double clear = certificate(piece, pair.caches, when, slack_of(piece));
-  if (!(clear > when)) clear = certificate(piece, pair.caches, when, depth_at_touch(pair, piece));
+  double clear = certificate(piece, pair.caches, when, slack_of(sim_.scene, piece));
+  if (!(clear > when))
+    clear = certificate(piece, pair.caches, when, depth_at_touch(sim_.scene, pair, piece));
   counters_.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
@@ -185,11 +198,13 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
 }
 
 // The crossing of 0 or, where the left end touches already, of the depth at touch, where the two
-// are deeper at `when`; true if they approach there.
+// are deeper at `when`; true if they are.  What gets deeper approaches somewhere, whatever the
+// velocity at the witness points: drums side by side may part in the middle and tilt into each
+// other at an end.
 bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, double when) const {
   const double right = separation_at(piece, when).distance;
-  if (right >= -slack_of(piece)) return false;
-  const double touch = depth_at_touch(pair, piece);
+  if (right >= -slack_of(sim_.scene, piece)) return false;
+  const double touch = depth_at_touch(sim_.scene, pair, piece);
   if (right >= -touch) return false;
   const double left = separation_at(piece, start).distance;
   double impact_time = when;
@@ -198,7 +213,6 @@ bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, dou
     const auto f = [&](double t) { return separation_at(piece, t).distance + level; };
     impact_time = find_root(f, start, when, left + level, right + level).left;
   }
-  if (!approaching_at(piece, impact_time)) return false;
   pair.impact = pieces_.impact_key(piece, impact_time);
   return true;
 }

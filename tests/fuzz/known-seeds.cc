@@ -29,6 +29,7 @@ const MendedSeed mended[] = {
     {"ramp", 46, "a rim that touched a face to rounding was found as deep as the plate is thick"},
     {"bullet", 945, "a rim that touched a face to rounding was found as deep as the wall is thick"},
     {"cards", 474, "a corner under a tilted face pressed along its own face: sinking as it slid"},
+    {"lattice", 3417, "what got deeper while its witness points parted was looked at for ever"},
     {"shaker", 1910, "in the crease between the ball and the bar of a dumbbell nothing held"},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
 };
