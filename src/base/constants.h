@@ -273,6 +273,10 @@ inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_r
 // Sine of the angle between axis and normal below which a cylinder stands, 20 degrees; and below
 // which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
 inline constexpr double standing = 0.342, standing_flat = 3e-4;
+// Sine of the angle from which on two lines cross, 6 degrees: their nearest points run along them
+// ten times as fast as the bodies slide.  Flatter ones are a line and a point, whose gap misses
+// s^2 sine^2/2r when the bodies slide by s.
+inline constexpr double crossing = 0.1;
 // Points of a rim, and corners of a disc as an outline.
 inline constexpr int rim_points = 8, disc_sides = 16;
 
