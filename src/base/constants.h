@@ -182,9 +182,11 @@ inline constexpr double undiminished = 0.99;
 
 namespace tw::guard {
 
-// Impulses of one impact between two bodies, and of one that is passed on through a group.  Counted
-// where something still approaches then (impulses_given_up).
-inline constexpr int most_impulses = 200, most_passed_on = 700;
+// Impulses of one impact between two bodies, and of one that is passed on through a group; where
+// the two may strike each other again meanwhile, a body that is a thousand times as heavy as what
+// it comes down on needs thousands.  Counted where something still approaches then
+// (impulses_given_up).
+inline constexpr int most_impulses = 200, most_passed_on = 700, most_struck_again = 20000;
 // Impacts of a pair at one instant, slower than this share of the fusion speed: rounding, they
 // fuse.
 inline constexpr double grazing = 1e-5;

@@ -22,6 +22,7 @@ const MendedSeed mended[] = {
     {"cards", 278, "an edge along another one was cut far beyond its end"},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
     {"thin", 17, "where rods cross a fixed point missed the gap, and arcs ended for it"},
+    {"thin", 773, "a coin came down on a rod on the floor by thousands of impacts"},
 };
 
 }  // namespace

@@ -99,6 +99,22 @@ TEST(Standstill, what_crosses_and_slides_has_arcs_as_long_as_its_checks_are_apar
   }
 }
 
+// What lies on a floor gives on what it is given: a body that is a thousand times as heavy is
+// stopped by thousands of blows on it, which are one impact.
+TEST(Standstill, a_heavy_body_is_stopped_by_a_light_one_in_few_impacts) {
+  World world;
+  set_contact_for_all(world, 0.2, 0.5);
+  add_wall(world, Vec3::UnitZ(), 0);
+  world.add_body(body_of(make_box(Vec3::Constant(0.2)), {0, 0, 0.1}, Vec3::Zero()));
+  BodyDef heavy = body_of(make_box(Vec3::Constant(0.2)), {0.03, 0.02, 0.35}, {0, 0, -2});
+  heavy.density = 1e6;
+  const BodyId id = world.add_body(heavy);
+  world.advance(0.2);
+  EXPECT_LT(count_of(world.statistics(), "collisions"), 100);
+  EXPECT_EQ(count_of(world.statistics(), "impacts_declared_soft"), 0);
+  EXPECT_NEAR(world.state(id).position.z(), 0.3, 0.002);
+}
+
 // A rod of 1:2000 that comes down on its end and a plate (thin:115 of the random scenes): in the
 // rod's rows of the linear system a pivot that was large in SI units only lost all digits of its
 // momentum, and no step was short enough.
