@@ -211,8 +211,9 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   const double cosine = across.dot(v.normal) / sine;
   if (std::abs(cosine) < patch::aligned_round) return false;
   p.normal = (cosine < 0 ? -1 : 1) / sine * across;
-  // below the rim and outside the cylinder's side
-  if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -patch::level)
+  // outside the cylinder's side, and not almost flat on it: then the point on the rim that a small
+  // turn makes the nearest is far off
+  if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -patch::crossing)
     return false;
   p.direction = line;
   p.reference_radius = radius;
