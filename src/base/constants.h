@@ -187,9 +187,11 @@ inline constexpr double undiminished = 0.99;
 
 namespace tw::guard {
 
-// Impulses of one impact between two bodies, and of one that is passed on through a group.  Counted
-// where something still approaches then (impulses_given_up).
-inline constexpr int most_impulses = 200, most_passed_on = 700;
+// Impulses of one impact between two bodies, and of one that is passed on through a group; where
+// the two may strike each other again meanwhile, a body that is a thousand times as heavy as what
+// it comes down on needs thousands.  Counted where something still approaches then
+// (impulses_given_up).
+inline constexpr int most_impulses = 200, most_passed_on = 700, most_struck_again = 20000;
 // Impacts of a pair at one instant, slower than this share of the fusion speed: rounding, they
 // fuse.
 inline constexpr double grazing = 1e-5;
@@ -278,6 +280,10 @@ inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_r
 // Sine of the angle between axis and normal below which a cylinder stands, 20 degrees; and below
 // which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
 inline constexpr double standing = 0.342, standing_flat = 3e-4;
+// Sine of the angle from which on two lines cross, 6 degrees: their nearest points run along them
+// ten times as fast as the bodies slide.  Flatter ones are a line and a point, whose gap misses
+// s^2 sine^2/2r when the bodies slide by s.
+inline constexpr double crossing = 0.1;
 // Points of a rim, and corners of a disc as an outline.
 inline constexpr int rim_points = 8, disc_sides = 16;
 

@@ -1,7 +1,8 @@
 // Contact manifolds of cylinders.
 //
 // Which features meet is read off the axis of least distance: along a cap's normal the cap does,
-// square to the axis the side does, else the rim.
+// square to the axis the side does, else the rim.  What crosses runs along both (group-arc.h): a
+// side or an edge and another side are two lines, with a rim they are a line and a circle.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -151,6 +152,81 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
   if (points.empty()) add_witness(v, out);
 }
 
+// A cylinder's axis and the line of a segment of the other, `tail` + t `along`, where they cross
+// well within both and the normal stands on both; false where they do not.
+bool add_crossing(const View& v, const Vec3& tail, const Vec3& along, double radius,
+                  std::vector<ManifoldPoint>& out) {
+  const PlacedCylinder c(v.reference, v.reference_frame);
+  const double length = along.norm();
+  const Vec3 other = along / length;
+  const Vec3 across = c.axis.cross(other);
+  const double sine = across.norm();
+  if (!(sine >= patch::crossing)) return false;
+  const double cosine = across.dot(v.normal) / sine;
+  if (std::abs(cosine) < patch::aligned_round) return false;
+  ManifoldPoint p = v.point();
+  p.kind = ReferenceFeature::crossing;
+  p.normal = (cosine < 0 ? -1 : 1) / sine * across;
+  p.direction = c.axis;
+  p.other_direction = other;
+  p.reference_radius = c.radius;
+  p.radius = radius;
+  // the points of either line that are nearest to the other one
+  const Vec3 apart = tail - c.center;
+  const double on_other = -apart.dot(p.normal.cross(c.axis)) / other.dot(p.normal.cross(c.axis));
+  const double on_axis = apart.dot(p.normal.cross(other)) / c.axis.dot(p.normal.cross(other));
+  if (std::abs(on_axis) >= c.half_length || on_other <= 0 || on_other >= length) return false;
+  p.core_point = tail + on_other * other;
+  p.reference_point = c.center + on_axis * c.axis;
+  p.gap = p.normal.dot(p.core_point - p.reference_point) - c.radius - radius;
+  p.feature = feature_name(v.pair, FeatureMode::side, {3, 0, 0});
+  if (p.gap <= v.reach) out.push_back(p);
+  return true;
+}
+
+// A segment of the reference, from `tail` along `along` with a radius, and a rim of the cylinder
+// that stands on it as the other; false where they do not cross well within the segment, or where
+// the normal is not square to both.
+bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
+             std::vector<ManifoldPoint>& out) {
+  const PlacedCylinder c(v.other, v.other_frame);
+  const double length = along.norm();
+  const Vec3 line = along / length;
+  ManifoldPoint p = v.point();
+  p.kind = ReferenceFeature::rim;
+  const double up = c.axis.dot(v.on_other - c.center);
+  p.other_direction = c.axis;
+  p.rim_center = c.center + (up < 0 ? -c.half_length : c.half_length) * c.axis;
+  p.rim = c.radius;
+  const Vec3 from_axis = v.on_other - p.rim_center;
+  const Vec3 out_of_axis = from_axis - c.axis * c.axis.dot(from_axis);
+  const double reach = out_of_axis.norm();
+  if (std::abs(reach - c.radius) > patch::level * c.radius ||
+      (from_axis - out_of_axis).norm() > patch::level * c.radius)
+    return false;
+  const Vec3 radial = out_of_axis / reach;
+  const Vec3 across = line.cross(c.axis.cross(radial));
+  const double sine = across.norm();
+  if (!(sine >= patch::crossing)) return false;
+  const double cosine = across.dot(v.normal) / sine;
+  if (std::abs(cosine) < patch::aligned_round) return false;
+  p.normal = (cosine < 0 ? -1 : 1) / sine * across;
+  // outside the cylinder's side, and not almost flat on it: then the point on the rim that a small
+  // turn makes the nearest is far off
+  if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -patch::crossing)
+    return false;
+  p.direction = line;
+  p.reference_radius = radius;
+  p.core_point = p.rim_center + c.radius * radial;
+  const double at = line.dot(p.core_point - tail);
+  if (at <= 0 || at >= length) return false;
+  p.reference_point = tail + at * line;
+  p.gap = p.normal.dot(p.core_point - p.reference_point) - radius;
+  p.feature = feature_name(v.pair, FeatureMode::rim, {up < 0 ? 1u : 0u, 2, 0});
+  if (p.gap <= v.reach) out.push_back(p);
+  return true;
+}
+
 // A cylinder's axis as reference line, and a segment of the other: from `tail` along `along` with a
 // radius.  Nearly parallel ones meet at the two ends of what they share, others at the witness.
 void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radius,
@@ -191,6 +267,24 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   if (out.size() == from) add(v.on_other + radius * v.normal, 0);
 }
 
+// The edge of a polyhedron, from its vertex farthest against the normal, that holds the witness;
+// zero where none does within 0.2 degrees.
+void witness_edge(const View& v, Vec3& tail, Vec3& along) {
+  const Frame world = v.other_frame * v.other.placement;
+  const Polyhedron& core = *v.other.core;
+  const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
+  tail = world * core.vertex(vertex);
+  along.setZero();
+  double best = patch::level;
+  for (const Polyhedron::Link& link : core.links(vertex)) {
+    const Vec3 edge = world * core.vertex(link.vertex) - tail;
+    const double off = edge.cross(v.on_other - tail).norm() / edge.squaredNorm();
+    if (off >= best || std::abs(edge.dot(v.normal)) > patch::level * edge.norm()) continue;
+    best = off;
+    along = edge;
+  }
+}
+
 // The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the
 // axis and square to the normal; zero where there is none within 0.2 degrees.
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
@@ -219,9 +313,13 @@ void polyhedron_and_cylinder(const View& of_polyhedron, const View& of_cylinder,
   Ground ground;
   if (face_ground(of_polyhedron, ground)) return add_on_ground(of_polyhedron, ground, out);
   if (cap_ground(of_cylinder, ground)) return add_on_cap(of_cylinder, ground, out);
-  if (!is_level(of_cylinder.reference, of_cylinder.reference_frame, of_cylinder.normal))
-    return add_witness(of_polyhedron, out);
   Vec3 tail, along;
+  witness_edge(of_cylinder, tail, along);
+  if (!is_level(of_cylinder.reference, of_cylinder.reference_frame, of_cylinder.normal)) {
+    if (!along.isZero(0) && add_rim(of_polyhedron, tail, along, 0, out)) return;
+    return add_witness(of_polyhedron, out);
+  }
+  if (!along.isZero(0) && add_crossing(of_cylinder, tail, along, 0, out)) return;
   level_edge(of_cylinder, tail, along);
   if (along.isZero(0)) along = of_cylinder.normal;  // no part of it is along the axis
   add_on_side(of_cylinder, tail, along, 0, out);
@@ -239,12 +337,19 @@ void two_cylinders(const View& of_a, const View& of_b, std::vector<ManifoldPoint
   const bool side_b = is_level(of_b.reference, of_b.reference_frame, of_b.normal);
   if (side_a && side_b) {
     const PlacedCylinder b(of_a.other, of_a.other_frame);
-    return add_on_side(of_a, b.center - b.half_length * b.axis, 2 * b.half_length * b.axis,
-                       b.radius, out);
+    const Vec3 tail = b.center - b.half_length * b.axis, along = 2 * b.half_length * b.axis;
+    if (add_crossing(of_a, tail, along, b.radius, out)) return;
+    return add_on_side(of_a, tail, along, b.radius, out);
   }
   // a side and a rim, or two rims
-  if (side_a) return add_on_side(of_a, of_a.on_other, of_a.normal, 0, out);
-  if (side_b) return add_on_side(of_b, of_b.on_other, of_b.normal, 0, out);
+  for (const auto& [is_side, view] : {std::pair(side_a, &of_a), std::pair(side_b, &of_b)}) {
+    if (!is_side) continue;
+    const PlacedCylinder c(view->reference, view->reference_frame);
+    if (add_rim(*view, c.center - c.half_length * c.axis, 2 * c.half_length * c.axis, c.radius,
+                out))
+      return;
+    return add_on_side(*view, view->on_other, view->normal, 0, out);
+  }
   add_witness(of_a, out);
 }
 

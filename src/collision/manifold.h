@@ -15,20 +15,23 @@
 namespace tw {
 
 // What the reference body shows the other: see integrate/group-arc.h for what follows from it.
-enum class ReferenceFeature : unsigned char { plane, line, point };
+enum class ReferenceFeature : unsigned char { plane, line, point, crossing, rim };
 
 struct ManifoldPoint {
   bool reference_is_a = true;  // the reference body; the other has the core point
   ReferenceFeature kind = ReferenceFeature::plane;
-  Vec3 normal = Vec3::UnitZ();          // unit, world, from the reference body to the other
-  Vec3 direction = Vec3::UnitX();       // unit, world: line only
-  Vec3 reference_point = Vec3::Zero();  // world: a point of the plane or line, or the core point
-  Vec3 core_point = Vec3::Zero();       // world: of the other body
-  double reference_radius = 0;          // m: of a spherical or cylindrical reference
-  double radius = 0;                    // m: about the core point
-  double gap = 0;                       // m, signed; > 0: not yet touching
-  int pair = 0;                         // pair of parts, part_a * parts of b + part_b
-  std::uint64_t feature = 0;            // stable while the same features meet
+  Vec3 normal = Vec3::UnitZ();           // unit, world, from the reference body to the other
+  Vec3 direction = Vec3::UnitX();        // unit, world: line, crossing, rim
+  Vec3 other_direction = Vec3::UnitY();  // unit, world: of the other body's line, or a rim's axis
+  Vec3 rim_center = Vec3::Zero();        // world: rim only
+  Vec3 reference_point = Vec3::Zero();   // world: a point of the plane or line, or the core point
+  Vec3 core_point = Vec3::Zero();        // world: of the other body
+  double reference_radius = 0;           // m: of a spherical or cylindrical reference
+  double radius = 0;                     // m: about the core point
+  double rim = 0;                        // m: of the other body's rim
+  double gap = 0;                        // m, signed; > 0: not yet touching
+  int pair = 0;                          // pair of parts, part_a * parts of b + part_b
+  std::uint64_t feature = 0;             // stable while the same features meet
 };
 
 // Which face is the reference where faces of both bodies could be.

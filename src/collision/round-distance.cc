@@ -36,7 +36,7 @@ constexpr double special = 1e-3;
 struct Descent {
   bool overlap = false;
   Simplex simplex;
-  std::vector<DifferencePoint> seen;  // what the simplex' numbers mean
+  std::vector<DifferencePoint> seen;  // what the simplex' numbers mean: all there ever were
 
   const DifferencePoint& point(std::size_t i) const {
     return seen[static_cast<std::size_t>(simplex.points[i].a)];
@@ -56,12 +56,12 @@ bool in_simplex(const Simplex& simplex, const Vec3& w) {
 }
 
 Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
-  Descent best;
+  Descent d;
   const double size = a.size() + b.size();
-  add_point(best, difference_support(a, b, shift, b.center() + shift - a.center()));
-  reduce(best.simplex);
-  Descent d = best;
-  double least = best.simplex.v.squaredNorm();
+  add_point(d, difference_support(a, b, shift, b.center() + shift - a.center()));
+  reduce(d.simplex);
+  Simplex best = d.simplex;
+  double least = best.v.squaredNorm();
   for (int step = 0, stalls = 0; step < most_steps && stalls < most_stalls; ++step) {
     const Vec3 v = d.simplex.v;
     const double square = v.squaredNorm();
@@ -78,13 +78,13 @@ Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
     const double reached = d.simplex.v.squaredNorm();
     if (reached < least) {
       least = reached;
-      best = d;
+      best = d.simplex;
     } else {
       ++stalls;
-      best.seen = d.seen;
     }
   }
-  return best;
+  d.simplex = best;
+  return d;
 }
 
 // Special axes next to n of one core (outward from it), appended.

@@ -60,10 +60,15 @@ NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const Placed
   c.feature = static_cast<ContactFeature>(p.kind);
   c.normal = reference.frame.R.transpose() * p.normal;
   c.direction = reference.frame.R.transpose() * p.direction;
+  c.other_direction = other.frame.R.transpose() * p.other_direction;
   c.point_a = reference.frame.to_local(p.reference_point);
   c.point_b = other.frame.to_local(p.core_point);
   c.radius_a = p.reference_radius;
   c.radius_b = p.radius;
+  if (p.kind == ReferenceFeature::rim) {
+    c.rim = p.rim;
+    c.point_b = other.frame.to_local(p.rim_center);
+  }
   c.law = law;
   result.tag = {reference.body->id(), other.body->id(), p.pair, p.feature};
   result.gap = p.gap;

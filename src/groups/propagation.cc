@@ -46,10 +46,19 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
                           c.contact.law.mu,         borne_speed(c, slow)};
   };
 
-  std::vector<ImpulseContact> touching_now;
+  std::vector<ImpulseContact> touching_now;  // last of all where the two struck each other
   for (const NewContact& c : work.contacts)
     if (touches(c)) touching_now.push_back(impulse_contact(c));
-  const ImpulseResult result = solver.solve(touching_now, 0, guard::most_passed_on);
+  if (!work.struck_at.empty()) {
+    const BodyId a = work.successors[0].body->id(), b = work.successors[1].body->id();
+    const ContactParameters& law = scene.contacts.between(a, b);
+    const double slow = fusion_speed(scene, scene.body(a), scene.body(b));
+    for (const ContactPoint& c : work.struck_at)
+      touching_now.push_back(
+          {slot_of(a), slot_of(b), c.normal, c.point, law.restitution, law.friction, slow});
+  }
+  const int most = work.struck_at.empty() ? guard::most_passed_on : guard::most_struck_again;
+  const ImpulseResult result = solver.solve(touching_now, 0, most);
   if (const ImpulseContact* at = result.stopped_at) {
     std::vector<ProcessId> at_border;
     for (const std::uint32_t slot : {at->a, at->b})
@@ -58,7 +67,14 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
     return at_border;
   }
   work.tally.kinematic_work += solver.work_of_held();
-  if (result.left_over > 0) ++work.tally.impulses_given_up;
+  const auto still_approaches = [&](const ImpulseContact& c) {
+    return -solver.approach(c) > c.bears;
+  };
+  if (std::any_of(touching_now.end() - static_cast<std::ptrdiff_t>(work.struck_at.size()),
+                  touching_now.end(), still_approaches))
+    for (const std::size_t i : {0, 1}) work.successors[i].data.impacts.unsettled_time = work.now();
+  else if (result.left_over > 0)
+    ++work.tally.impulses_given_up;
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
     if (solver.slot(slot).moves())
       take_velocities(*work.successor_of(ids[slot]), solver.slot(slot));

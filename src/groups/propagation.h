@@ -2,6 +2,10 @@
 // spring gets an impulse without restitution, fastest first; what does not touch yet is left to
 // collision checks.
 //
+// The two that struck each other belong to it: a heavy body that comes down on a light one is
+// stopped by as many blows as it is heavier, for the floor gives back each time what the light one
+// was given.  Each as an impact of its own would cost new arcs for the whole group.
+//
 // Source: doc/numerics.md, "Contact groups".
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later

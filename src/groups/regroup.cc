@@ -124,6 +124,7 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     Regrouping work(before, surroundings, request.cause, successors);
     work.reports_fissions = request.reports_fissions;
     work.starts_loaded = placed;
+    work.struck_at = request.struck_at;
     find_contacts(work, struck);
 
     // impulses that reach the border come first: then nothing is as it should be

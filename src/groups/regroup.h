@@ -8,9 +8,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include "collision/separation.h"
 #include "groups/region.h"
 
 namespace tw {
@@ -31,6 +33,9 @@ using Known = std::function<bool(ProcessId)>;
 struct RegroupRequest {
   Cause cause;
   bool reports_fissions = false;  // somebody wants to hear of them
+  // Where the first two have struck each other, normals from the first to the second; none where
+  // they should not strike again.
+  std::span<const ContactPoint> struck_at = {};
 };
 
 // `struck`: those that the discontinuity changed, with new arcs where it changed their motion, and

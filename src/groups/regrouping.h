@@ -10,9 +10,11 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "collision/separation.h"
 #include "groups/before.h"
 #include "groups/group-counters.h"
 #include "groups/group.h"
@@ -60,9 +62,10 @@ struct Regrouping {
   const Before& before;
   const Surroundings& surroundings;
   Cause cause;
-  bool reports_fissions = false;       // somebody wants to hear of them
-  bool starts_loaded = false;          // a fusion of what was placed touching
-  std::vector<Successor>& successors;  // of all that take part
+  bool reports_fissions = false;                 // somebody wants to hear of them
+  bool starts_loaded = false;                    // a fusion of what was placed touching
+  std::span<const ContactPoint> struck_at = {};  // where the first two struck each other
+  std::vector<Successor>& successors;            // of all that take part
 
   Groups old;                            // whose members get new arcs, each once
   std::vector<PairBefore> pairs_before;  // of processes with new arcs, ascending

@@ -24,6 +24,8 @@ TW_LANES LaneChange gather(const ContactPack& pack, const BodyChange* changes,
           gather_vec(c[0]->w, c[1]->w, c[2]->w, c[3]->w)};
 }
 
+constexpr bool is_flat(ContactFeature feature) { return feature == ContactFeature::plane; }
+
 // Nn y = (1 - n n^T - l l^T) y/|arm|
 TW_LANES LaneVec turn_normal(const ContactPack& pack, const PackLinear& o, const LaneVec& y) {
   LaneVec part = y - dot(o.n, y) * o.n;
@@ -81,9 +83,10 @@ TW_LANES LaneVec stretched(const PackLinear& o, const LaneVec& y) {
 }
 
 // `grounded`: body a does not change
-template <bool flat, bool grounded>
+template <ContactFeature feature, bool grounded>
 void change(const ContactPack& pack, const PackLinear& o, const BodyChange* changes,
             const LaneVec& stretch_side, PackChange& out) {
+  constexpr bool flat = is_flat(feature);
   // relative displacement in a's frame
   const LaneChange b = gather(pack, changes, pack.b);
   LaneChange a;
@@ -97,9 +100,19 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   // normal and arms
   out.sa = dp;
   out.sb = turned_b;
-  LaneVec dn;
-  if constexpr (!flat) {
+  LaneVec dn, turned;
+  if constexpr (runs(feature)) {
+    turned = b.th;
+    if constexpr (!grounded) turned = turned - a.th;
+    const RunningPoint& r = o.running;
+    dn = (dot(r.turn_p, dp) + dot(r.turn_om, turned)) * r.ma;
+    const LaneVec along = (dot(r.along_p, dp) + dot(r.along_om, turned)) * r.path;
+    out.sa = out.sa + along;
+    out.sb = out.sb + along;
+  } else if constexpr (!flat) {
     dn = turn_normal(pack, o, dp);
+  }
+  if constexpr (!flat) {
     out.sa = out.sa - pack.radius_b * dn;
     out.sb = out.sb - pack.radius_b * dn;
   }
@@ -113,7 +126,8 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   if constexpr (!grounded) dv = dv - a.v - cross(a.w, o.sa) + cross(o.vr, a.th);
 
   // force
-  const Lanes dN = normal_change(o, dp, dv);
+  Lanes dN = normal_change(o, dp, dv);
+  if constexpr (runs(feature)) dN = dN + dot(o.h, turned);
   out.friction = friction_change<flat>(o, dN, dn, dv);
   const LaneVec rest = out.friction - pack.ct * stretch_side;
   out.f = dN * o.n + out.friction + stretched(o, rest);
@@ -155,7 +169,14 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   const Lanes by_depth = s.N > zero ? pack.k * slope : zero;
   o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
-  if (pack.feature != ContactFeature::plane) o.g = o.g - o.kb * turn_normal(pack, o, o.vr);
+  if (runs(pack.feature)) {
+    o.running = s.running;
+    const Lanes by_turn = o.kb * dot(o.running.ma, o.vr);
+    o.g = o.g - by_turn * o.running.turn_p;
+    o.h = -(by_turn * o.running.turn_om);
+  } else if (!is_flat(pack.feature)) {
+    o.g = o.g - o.kb * turn_normal(pack, o, o.vr);
+  }
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
 }
 
@@ -172,11 +193,17 @@ void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
 
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
                  const LaneVec& stretch_side, bool outside_changes, PackChange& out) {
-  const bool flat = pack.feature == ContactFeature::plane;
   const bool grounded = pack.grounded && !outside_changes;
-  const auto choose = flat ? (grounded ? change<true, true> : change<true, false>)
-                           : (grounded ? change<false, true> : change<false, false>);
-  choose(pack, linear, changes, stretch_side, out);
+  const auto choose = [grounded](auto with_ground, auto without) {
+    return grounded ? with_ground : without;
+  };
+  using F = ContactFeature;
+  // a line and a point differ in turn_normal alone, what runs in how it does
+  const auto chosen =
+      pack.feature == F::plane ? choose(change<F::plane, true>, change<F::plane, false>)
+      : runs(pack.feature)     ? choose(change<F::crossing, true>, change<F::crossing, false>)
+                               : choose(change<F::point, true>, change<F::point, false>);
+  chosen(pack, linear, changes, stretch_side, out);
 }
 
 LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& friction) {
@@ -186,39 +213,61 @@ LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const La
 
 namespace {
 
-// df by dp and by dv', stretches eliminated
-template <bool flat>
+LaneMat columns(const LaneVec (&c)[3]) {
+  return {{{c[0].x, c[1].x, c[2].x}, {c[0].y, c[1].y, c[2].y}, {c[0].z, c[1].z, c[2].z}}};
+}
+
+// df by dp and by dv', where the point runs by dom; stretches eliminated
+template <ContactFeature feature>
 TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, LaneMat& by_p,
-                                LaneMat& by_v) {
+                                LaneMat& by_v, LaneMat& by_turn) {
+  constexpr bool flat = is_flat(feature), running = runs(feature);
   const Lanes zero = lanes(0), one = lanes(1);
   const LaneVec unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   // columns
-  LaneVec p[3], v[3];
+  const LaneVec none = {zero, zero, zero};
+  LaneVec p[3], v[3], turn[3];
   for (int i = 0; i < 3; ++i) {
-    LaneVec dn = {zero, zero, zero};
-    if constexpr (!flat) dn = turn_normal(pack, o, unit[i]);
-    const LaneVec none = {zero, zero, zero};
+    LaneVec dn = none;
+    if constexpr (running)
+      dn = dot(o.running.turn_p, unit[i]) * o.running.ma;
+    else if constexpr (!flat)
+      dn = turn_normal(pack, o, unit[i]);
     const Lanes dNp = normal_change(o, unit[i], none), dNv = normal_change(o, none, unit[i]);
     const LaneVec Fp = friction_change<flat>(o, dNp, dn, none);
     const LaneVec Fv = friction_change<flat>(o, dNv, none, unit[i]);
     p[i] = dNp * o.n + Fp + stretched(o, Fp);
     if constexpr (!flat) p[i] = p[i] + o.N * dn;
     v[i] = dNv * o.n + Fv + stretched(o, Fv);
+    if constexpr (running) {
+      const LaneVec turned = dot(o.running.turn_om, unit[i]) * o.running.ma;
+      const Lanes dNt = dot(o.h, unit[i]);
+      const LaneVec Ft = friction_change<flat>(o, dNt, turned, none);
+      turn[i] = dNt * o.n + Ft + stretched(o, Ft) + o.N * turned;
+    }
   }
-  by_p = {{{p[0].x, p[1].x, p[2].x}, {p[0].y, p[1].y, p[2].y}, {p[0].z, p[1].z, p[2].z}}};
-  by_v = {{{v[0].x, v[1].x, v[2].x}, {v[0].y, v[1].y, v[2].y}, {v[0].z, v[1].z, v[2].z}}};
+  by_p = columns(p);
+  by_v = columns(v);
+  if constexpr (running) by_turn = columns(turn);
 }
 
-template <bool flat>
+template <ContactFeature feature>
 void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
             PackBlocks& out) {
-  LaneMat fp, fv;
-  force_derivatives<flat>(pack, o, fp, fv);
+  constexpr bool flat = is_flat(feature), running = runs(feature);
+  LaneMat fp, fv, fom;
+  force_derivatives<feature>(pack, o, fp, fv, fom);
   const Lanes inverse = lanes(1 / sigma);
 
-  // point = (1 - radius_b Nn) dp
-  LaneMat turn, keep = scalar_matrix(lanes(1));
-  if constexpr (!flat) {
+  // point = (1 - radius_b Nn) dp, or where it runs
+  // point = (1 + path along_p^T - radius_b m_a turn_p^T) dp + point_om dom
+  LaneMat turn, point_om, keep = scalar_matrix(lanes(1));
+  if constexpr (running) {
+    const RunningPoint& r = o.running;
+    turn = outer(pack.radius_b * r.ma, r.turn_p) - outer(r.path, r.along_p);
+    keep = keep - turn;
+    point_om = outer(r.path, r.along_om) - outer(pack.radius_b * r.ma, r.turn_om);
+  } else if constexpr (!flat) {
     const LaneMat project = scalar_matrix(lanes(1)) - outer(o.n, o.n);
     turn = o.inverse_length *
            (pack.feature == ContactFeature::line ? project - outer(o.l, o.l) : project);
@@ -233,6 +282,8 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     fq = fp + fvw;
   else
     fq = fp + fvw * keep;
+  LaneMat fq_om;
+  if constexpr (running) fq_om = fom + fvw * point_om;
   // df by v of b
   const LaneMat by_v = fv + inverse * (fq - times_cross(fv, o.wb));
   const LaneVec arm[2] = {o.ra, o.rb}, reach[2] = {o.sa, o.sb};
@@ -245,6 +296,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     // dp and df by v, and by the rotation th of X
     const LaneMat dp_th = (-sign) * cross_lanes(arm[X]);
     LaneMat f_th = (-sign) * times_cross(fq, arm[X]);
+    if constexpr (running) f_th = f_th + sign * fq_om;
     if (X == 0) f_th = f_th - times_cross(fvw, o.sa) + times_cross(fv, o.vr) - cross_lanes(o.f);
     const LaneMat f_w = (-sign) * times_cross(fv, reach[X]);
     const LaneMat f_v = sign * by_v;
@@ -256,6 +308,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       sa_th = dp_th;
     } else {
       sa_th = keep * dp_th;
+      if constexpr (running) sa_th = sa_th + sign * point_om;
       sb_th = sa_th - dp_th;
     }
     if (X == 0) {
@@ -286,10 +339,14 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
 void pack_blocks(const ContactPack& pack, const PackLinear& linear, double sigma, const LaneBody& a,
                  const LaneBody& b, PackBlocks& out) {
   const LaneBody body[2] = {a, b};
-  if (pack.feature == ContactFeature::plane)
-    blocks<true>(pack, linear, sigma, body, out);
-  else
-    blocks<false>(pack, linear, sigma, body, out);
+  using F = ContactFeature;
+  switch (pack.feature) {
+    case F::plane: return blocks<F::plane>(pack, linear, sigma, body, out);
+    case F::crossing:
+    case F::rim: return blocks<F::crossing>(pack, linear, sigma, body, out);
+    case F::line:
+    case F::point: return blocks<F::point>(pack, linear, sigma, body, out);
+  }
 }
 
 }  // namespace tw

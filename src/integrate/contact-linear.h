@@ -12,6 +12,11 @@
 //   dF  = m dN + (c0 + c1 e e^T) dF*,  e = F*/|F*|
 //         sticking: m = 0, c0 = 1, c1 = 0;  slipping: m = mu e, c0 = q, c1 = -q, q = mu N/|F*|
 //   df  = n dN + N dn' + dF + dth_a x f
+// Where the core point runs (contact-pack.h, RunningPoint), with dom = dth_b - dth_a:
+//   dn' = (turn_p.dp + turn_om.dom) m_a, and (along_p.dp + along_om.dom) path adds to dp wherever
+// the point of the force moves (dv', arms), but not in dN, where the turn of n does:
+//   dN  = g.dp + h.dom - K b (n.dv'),  g = -(dN/dd) n - K b (m_a.v_r) turn_p,
+//   h = -K b (m_a.v_r) turn_om.
 // smooth: m = F/N, and du instead of dF* with the derivative of the atan law in c0, c1.
 //
 // The stretch z (world frame) has z' = -(F + kt z)/ct; dF/dz is -kt q t t^T when slipping, with
@@ -44,6 +49,8 @@ struct PackLinear {
   LaneVec n, l, ra, rb, sa, sb, wb, dw, vr, f,
       bend;  // dw = w_b - w_a; bend = kt s + ct v_r, or v_r
   LaneVec e, t, m, g;
+  RunningPoint running;
+  LaneVec h;
   Lanes N, kb, inverse_length, vbend;  // vbend = n.bend
   Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
   Lanes inverse_ct, tau;

@@ -39,6 +39,84 @@ TW_LANES void gather(const ContactPack& pack, const BodyKinematics* bodies,
 }
 
 // n, gap and the signed 1/|arm| from D = P_b - P_a
+// Two lines that cross: l and lb, with D from a point of a's to one of b's.
+struct Crossing {
+  LaneVec lb, ma, mb;  // n x l, n x lb
+  Lanes inverse_sine;  // 1/S, l x lb = S n; 0 where S is
+  Lanes height;        // of b's line over a's, along n
+  Lanes along;         // from that point of b's line to the one nearest to a's: lb.ma = S
+};
+
+TW_LANES Crossing cross_lines(const LaneVec& D, const LaneVec& lb, const LaneVec& side,
+                              PackState& o) {
+  Crossing c;
+  c.lb = lb;
+  const LaneVec across = cross(o.l, lb);
+  const Lanes sine = sqrt(dot(across, across));
+  const LaneMask somewhere = sine > lanes(0);
+  const Lanes sign = dot(across, side) < lanes(0) ? lanes(-1) : lanes(1);
+  c.inverse_sine = somewhere ? sign / sine : lanes(0);
+  o.n = select(somewhere, c.inverse_sine * across, side);
+  c.ma = cross(o.n, o.l);
+  c.mb = cross(o.n, lb);
+  c.height = dot(o.n, D);
+  c.along = -dot(c.ma, D) * c.inverse_sine;
+  return c;
+}
+
+// The point runs by (mu H - m_a.dp)/S, and n by mu m_a, mu = m_b.dom/S.
+TW_LANES LaneVec set_crossing(const ContactPack& pack, const LaneVec& D, const LaneMat& Rb,
+                              const LaneVec& side, PackState& o) {
+  const Crossing c = cross_lines(D, Rb * pack.other_direction, side, o);
+  RunningPoint& r = o.running;
+  r.path = c.lb;
+  r.along_p = -(c.inverse_sine * c.ma);
+  r.along_om = (c.inverse_sine * c.inverse_sine * c.height) * c.mb;
+  r.ma = c.ma;
+  r.turn_p = {lanes(0), lanes(0), lanes(0)};
+  r.turn_om = c.inverse_sine * c.mb;
+  o.gap = c.height - pack.radius_a - pack.radius_b;
+  return c.along * c.lb;
+}
+
+// D to the centre of a circle with the axis k: the point in the direction e, square to k, is the
+// nearest where the one of its tangent t = k x e is.  Newton's method on the angle psi: the height
+// of that point along m_a changes by F = R S - H n.e/S a radian.  It starts from the normal before,
+// which is square to t but for its own turning.  Then
+//   dpsi = (H m_b.dom/S - m_a.dp)/F,  the point runs by R t dpsi, and n by
+//   m_a (m_b.dom + n.e dpsi)/S.
+TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMat& Rb,
+                         const LaneVec& side, PackState& o) {
+  constexpr int iterations = 5;
+  const LaneVec k = Rb * pack.other_direction;
+  const auto unit = [&](const LaneVec& v) {
+    const Lanes length = sqrt(dot(v, v));
+    const Lanes inverse = length > lanes(0) ? lanes(1) / length : lanes(0);
+    return inverse * v;
+  };
+  LaneVec e = -unit(side - dot(k, side) * k), t;
+  Crossing c;
+  Lanes inverse_rate, by_edge;
+  for (int i = 0;; ++i) {
+    t = cross(k, e);
+    c = cross_lines(D + pack.rim * e, t, side, o);
+    by_edge = c.inverse_sine * dot(o.n, e);
+    const Lanes rate = pack.rim * dot(c.ma, t) - c.height * by_edge;
+    inverse_rate = rate * rate > lanes(0) ? lanes(1) / rate : lanes(0);
+    if (i == iterations) break;
+    e = unit(e + (-dot(c.ma, D + pack.rim * e) * inverse_rate) * t);
+  }
+  RunningPoint& r = o.running;
+  r.path = pack.rim * t;
+  r.along_p = -(inverse_rate * c.ma);
+  r.along_om = (c.height * c.inverse_sine * inverse_rate) * c.mb;
+  r.ma = c.ma;
+  r.turn_p = by_edge * r.along_p;
+  r.turn_om = c.inverse_sine * c.mb + by_edge * r.along_om;
+  o.gap = c.height - pack.radius_a - pack.radius_b;
+  return pack.rim * e;
+}
+
 template <ContactFeature feature>
 TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVec& side,
                          PackState& o) {
@@ -115,7 +193,20 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
   for (int r = 0; r < 3; ++r) o.Ra.row[r] = a.R.row[r];
   o.rb = b.R * pack.point_b;
   o.ra = b.x - a.x + o.rb;
-  set_normal<feature>(pack, o.ra - o.Ra * pack.point_a, side, o);
+  const LaneVec D = o.ra - o.Ra * pack.point_a;
+  if constexpr (runs(feature)) {
+    o.l = o.Ra * pack.direction;
+    o.inverse_length = lanes(0);
+    LaneVec along;
+    if constexpr (feature == ContactFeature::rim)
+      along = set_rim(pack, D, b.R, side, o);
+    else
+      along = set_crossing(pack, D, b.R, side, o);
+    o.ra = o.ra + along;
+    o.rb = o.rb + along;
+  } else {
+    set_normal<feature>(pack, D, side, o);
+  }
 
   // velocity at the contact point
   o.sa = o.ra - pack.radius_b * o.n;
@@ -148,10 +239,12 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.b[lane] = slot(contact.b);
   set_lane(pack.normal, lane, contact.normal);
   set_lane(pack.direction, lane, contact.direction);
+  set_lane(pack.other_direction, lane, contact.other_direction);
   set_lane(pack.point_a, lane, contact.point_a);
   set_lane(pack.point_b, lane, contact.point_b);
   pack.radius_a[lane] = contact.radius_a;
   pack.radius_b[lane] = contact.radius_b;
+  pack.rim[lane] = contact.rim;
   pack.offset[lane] = contact.offset;
   const ContactConstants& law = contact.law;
   pack.k[lane] = contact.share * law.k;
@@ -203,6 +296,10 @@ void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const 
       return evaluate<ContactFeature::line>(pack, bodies, stretch, side, out);
     case ContactFeature::point:
       return evaluate<ContactFeature::point>(pack, bodies, stretch, side, out);
+    case ContactFeature::crossing:
+      return evaluate<ContactFeature::crossing>(pack, bodies, stretch, side, out);
+    case ContactFeature::rim:
+      return evaluate<ContactFeature::rim>(pack, bodies, stretch, side, out);
   }
 }
 

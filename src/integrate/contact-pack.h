@@ -1,9 +1,10 @@
 // Contacts of a group four at a time: constants, geometry and force.
 //
-// Symbols, for a contact of bodies a (reference) and b: P the core point of b, n the normal, l the
-// line's direction; r_a, r_b from the centres to the core points; c = P - radius_b n where the
-// force acts; s_a, s_b from the centres to c; v_r velocity of b against a at c, u its tangential
-// part; s the stretch in the world frame; f = N n + F the force on b.
+// Symbols, for a contact of bodies a (reference) and b: P the core point of b (crossing and rim:
+// the point of its line or circle that is nearest to a's), n the normal, l the line's direction;
+// r_a, r_b from the centres to P; c = P - radius_b n where the force acts; s_a, s_b from the
+// centres to c; v_r velocity of b against a at c, u its tangential part; s the stretch in the world
+// frame; f = N n + F the force on b.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -32,7 +33,8 @@ struct ContactPack {
   int contact[lane_count];                      // index in GroupStart::contacts
   int a[lane_count], b[lane_count];             // body slots
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
-  Lanes radius_a, radius_b, offset;
+  LaneVec other_direction;                      // frame of b: crossing and rim
+  Lanes radius_a, radius_b, rim, offset;
   Lanes k, inverse_hardening, damping, mu, kt, ct;
 };
 
@@ -51,12 +53,26 @@ struct ContactPacks {
 // By feature and friction law, otherwise in the given order.
 ContactPacks make_contact_packs(const GroupStart& start);
 
+// Whether the core point of b runs along a line or circle of its.
+constexpr bool runs(ContactFeature feature) {
+  return feature == ContactFeature::crossing || feature == ContactFeature::rim;
+}
+
+// How the core point of b runs along its line or circle, and n turns with it, when a displacement
+// dp of b's material there and a turn dom of b against a happen, in a's frame:
+//   the point by dp + (along_p.dp + along_om.dom) path,  n by (turn_p.dp + turn_om.dom) m_a,
+// m_a = n x l: n stays square to a's line.
+struct RunningPoint {
+  LaneVec path, along_p, along_om, ma, turn_p, turn_om;
+};
+
 // The contacts of a pack at one instant, in the world frame.
 struct PackState {
   LaneMat Ra;
   LaneVec n, l, ra, rb, sa, sb, wa, wb, vr, u, s;  // ra from the centre of a to the core point of b
   LaneVec arm;                                     // n = arm/|arm|, signed; point and line
   Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
+  RunningPoint running;                            // crossing and rim
   Lanes gap, depth, vn;                            // depth = offset - gap
   Lanes damping;                                   // b at this depth
   Lanes N, stiffness;                              // stiffness = N/(1 - b vn)

@@ -55,24 +55,31 @@ struct GroupMember {
 };
 
 // What the reference body shows the other one at a contact.
-enum class ContactFeature : unsigned char { plane, line, point };
+enum class ContactFeature : unsigned char { plane, line, point, crossing, rim };
 
 // One contact point.  Body a has the feature, fixed in a's frame; body b a core point, fixed in b's
-// frame, with a radius.
+// frame, with a radius, or a line or circle of such points.
 //   plane  n = normal;                    gap = n.(p_b - p_a) - radius_b
 //   line   n = s unit((1 - l l^T)(p_b - p_a)), l = direction; gap = s |..| - radius_a - radius_b
 //   point  n = s unit(p_b - p_a);         gap = s |p_b - p_a| - radius_a - radius_b
-// n points from a to b.  The force acts at p_b - radius_b n.  s is 1, or -1 where n would else turn
-// against `normal` (first step) or the n of the step before: cores that pass through each other,
-// hollow a.
+//   crossing: two lines, l = direction and l_b = other_direction, that are not parallel
+//          n = s unit(l x l_b);           gap = n.(p_b - p_a) - radius_a - radius_b
+//   rim    the same with the tangent of a circle of b, of radius `rim` about point_b, square to
+//          other_direction
+// n points from a to b.  The force acts at p_b - radius_b n; of a crossing and a rim p_b is not
+// fixed in b but the point of its line or circle that is nearest to a's: it runs along both as the
+// bodies slide, and a circle may spin.  s is 1, or -1 where n would else turn against `normal`
+// (first step) or the n of the step before: cores that pass through each other, hollow a.
 struct GroupContact {
   int a = 0, b = 0;  // >= 0: member; < 0: outside body ~index
   ContactFeature feature = ContactFeature::plane;
   Vec3 normal = Vec3::UnitZ();     // a's frame, unit: n (plane), or choosing its sign at the start
-  Vec3 direction = Vec3::UnitX();  // a's frame, unit: line only
+  Vec3 direction = Vec3::UnitX();  // a's frame, unit: line, crossing, rim
+  Vec3 other_direction = Vec3::UnitY();  // b's frame, unit: crossing, and the axis of a rim
   Vec3 point_a = Vec3::Zero();  // a's frame: a point of the plane, of the line, or the core point
-  Vec3 point_b = Vec3::Zero();  // b's frame
+  Vec3 point_b = Vec3::Zero();  // b's frame; a point of its line, or the centre of its rim
   double radius_a = 0, radius_b = 0;
+  double rim = 0;     // m: of b's circle
   double offset = 0;  // m: the depth that presses is offset - gap
   double share = 1;   // of k, kt, ct
   ContactConstants law;

@@ -79,12 +79,13 @@ bool GroupEvents::await_struck(std::span<const BodyId> bodies, const Key& key) {
   return members.empty() || await(region_of(before, members, false), key);
 }
 
-Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause) {
+Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause,
+                              std::span<const ContactPoint> struck_at) {
   const bool between_runs = is_edit(key);
   const Known is_known = [&](ProcessId id) { return between_runs || known(id, key); };
-  auto result =
-      tw::regroup(sim_.before(key), sim_.surroundings, is_known,
-                  {cause, delivery_.observed(CollisionKind::fission)}, successors, counters_);
+  auto result = tw::regroup(sim_.before(key), sim_.surroundings, is_known,
+                            {cause, delivery_.observed(CollisionKind::fission), struck_at},
+                            successors, counters_);
   if (const Waits* waits = std::get_if<Waits>(&result)) {
     await(waits->region, key);
     return Progress::try_again;

@@ -34,7 +34,9 @@ class GroupEvents {
   bool await_struck(std::span<const BodyId> bodies, const Key& key);
   // The groups that follow a discontinuity that changed some of the successors; adds those of all
   // others that take part.
-  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
+  // `struck_at`: see RegroupRequest.
+  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause,
+                   std::span<const ContactPoint> struck_at = {});
   // After an edit between runs.
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.

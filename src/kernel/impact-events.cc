@@ -61,7 +61,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
   successors.push_back(make_successor(sim_.before(key), body_a.process, body_a.dynamic()));
   successors.push_back(make_successor(sim_.before(key), body_b.process, body_b.dynamic()));
   const Wanted wanted{wants_collision(body_a, body_b), delivery_.observed(CollisionKind::fusion)};
-  const auto [soft, collision] =
+  const auto [soft, points, collision] =
       compute_impact(sim_.scene, sim_.surroundings, key, wanted, successors[0], successors[1]);
 
   // callbacks see the successors; their errors stop the receivers, speculatively
@@ -81,7 +81,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
   if (successors[0].data.error)
     discontinuities_.stop_group_mates(key, successors);
   else if ((soft || successors[0].data.group || successors[1].data.group) &&
-           groups_.regroup(key, successors, soft ? Cause::fusion : Cause::impact) ==
+           groups_.regroup(key, successors, soft ? Cause::fusion : Cause::impact, points) ==
                Progress::try_again)
     return Progress::try_again;
   discontinuities_.enter(key, successors);

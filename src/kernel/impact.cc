@@ -146,7 +146,10 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
   const double slow = scales.fusion_speed;
   if (key.microstep > 1 && fastest <= guard::grazing * slow) return true;
   if (is_pinned(key, fastest, a, b)) return true;
-  if (key.microstep > guard::most_repeated) {
+  const bool unsettled = a.data.impacts.unsettled_time == key.time &&
+                         b.data.impacts.unsettled_time == key.time &&
+                         a.data.impacts.partner == b.body->id();
+  if (unsettled || key.microstep > guard::most_repeated) {
     (a.enters() ? a : b).data.tally.declared_soft = 1;
     return true;
   }
@@ -240,6 +243,8 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   if (wanted.collision)
     describe(CollisionKind::collision, solver.largest().point, solver.largest().normal,
              solver.largest_approach(), solver.normal_impulse());
+  if (a.body->dynamic() && b.body->dynamic() && (a.data.group || b.data.group))
+    impact.points = points;
   // what still approaches after so many impulses stays in contact
   impact.soft = result.left_over > 0;
   return impact;

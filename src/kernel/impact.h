@@ -8,7 +8,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "collision/separation.h"
 #include "groups/surroundings.h"
 #include "timeline/collision.h"
 #include "timeline/successor.h"
@@ -21,7 +23,8 @@ struct Wanted {
 };
 
 struct Impact {
-  bool soft = false;  // the two stay in contact
+  bool soft = false;                 // the two stay in contact
+  std::vector<ContactPoint> points;  // of a hard one between two that move freely, one in a group
   std::optional<Collision> told;
 };
 

@@ -16,9 +16,10 @@ double rise_of(const StabilityScene& scene) {
 // What other scenes of that kind stay below.
 constexpr double sound = 1e-4;
 
-// While it sways on springs that are too soft for it; where from is not known.
-TEST(KnownFaults, a_heavy_cube_on_a_light_one_gains_energy) {
-  EXPECT_KNOWN_FAULT(rise_of(heavy_blow_scene(1e3, 30)), sound, 7.4e-4);
+// As long as each blow of the heavy cube was an impact of its own the last was declared soft, and
+// it gained 7.4e-4 while it swayed.
+TEST(KnownFaults, a_heavy_cube_on_a_light_one_gains_no_energy_any_more) {
+  EXPECT_LT(rise_of(heavy_blow_scene(1e3, 30)), sound);
 }
 
 TEST(KnownFaults, thin_rods_gain_no_energy_any_more) {

@@ -64,6 +64,57 @@ TEST(Standstill, drums_in_touch_along_lines_go_on) {
   }
 }
 
+// Rods that slide across rods, an edge and a rim: arcs ended as soon as what slides had left the
+// point at which the two crossed when they began.
+TEST(Standstill, what_crosses_and_slides_has_arcs_as_long_as_its_checks_are_apart) {
+  const double r = 4e-4;
+  const ShapePtr rod = make_cylinder(r, 0.2), coin = make_cylinder(0.05, 1e-3);
+  struct Support {
+    ShapePtr shape;
+    Quat orientation;
+    double height;  // of its top over its middle
+  };
+  const double tilt = 0.4;
+  const Support supports[] = {
+      {rod, rotation_by(Vec3(pi / 2, 0, 0)), r},
+      {make_box({0.01, 0.2, 0.01}), rotation_by(Vec3(0, pi / 4, 0)), 0.01 * std::sqrt(0.5)},
+      {coin, rotation_by(Vec3(0, pi / 2 - tilt, 0)),
+       0.05 * std::cos(tilt) + 5e-4 * std::sin(tilt)}};
+  for (const Support& support : supports) {
+    World world;
+    set_contact_for_all(world, 0, 0.2);
+    for (const double x : {-0.05, 0.05}) {
+      BodyDef rail = body_of(support.shape, {x, 0, -support.height}, Vec3::Zero());
+      rail.fixed = true;
+      rail.orientation = support.orientation;
+      world.add_body(rail);
+    }
+    BodyDef slider = body_of(rod, {0, 0, r}, {0.1, 0.3, 0});
+    slider.orientation = rotation_by(Vec3(0, pi / 2, 0));
+    const BodyId id = world.add_body(slider);
+    world.advance(0.02);
+    EXPECT_GT(count_of(world.statistics(), "group_checks"), 50);
+    EXPECT_LT(count_of(world.statistics(), "early_ends"), 10) << support.height;
+    EXPECT_LT(world.state(id).position.z(), r + 1e-6);
+  }
+}
+
+// What lies on a floor gives on what it is given: a body that is a thousand times as heavy is
+// stopped by thousands of blows on it, which are one impact.
+TEST(Standstill, a_heavy_body_is_stopped_by_a_light_one_in_few_impacts) {
+  World world;
+  set_contact_for_all(world, 0.2, 0.5);
+  add_wall(world, Vec3::UnitZ(), 0);
+  world.add_body(body_of(make_box(Vec3::Constant(0.2)), {0, 0, 0.1}, Vec3::Zero()));
+  BodyDef heavy = body_of(make_box(Vec3::Constant(0.2)), {0.03, 0.02, 0.35}, {0, 0, -2});
+  heavy.density = 1e6;
+  const BodyId id = world.add_body(heavy);
+  world.advance(0.2);
+  EXPECT_LT(count_of(world.statistics(), "collisions"), 100);
+  EXPECT_EQ(count_of(world.statistics(), "impacts_declared_soft"), 0);
+  EXPECT_NEAR(world.state(id).position.z(), 0.3, 0.002);
+}
+
 // A rod of 1:2000 that comes down on its end and a plate (thin:115 of the random scenes): in the
 // rod's rows of the linear system a pivot that was large in SI units only lost all digits of its
 // momentum, and no step was short enough.

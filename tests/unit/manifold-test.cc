@@ -61,6 +61,8 @@ double gap_by_feature(const ManifoldPoint& p) {
     case ReferenceFeature::line:
       return (r - p.direction * p.direction.dot(r)).norm() - p.reference_radius - p.radius;
     case ReferenceFeature::point: break;
+    case ReferenceFeature::crossing:
+    case ReferenceFeature::rim: ADD_FAILURE() << "of cylinders alone"; break;
   }
   return r.norm() - p.reference_radius - p.radius;
 }
