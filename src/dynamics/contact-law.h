@@ -7,8 +7,8 @@
 // spring beside a damper, N = 101 k (d + tau d') with tau = 10 dh b, and lets a depth go at d/tau
 // at most; nor do the two slide or turn in each other any faster: beside friction there is
 //   T = -c u,  Q = -C (w_b - w_a),  c = 101 k tau (1 - e),  C = c d size/2
-// where d size/2 is the square of the half width of two balls' overlap.  `anchored` friction carries a tangential stretch xi, in the frame of the reference
-// body:
+// where d size/2 is the square of the half width of two balls' overlap.  `anchored` friction
+// carries a tangential stretch xi, in the frame of the reference body:
 //   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
