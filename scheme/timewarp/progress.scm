@@ -8,6 +8,8 @@
   #:use-module (timewarp drawing)
   #:use-module (timewarp time-left)
   #:use-module (ice-9 format)
+  #:use-module (ice-9 match)
+  #:use-module (srfi srfi-1)
   #:export (make-progress))
 
 (define (wall-seconds)
@@ -20,6 +22,44 @@
               (remainder (truncate->exact seconds) 60))))
 
 (define (truncate->exact x) (inexact->exact (truncate x)))
+
+;; What takes the time is told where simulated time goes slower than this share of real time, or
+;; than 1/50 of it for each 100 bodies.
+(define slow-rate 1/5)
+(define slow-rate-of-bodies 2)
+
+(define (slow? world simulated wall)
+  (let ((moving (assq-ref (%statistics world) 'bodies_moving)))
+    (< simulated (* wall (min slow-rate (/ slow-rate-of-bodies (max 1 moving)))))))
+
+;; The work of the groups and of the pair that took most so far: #(BODIES AMOUNT TEXT) each.  BODIES
+;; and since when tell one from another, so that two such lists give what was done in between.
+(define (dearest world)
+  (let* ((table (%statistics world)) (looks (assq-ref table 'dearest_pair_checks)))
+    (append
+     (map (match-lambda
+            ((names bodies contacts steps since)
+             (vector (cons names since) steps
+                     (format #f "the group ~a (~a bodies, ~a contacts) since ~,3f s" names bodies
+                             contacts since))))
+          (%dearest-groups world))
+     (if (zero? looks)
+         '()
+         (let ((names (assq-ref table 'dearest_pair)))
+           (list (vector (list names) looks (format #f "the pair ~a" names))))))))
+
+;; What of NOW did most since BEFORE, and how much; #f where nothing did.
+(define (dearest-between before now)
+  (let ((done (lambda (entry)
+                (let ((old (find (lambda (b) (equal? (vector-ref b 0) (vector-ref entry 0)))
+                                 before)))
+                  (- (vector-ref entry 1) (if old (vector-ref old 1) 0))))))
+    (match (sort now (lambda (x y) (> (done x) (done y))))
+      (() #f)
+      ((most . _)
+       (and (> (done most) 0)
+            (format #f "slow: ~a took ~a ~a" (vector-ref most 2) (done most)
+                    (if (null? (cdr (vector-ref most 0))) "looks" "steps")))))))
 
 (define (report world until course)
   (let ((time (%world-time world))
@@ -35,19 +75,31 @@
 one to be called when the run is over."
   (let* ((terminal? (isatty? port))
          (interval (if terminal? 0.2 3.0))
+         (before '()) (simulated 0)
          (world #f) (until #f) (course '()) (last-sample 0) (last-shown 0) (shown? #f))
+    ;; what was dear since the last report, where time goes slowly
+    (define (cause! now)
+      (let* ((slow? (slow? world (- (%world-time world) simulated) (- now last-shown)))
+             (entries (dearest world))
+             (text (and slow? (dearest-between before entries))))
+        (set! before entries)
+        (set! simulated (%world-time world))
+        (if text (string-append "; " text) "")))
     (define (show! now)
-      (set! last-shown now)
-      (set! shown? #t)
-      (if terminal?
-          (format port "\r~a\x1b[K" (report world until course))
-          (format port "~a~%" (report world until course)))
-      (force-output port))
+      (let ((text (string-append (report world until course) (cause! now))))
+        (set! last-shown now)
+        (set! shown? #t)
+        (if terminal?
+            (format port "\r~a\x1b[K" text)
+            (format port "~a~%" text))
+        (force-output port)))
     ;; a scene may run itself in many small runs: they are reported as often as one long one
     (define (start! next-world next-until now)
       (unless world (set! last-shown now))
+      (unless (eq? world next-world) (set! before '()))
       (set! world next-world)
       (set! until next-until)
+      (set! simulated (min simulated (%world-time world)))
       (set! course '())
       (set! last-sample now))
     (define (sample! now)

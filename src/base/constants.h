@@ -57,7 +57,7 @@ inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 // distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
 inline constexpr double depth_slack = 1e-12;
 // The same where both are integrated: steps err by far more (groups/step-tolerances.h).
-inline constexpr double stepped_slack = 1e-9;
+inline constexpr double stepped_slack = 1e-10;
 // What overlaps without closing may creep on until it is twice as deep, or deeper by this share of
 // the smaller size.
 inline constexpr double creep_share = 1e-6;

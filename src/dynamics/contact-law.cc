@@ -15,6 +15,7 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
   const double g = gravity > 0 ? gravity : answer::standard_gravity;
   const double share = unequal ? answer::unequal_depth_share : answer::depth_share;
   ContactConstants c;
+  c.size = size;
 
   // k d0 = m g: either may be given
   c.k = parameters.stiffness ? *parameters.stiffness : mass * g / (share * size);

@@ -5,8 +5,10 @@
 // with d the depth (m, negative: apart) and d' its rate.  The depth is that of the overlap, or,
 // where what was placed touching starts loaded, more by the contact's offset.  Beyond 10 dh it is a
 // spring beside a damper, N = 101 k (d + tau d') with tau = 10 dh b, and lets a depth go at d/tau
-// at most.  `anchored` friction carries a tangential stretch xi, in the frame of the reference
-// body:
+// at most; nor do the two slide or turn in each other any faster: beside friction there is
+//   T = -c u,  Q = -C (w_b - w_a),  c = 101 k tau (1 - e),  C = c d size/2
+// where d size/2 is the square of the half width of two balls' overlap.  `anchored` friction
+// carries a tangential stretch xi, in the frame of the reference body:
 //   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
@@ -30,6 +32,7 @@ struct ContactConstants {
   double mu = 0;
   double kt = 0;     // N/m, 0.8 k
   double ct = 0;     // N s/m, sqrt(kt m)
+  double size = 0;   // m: least width of the smaller one
   double depth = 0;  // d0, m: under the lighter body's own weight; scale of gaps
   FrictionLaw law = FrictionLaw::anchored;
 };

@@ -168,6 +168,8 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   const GroupCounts effort = group.arc->counts();
   if (effort.steps + effort.rejected > counters.dearest_arc.tried())
     counters.dearest_arc = {effort.steps, effort.rejected, group.arc->start().time, group.members};
+  counters.dearest_groups.note({group.members, group.tags.size(), 1, effort.steps, effort.rejected,
+                                group.arc->start().time, group.next_check});
   std::vector<EarlyEnd> early_ends;
   for (const ContactPair& pair : group.pairs) {
     const double end = early_end(scene, surroundings, group, pair);

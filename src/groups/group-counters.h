@@ -19,6 +19,55 @@ struct DearestArc {
   std::uint64_t tried() const { return steps + rejected; }
 };
 
+// What groups of the same members cost, arc after arc.
+struct GroupEffort {
+  std::vector<ProcessId> members;
+  std::uint64_t contacts = 0;  // of the latest arc
+  std::uint64_t arcs = 0, steps = 0, rejected = 0;
+  double since = 0, until = 0;  // s
+
+  std::uint64_t tried() const { return steps + rejected; }
+};
+
+// The dearest groups, more or less: one that is not among them takes the place of the cheapest, so
+// that what goes on being dear gets in and stays.
+class DearestGroups {
+ public:
+  void note(const GroupEffort& arc) {
+    auto at = std::find_if(all_.begin(), all_.end(),
+                           [&](const GroupEffort& e) { return e.members == arc.members; });
+    if (at == all_.end() && all_.size() < most) {
+      all_.push_back(arc);
+    } else if (at == all_.end()) {
+      *std::min_element(all_.begin(), all_.end(), [](const GroupEffort& x, const GroupEffort& y) {
+        return x.tried() < y.tried();
+      }) = arc;
+    } else {
+      at->contacts = arc.contacts;
+      at->arcs += arc.arcs;
+      at->steps += arc.steps;
+      at->rejected += arc.rejected;
+      at->since = std::min(at->since, arc.since);
+      at->until = std::max(at->until, arc.until);
+    }
+  }
+  void add(const DearestGroups& other) {
+    for (const GroupEffort& effort : other.all_) note(effort);
+  }
+  // The dearest first.
+  std::vector<GroupEffort> sorted() const {
+    std::vector<GroupEffort> result = all_;
+    std::stable_sort(result.begin(), result.end(), [](const GroupEffort& x, const GroupEffort& y) {
+      return x.tried() > y.tried();
+    });
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t most = 16;
+  std::vector<GroupEffort> all_;
+};
+
 struct GroupCounters {
   // steps of groups, discarded ones too; each is an integration
   std::uint64_t integrations = 0;
@@ -29,6 +78,7 @@ struct GroupCounters {
   std::uint64_t groups = 0, manifolds = 0, early_ends = 0;
   std::uint64_t largest_group_bodies = 0, largest_group_contacts = 0;
   DearestArc dearest_arc;
+  DearestGroups dearest_groups;
 
   void add(const GroupCounters& other) {
     integrations += other.integrations;
@@ -43,6 +93,7 @@ struct GroupCounters {
     largest_group_bodies = std::max(largest_group_bodies, other.largest_group_bodies);
     largest_group_contacts = std::max(largest_group_contacts, other.largest_group_contacts);
     if (other.dearest_arc.tried() > dearest_arc.tried()) dearest_arc = other.dearest_arc;
+    dearest_groups.add(other.dearest_groups);
   }
 };
 

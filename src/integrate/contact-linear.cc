@@ -63,6 +63,20 @@ void set_anchored(const ContactPack& pack, const PackState& s, PackLinear& o) {
   o.tau = pack.kt * o.inverse_ct;
 }
 
+// T = -c u with c = c1 (1 - r1/r): dc/dd = (c1 - c)/d
+TW_LANES void set_drag(const ContactPack& pack, const PackState& s, PackLinear& o) {
+  o.deep = s.deep;
+  if (!s.deep) return;
+  const Lanes ratio = s.depth * pack.inverse_hardening, hardest = lanes(answer::hardest_ratio);
+  const Lanes by_depth = s.drag * hardest / ((ratio - hardest) * s.depth);
+  o.damper = s.drag;
+  o.pull = s.drag * s.vr;
+  const Lanes slope = s.drag > lanes(0) ? by_depth : lanes(0);
+  o.more_drag = slope * s.u;
+  o.turn_damper = s.turn_drag;
+  o.more_turn = (pack.half_size * (s.drag + s.depth * slope)) * o.dw;
+}
+
 // dN, by dp and dv'
 TW_LANES Lanes normal_change(const PackLinear& o, const LaneVec& dp, const LaneVec& dv) {
   return dot(o.g, dp) - o.kb * dot(o.n, dv);
@@ -75,6 +89,15 @@ TW_LANES LaneVec friction_change(const PackLinear& o, Lanes dN, const LaneVec& d
   LaneVec target = o.drag * (dv - dot(o.n, dv) * o.n);
   if constexpr (!flat) target = target + o.vbend * dn + dot(o.bend, dn) * o.n;
   return dN * o.m + o.c0 * target + (o.c1 * dot(o.e, target)) * o.e;
+}
+
+// dT of given dp, dn' and dv'
+template <bool flat>
+TW_LANES LaneVec drag_change(const PackLinear& o, const LaneVec& dp, const LaneVec& dn,
+                             const LaneVec& dv) {
+  LaneVec result = dot(o.n, dp) * o.more_drag - o.damper * (dv - dot(o.n, dv) * o.n);
+  if constexpr (!flat) result = result + dot(o.n, o.pull) * dn + dot(o.pull, dn) * o.n;
+  return result;
 }
 
 // W y
@@ -132,6 +155,11 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   const LaneVec rest = out.friction - pack.ct * stretch_side;
   out.f = dN * o.n + out.friction + stretched(o, rest);
   if constexpr (!flat) out.f = out.f + o.N * dn;
+  if (o.deep) {
+    out.f = out.f + drag_change<flat>(o, dp, dn, dv);
+    out.torque = dot(o.n, dp) * o.more_turn - o.turn_damper * b.w;
+    if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
+  }
   if constexpr (!grounded) out.f = out.f + cross(a.th, o.f);
 }
 
@@ -178,6 +206,7 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
     o.g = o.g - o.kb * turn_normal(pack, o, o.vr);
   }
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
+  set_drag(pack, s, o);
 }
 
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
@@ -244,7 +273,11 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
       const Lanes dNt = dot(o.h, unit[i]);
       const LaneVec Ft = friction_change<flat>(o, dNt, turned, none);
       turn[i] = dNt * o.n + Ft + stretched(o, Ft) + o.N * turned;
+      if (o.deep) turn[i] = turn[i] + drag_change<flat>(o, none, turned, none);
     }
+    if (!o.deep) continue;
+    p[i] = p[i] + drag_change<flat>(o, unit[i], dn, none);
+    v[i] = v[i] + drag_change<flat>(o, none, none, unit[i]);
   }
   by_p = columns(p);
   by_v = columns(v);
@@ -330,6 +363,10 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       part[0][1] = side * f_L;
       part[1][0] = side * (cross_times(reach[Y], f_v) - cross_times(o.f, s_v[Y]));
       part[1][1] = side * (cross_times(reach[Y], f_L) - cross_times(o.f, s_L[Y]));
+      if (!o.deep) continue;
+      const LaneMat by_p = outer(o.more_turn, o.n);
+      part[1][0] = part[1][0] + (side * sign * inverse) * by_p;
+      part[1][1] = part[1][1] + side * (by_p * (dp_th * P) - (sign * o.turn_damper) * V);
     }
   }
 }

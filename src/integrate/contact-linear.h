@@ -11,7 +11,10 @@
 //   dF* = -ct (dv' - n n.dv') + (kt s + ct v_r).n dn' + n (kt s + ct v_r).dn'      (anchored)
 //   dF  = m dN + (c0 + c1 e e^T) dF*,  e = F*/|F*|
 //         sticking: m = 0, c0 = 1, c1 = 0;  slipping: m = mu e, c0 = q, c1 = -q, q = mu N/|F*|
-//   df  = n dN + N dn' + dF + dth_a x f
+//   df  = n dN + N dn' + dF + dT + dth_a x f
+//   dT  = -c (dv' - n n.dv') + c v_r.n dn' + n c v_r.dn' + (dc/dd) u n.dp    (T = -c u, where deep)
+// and a torque Q = -C (w_b - w_a), C = c d size/2:
+//   dQ  = -C (dw_b - dw_a) + (dC/dd) (w_b - w_a) n.dp
 // Where the core point runs (contact-pack.h, RunningPoint), with dom = dth_b - dth_a:
 //   dn' = (turn_p.dp + turn_om.dom) m_a, and (along_p.dp + along_om.dom) path adds to dp wherever
 // the point of the force moves (dv', arms), but not in dN, where the turn of n does:
@@ -55,12 +58,18 @@ struct PackLinear {
   Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
   Lanes inverse_ct, tau;
   LaneMask sticking;
+  bool deep;
+  Lanes damper;              // c
+  LaneVec pull, more_drag;   // c v_r, (dc/dd) u
+  Lanes turn_damper;         // C
+  LaneVec more_turn;         // (dC/dd) (w_b - w_a)
   Lanes m1, m2, h0, h1, h2;  // by the step
 };
 
 // Changes of the force on b, of the raw friction (stretches held) and of the two arms.
 struct PackChange {
   LaneVec f, friction, sa, sb;
+  LaneVec torque;  // dQ; set where deep
 };
 
 // The derivative at a state; stretches are held until set_stage_rate is called.

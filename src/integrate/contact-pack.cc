@@ -183,6 +183,23 @@ TW_LANES void set_smooth_friction(const ContactPack& pack, PackState& o) {
   o.stretch_rate = {lanes(0), lanes(0), lanes(0)};
 }
 
+// Beyond the cap a damper along the surfaces and of turning, too: c = k (1 + cap) tau (1 - e),
+// C = c d size/2
+TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
+  const Lanes zero = lanes(0), one = lanes(1), hardest = lanes(answer::hardest_ratio);
+  o.drag = zero;
+  const Lanes ratio = o.depth * pack.inverse_hardening;
+  const LaneMask beyond = ratio > hardest;
+  o.deep = any(beyond);
+  if (!o.deep) return;
+  const Lanes most =
+      lanes(1 + answer::hardening_cap) * pack.k * pack.damping * (o.depth * hardest / ratio);
+  o.drag = beyond ? most * (one - hardest / ratio) : zero;
+  o.f = o.f - o.drag * o.u;
+  o.turn_drag = o.drag * o.depth * pack.half_size;
+  o.torque = o.turn_drag * (o.wa - o.wb);
+}
+
 template <ContactFeature feature>
 void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
               const LaneVec& side, PackState& o) {
@@ -225,6 +242,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
   else
     set_smooth_friction(pack, o);
   o.f = o.N * o.n + o.F;
+  add_drag(pack, o);
 }
 
 void set_lane(LaneVec& v, int lane, const Vec3& value) {
@@ -250,6 +268,7 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.k[lane] = contact.share * law.k;
   pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
   pack.damping[lane] = law.b;
+  pack.half_size[lane] = 0.5 * law.size;
   // without a tangential spring and damper there is no friction of the anchored kind
   const bool frictionless = law.law == FrictionLaw::anchored && !(law.ct > 0);
   pack.mu[lane] = frictionless ? 0 : law.mu;

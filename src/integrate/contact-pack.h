@@ -35,7 +35,7 @@ struct ContactPack {
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
   LaneVec other_direction;                      // frame of b: crossing and rim
   Lanes radius_a, radius_b, rim, offset;
-  Lanes k, inverse_hardening, damping, mu, kt, ct;
+  Lanes k, inverse_hardening, damping, mu, kt, ct, half_size;
 };
 
 // Where in the packs a contact is.
@@ -79,7 +79,12 @@ struct PackState {
   LaneVec target;                                  // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;                      // F = scale target
   LaneMask slipping;
-  LaneVec F, f, stretch_rate;  // the rate in a's frame
+  LaneVec F, stretch_rate;  // the rate in a's frame
+  bool deep = false;        // whether any is beyond the hardest ratio
+  Lanes drag;               // c of the tangential damper there, N s/m
+  LaneVec f;                // N n + F - drag u
+  Lanes turn_drag;          // c d size/2, N m s
+  LaneVec torque;           // -turn_drag (w_b - w_a): on b; set where deep
 };
 
 // `stretch`: a's frame.  `side`: the normals at an earlier instant, which choose their sign (line,

@@ -264,7 +264,7 @@ ContactForce GroupArc::contact_force(int contact, double time) const {
   force.normal = lane(state.n);
   force.gap = state.gap[i];
   force.normal_force = state.N[i];
-  force.friction = lane(state.F);
+  force.friction = lane(state.F) - state.drag[i] * lane(state.u);
   force.velocity = lane(state.vr);
   force.slipping = state.slipping[i] != 0 && state.N[i] > 0;
   return force;
@@ -276,7 +276,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   const KeptPack& kept = pack_at(place.pack, at);
   const int i = place.lane;
   const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
-  const Vec3 on_b = kept.state.N[i] * lane(kept.state.n) + lane(kept.state.F);
+  const Vec3 on_b = lane(kept.state.f);
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
   const bool is_b = pack.b[i] == member;
   MemberForce result{is_b ? on_b : Vec3(-on_b), Vec3::Zero(), kept.state.N[i]};

@@ -67,8 +67,13 @@ TW_LANES void scatter(const ContactPack& pack, const LaneVec& f, const LaneVec& 
 
 TW_LANES void scatter_change(const ContactPack& pack, const PackLinear& linear,
                              const PackChange& change, BodyWrench* wrenches) {
-  scatter(pack, change.f, cross(linear.sa, change.f) + cross(change.sa, linear.f),
-          cross(linear.sb, change.f) + cross(change.sb, linear.f), wrenches);
+  LaneVec on_a = cross(linear.sa, change.f) + cross(change.sa, linear.f);
+  LaneVec on_b = cross(linear.sb, change.f) + cross(change.sb, linear.f);
+  if (linear.deep) {
+    on_a = on_a + change.torque;
+    on_b = on_b + change.torque;
+  }
+  scatter(pack, change.f, on_a, on_b, wrenches);
 }
 
 }  // namespace tw::rows

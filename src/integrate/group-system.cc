@@ -125,7 +125,12 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
     evaluate_pack(pack, s.bodies.data(), load(y + at), sides_[index(p)], state);
     if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
     store(state.stretch_rate, slope + at);
-    scatter(pack, state.f, cross(state.sa, state.f), cross(state.sb, state.f), s.wrenches.data());
+    LaneVec on_a = cross(state.sa, state.f), on_b = cross(state.sb, state.f);
+    if (state.deep) {
+      on_a = on_a + state.torque;
+      on_b = on_b + state.torque;
+    }
+    scatter(pack, state.f, on_a, on_b, s.wrenches.data());
   }
 
   // forces

@@ -31,6 +31,7 @@ TW_LANES Lanes sqrt(Lanes a) {
 #endif
   return Lanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
+TW_LANES bool any(LaneMask a) { return (a[0] | a[1] | a[2] | a[3]) != 0; }
 TW_LANES double sum(Lanes a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 
 // A vector in each lane.

@@ -140,6 +140,8 @@ bool Kernel::step(double until) {
 
 // ---- looking ----
 
+std::vector<DearestGroup> Kernel::dearest_groups() const { return dearest_groups_of(simulation); }
+
 StatisticsTable Kernel::statistics() const {
   return statistics_of(simulation, delivery, distance_queries - queries_before_);
 }

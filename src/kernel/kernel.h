@@ -57,6 +57,7 @@ class Kernel {
   void process_next();  // the event that the policy chooses
 
   StatisticsTable statistics() const;
+  std::vector<DearestGroup> dearest_groups() const;
   void validate_all() const;  // aborts with what does not hold
 
   // ---- the parts ----

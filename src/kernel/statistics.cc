@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,24 @@ std::vector<BodyId> bodies_of(const Scene& scene, const std::vector<ProcessId>& 
   return bodies;
 }
 
+std::string line_of(const DearestGroup& group) {
+  std::ostringstream text;
+  text << group.names << ": " << group.steps << " steps, " << group.rejected << " rejected, "
+       << group.arcs << " arcs, " << group.contacts << " contacts, " << group.since << " to "
+       << group.until << " s";
+  return text.str();
+}
+
 }  // namespace
+
+std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation) {
+  std::vector<DearestGroup> result;
+  for (const GroupEffort& effort : simulation.present.counters.dearest_groups.sorted())
+    result.push_back({names_of(simulation.scene, bodies_of(simulation.scene, effort.members)),
+                      effort.members.size(), effort.contacts, effort.arcs, effort.steps,
+                      effort.rejected, effort.since, effort.until});
+  return result;
+}
 
 StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
                               std::uint64_t distance_queries_made) {
@@ -84,6 +102,10 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
   const std::uint64_t discontinuities =
       counters.collisions + counters.fusions + counters.fissions + counters.callback_changes;
   const double frames = std::max(1.0, present.time * delivery.fps());
+  constexpr std::size_t shown = 5;
+  std::string dearest[shown];
+  const std::vector<DearestGroup> groups = dearest_groups_of(simulation);
+  for (std::size_t i = 0; i < std::min(shown, groups.size()); ++i) dearest[i] = line_of(groups[i]);
 
   return {
       {"duration", present.time},
@@ -134,6 +156,11 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"dearest_arc_rejected", whole(counters.dearest_arc.rejected)},
       {"dearest_arc_start", counters.dearest_arc.start},
       {"dearest_arc_bodies", names_of(scene, bodies_of(scene, counters.dearest_arc.members))},
+      {"dearest_group_1", dearest[0]},
+      {"dearest_group_2", dearest[1]},
+      {"dearest_group_3", dearest[2]},
+      {"dearest_group_4", dearest[3]},
+      {"dearest_group_5", dearest[4]},
       {"gvt_computations", whole(counters.gvt_computations)},
       {"peak_states", whole(graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},

@@ -17,6 +17,15 @@ using StatisticsTable =
 class Delivery;
 struct Simulation;
 
+// Groups whose arcs took most steps, discarded ones too, the dearest first.
+struct DearestGroup {
+  std::string names;  // a few, and how many bodies there are
+  std::size_t bodies = 0;
+  std::uint64_t contacts = 0, arcs = 0, steps = 0, rejected = 0;
+  double since = 0, until = 0;  // s
+};
+std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation);
+
 // `distance_queries_made`: by this world.
 StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
                               std::uint64_t distance_queries_made);

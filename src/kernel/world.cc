@@ -184,4 +184,6 @@ std::string World::history_hash() const {
 
 StatisticsTable World::statistics() const { return kernel_->statistics(); }
 
+std::vector<DearestGroup> World::dearest_groups() const { return kernel_->dearest_groups(); }
+
 }  // namespace tw

@@ -122,6 +122,7 @@ class World {
   // Needs set_hash(true) before the first run.
   std::string history_hash() const;
   StatisticsTable statistics() const;
+  std::vector<DearestGroup> dearest_groups() const;
 
   // Opaque: for the kernel's own tests and benchmarks.
   Kernel& kernel() { return *kernel_; }

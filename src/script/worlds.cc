@@ -184,6 +184,19 @@ TW_PRIMITIVE(statistics, "%statistics", (SCM world), "Return an alist of statist
   return scm_reverse(list);
 }
 
+TW_PRIMITIVE(dearest_groups, "%dearest-groups", (SCM world),
+             "Return the groups that took most steps, the dearest first: (NAMES BODIES CONTACTS "
+             "STEPS SINCE) each.") {
+  SCM list = SCM_EOL;
+  for (const DearestGroup& group : quiet_box(world, "statistics").world.dearest_groups())
+    list = scm_cons(
+        scm_list_5(scm_from_utf8_string(group.names.c_str()), scm_from_size_t(group.bodies),
+                   scm_from_uint64(group.contacts), scm_from_uint64(group.steps + group.rejected),
+                   scm_from_double(group.since)),
+        list);
+  return scm_reverse(list);
+}
+
 TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
              "Write the statistics as JSON.") {
   write_statistics_json(to_file_name(path, "the file"),

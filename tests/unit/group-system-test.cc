@@ -92,6 +92,7 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     c.law.k = draw.in(50, 100);
     c.law.hardening = kind.regime == Regime::deep ? 0.0015 : 0.03;
     c.law.b = 0.2;
+    c.law.size = 0.5;
     c.law.kt = 0.8 * c.law.k;
     c.law.ct = draw.in(5, 10);
     c.law.mu = kind.regime == Regime::sticking ? 1000 : 0.4;
