@@ -58,9 +58,6 @@ inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 inline constexpr double depth_slack = 1e-12;
 // The same where both are integrated: steps err by far more (groups/step-tolerances.h).
 inline constexpr double stepped_slack = 1e-10;
-// What overlaps without closing may creep on until it is twice as deep, or deeper by this share of
-// the smaller size.
-inline constexpr double creep_share = 1e-6;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
 // What is placed touching starts loaded in groups of at most so many members: forces are found anew

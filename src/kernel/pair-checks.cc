@@ -38,9 +38,6 @@ double grid_after(double t) {
   return (std::floor(t / answer::check_grid) + 1) * answer::check_grid;
 }
 
-double width_of(const Piece& piece) {
-  return std::min(piece.body_a->least_width, piece.body_b->least_width);
-}
 double slack_of(const Scene& scene, const Piece& piece) {
   // what is placed touching is to be found at once, for its loads
   const auto is_integrated = [&](const Body& body, const State& state) {
@@ -48,18 +45,17 @@ double slack_of(const Scene& scene, const Piece& piece) {
   };
   const bool integrated =
       is_integrated(*piece.body_a, *piece.a) && is_integrated(*piece.body_b, *piece.b);
-  return (integrated ? answer::stepped_slack : answer::depth_slack) * width_of(piece);
+  return (integrated ? answer::stepped_slack : answer::depth_slack) *
+         std::min(piece.body_a->least_width, piece.body_b->least_width);
 }
 
 // How deep the two may be, m, before it counts as penetration: as deep as they are when the piece
-// begins, and as deep again within limits, or a slack.  What begins in each other and does not
-// close (that would be an impact) stays so, or parts or creeps on as slowly as it likes: without
-// this it were looked at at every grid point.
+// begins, and a slack.  What begins in each other and does not close (that would be an impact)
+// stays so, or parts as slowly as it likes: without this it were looked at at every grid point.
 double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
   if (!(pair.touch > 0)) {
-    const double overlap = std::max(-separation_at(piece, piece.start_time()).distance, 0.0);
-    const double deeper = std::min(overlap, answer::creep_share * width_of(piece));
-    pair.touch = overlap + std::max(deeper, slack_of(scene, piece));
+    const double start = separation_at(piece, piece.start_time()).distance;
+    pair.touch = std::max(-start, 0.0) + slack_of(scene, piece);
   }
   return pair.touch;
 }

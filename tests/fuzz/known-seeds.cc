@@ -9,6 +9,8 @@ namespace {
 
 const KnownFault table[] = {
     // from 30 on: make check-long; what they look like, the causes were not looked into
+    {"lattice", 267, Fault::hash, 0,
+     "an impulse in a group of nine without gravity, under an adversary"},
     {"shaker", 146, Fault::energy, 0.0083, "between the slabs of a shaken room"},
     {"thin", 199, Fault::energy, 0.018, "coins of 1:100 at 90 m/s in a pit"},
 };
