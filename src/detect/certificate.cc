@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/constants.h"
@@ -144,6 +145,16 @@ double still_apart(const MovingBody& a, const MovingBody& b, double slack) {
 
 }  // namespace
 
+double distance_rounding(const Body& a, const Vec3& at_a, const Body& b, const Vec3& at_b) {
+  constexpr double of_width = 1e-14;
+  constexpr double of_coordinates = 4 * std::numeric_limits<double>::epsilon();
+  const auto coordinates = [](const Body& body, const Vec3& x) {
+    return x.norm() + (body.unbounded ? 0 : body.radius);
+  };
+  return of_width * std::min(a.least_width, b.least_width) +
+         of_coordinates * (coordinates(a, at_a) + coordinates(b, at_b));
+}
+
 double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
   const Trajectory& path_a = piece.a->trajectory();
   const Trajectory& path_b = piece.b->trajectory();
@@ -151,6 +162,8 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
   double least = std::min(a.bounds.valid_until, b.bounds.valid_until) - when;
+  // less than this is perhaps not apart
+  const double sure = distance_rounding(*a.body, a.point.x, *b.body, b.point.x) - allowance;
   // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
   // needed
   const bool in_steps = a.step_end != never || b.step_end != never;
@@ -180,7 +193,7 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
         const Vec3 ca = a.frame * pa.bound_center, cb = b.frame * pb.bound_center;
         const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
         const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
-        if (spheres && !(centers > radii - allowance && centers > 0)) return -never;
+        if (spheres && !(centers - radii > sure && centers > 0)) return -never;
         if (spheres || centers - radii > cost::far_in_radii * radii) {
           const Vec3 n = (cb - ca) / centers;
           least = std::min(least, longest([&](const MovingBody& x, const MovingBody& y) {
@@ -194,7 +207,7 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
       if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
       SimplexCache& cache = caches[i * parts_b.size() + j];
       const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
-      if (!(s.distance > -allowance)) return -never;
+      if (!(s.distance > sure)) return -never;
       double apart = longest([&](const MovingBody& x, const MovingBody& y) {
         return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
       });

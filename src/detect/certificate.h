@@ -15,7 +15,8 @@
 // other at touch are then apart for as long as they do.
 //
 // The certificate decides only where the next query is made, never the answer: warm simplices are
-// allowed here.
+// allowed here.  What a warm query finds apart by no more than rounding the cold one may find at
+// touch, so that is not surely apart.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -33,5 +34,8 @@ using SimplexCaches = std::vector<SimplexCache>;
 // Until when the two are surely apart on the piece's arcs, as seen at `when`, s; -infinity: perhaps
 // not at `when`.  Overlaps up to `allowance` (m) count as apart.
 double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance);
+
+// What rounding may make of no distance between two bodies with their centres there, m.
+double distance_rounding(const Body& a, const Vec3& at_a, const Body& b, const Vec3& at_b);
 
 }  // namespace tw

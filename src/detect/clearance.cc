@@ -58,21 +58,22 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   // remembered, or by the bounding balls, or by a query: what is left of it at the end
   const bool remembered = known.from <= from && from <= known.until;
   const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
+  const double rounding = distance_rounding(a, ta.center, b, tb.center);
   double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
-  if (!(left > 0)) {
+  if (!(left > rounding)) {
     const Frame fa = path_a.frame(from), fb = path_b.frame(from);
     const auto& parts_a = a.shape_P->parts();
     const auto& parts_b = b.shape_P->parts();
     if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
     left = never;
-    for (std::size_t i = 0; i < parts_a.size() && left > 0; ++i)
-      for (std::size_t j = 0; j < parts_b.size() && left > 0; ++j) {
+    for (std::size_t i = 0; i < parts_a.size() && left > rounding; ++i)
+      for (std::size_t j = 0; j < parts_b.size() && left > rounding; ++j) {
         const Separation s =
             part_separation(parts_a[i], fa, parts_b[j], fb, &caches[i * parts_b.size() + j]);
         left = std::min(left, s.distance - travel.against(s.normal));
       }
   }
-  if (!(left > 0)) return false;
+  if (!(left > rounding)) return false;
   known = {left, from, to};
   return true;
 }

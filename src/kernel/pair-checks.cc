@@ -45,8 +45,12 @@ double slack_of(const Scene& scene, const Piece& piece) {
   };
   const bool integrated =
       is_integrated(*piece.body_a, *piece.a) && is_integrated(*piece.body_b, *piece.b);
-  return (integrated ? answer::stepped_slack : answer::depth_slack) *
-         std::min(piece.body_a->least_width, piece.body_b->least_width);
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
+  // above rounding, or nothing that touches would surely be apart
+  return std::max((integrated ? answer::stepped_slack : answer::depth_slack) *
+                      std::min(a.least_width, b.least_width),
+                  4 * distance_rounding(a, piece.a->x, b, piece.b->x));
 }
 
 // How deep the two may be, m, before it counts as penetration: as deep as they are when the piece

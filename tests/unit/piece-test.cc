@@ -57,7 +57,7 @@ TEST(Pieces, spheres_that_fall_alike_meet_when_the_quadratic_says) {
   const Piece piece = between(a, b);
   ASSERT_TRUE(predicted_exactly(piece));
   EXPECT_NEAR(exact_impact(piece), (3 - 0.75) / 2, 1e-15);
-  EXPECT_TRUE(approaching_at(piece, 1));
+  EXPECT_NEAR(closing_at(piece, 1, separation_at(piece, 1)), 2, 1e-12);
   EXPECT_NEAR(separation_at(piece, 1).distance, 3 - 0.75 - 2, 1e-15);
 }
 
@@ -88,6 +88,21 @@ TEST(Pieces, certificates_lead_to_the_impact_and_never_past_it) {
   }
   EXPECT_GT(when, impact - 2e-3);
   EXPECT_EQ(certificate(piece, caches, impact + 0.01, 0), -never);
+}
+
+// A warm query may find what the cold one finds at touch apart by the last digit.
+TEST(Pieces, what_rounding_parts_is_not_surely_apart) {
+  const double edge = 0.011776484121165992;
+  for (const double gap : {1e-18, 1e-17, -1e-18}) {
+    const Flyer a(0, make_box(Vec3::Constant(edge)), {0, 0, edge / 2}, {0, 0, 0});
+    const Flyer b(1, make_box(Vec3::Constant(edge)), {edge + gap, 0, edge / 2}, {1, 0, 0});
+    const Piece piece = between(a, b);
+    SimplexCaches caches;
+    EXPECT_EQ(certificate(piece, caches, 0, 0), -never) << gap;
+    Clearance known;
+    EXPECT_FALSE(apart_throughout(piece, known, caches, 0, 0.1)) << gap;
+    EXPECT_EQ(certificate(piece, caches, 0, answer::depth_slack * edge), never) << gap;
+  }
 }
 
 TEST(Pieces, a_clearance_once_measured_answers_again_until_something_changes) {
@@ -143,6 +158,7 @@ TEST(Certificates, what_touches_and_moves_alike_is_apart_for_ever) {
 // for some microseconds of every turn of 63, the deepest for a time that is given.
 TEST(Dips, what_comes_and_goes_between_two_grid_points_is_seen) {
   Flyer ground(0, make_half_space(Vec3::UnitZ(), 0), Vec3::Zero(), Vec3::Zero());
+  ground.body.unbounded = true;
   ground.body.least_width = never;
   ground.carried();
   const double half = 5e-3, turn = 1e5;
