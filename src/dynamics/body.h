@@ -20,6 +20,7 @@
 namespace tw {
 
 class Trajectory;
+struct Multibody;
 
 // What a body does at one instant.  Position and orientation are the *body frame's*, velocity the
 // centre of mass's; all in the world frame, SI.
@@ -48,6 +49,9 @@ struct BodyInfo {
 struct Body {
   BodyInfo info;
   ProcessId process{};  // that its motion belongs to
+  const Multibody* multibody = nullptr;  // it is a link of; null: of none
+  std::uint32_t link = 0;                // which one
+  std::vector<BodyId> neighbours;        // links across a joint, which it never touches; ascending
   ContactBody contact;
   double mass = 0;              // kg; 0 for fixed and kinematic
   Vec3 moments = Vec3::Zero();  // kg m^2

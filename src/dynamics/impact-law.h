@@ -7,7 +7,7 @@
 // of the contact points, so u.n < 0 when approaching; P the impulse on b (-P on a); K the inverse
 // inertia of the contact, u' = u + K P.
 //   P_I  = -(u.n)/(n.K n) n        stops the approach without friction
-//   P_II = -K^-1 u                 stops all relative motion
+//   P_II = -K^-1 u                 stops all relative motion (K^+ where joints leave K singular)
 //   P    = (1+e) P_I + (P_II - P_I)              if that lies in the friction cone, else
 //   P    = (1+e) P_I + kappa (P_II - P_I)        with kappa such that P lies on it:
 //   kappa = mu (1+e) n.P_I / (|P_II - (n.P_II) n| - mu n.(P_II - P_I))
@@ -27,7 +27,8 @@ inline Mat3 contact_compliance(double inverse_mass, const Mat3& inverse_inertia,
   return inverse_mass * Mat3::Identity() - rx * inverse_inertia * rx;
 }
 
-// The impulse on b, N s; zero unless u.n < 0.  K is positive definite.
+// The impulse on b, N s; zero unless u.n < 0.  K is positive semi-definite; zero, too, where n.K n
+// vanishes: no impulse along n moves the points.
 Vec3 impact_impulse(const Mat3& K, const Vec3& n, const Vec3& u, double restitution,
                     double friction);
 

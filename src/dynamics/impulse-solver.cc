@@ -22,6 +22,7 @@ ImpulseSlot ImpulseSlot::border(const PoseTwist& point) {
 void ImpulseSolver::clear() {
   slots_.clear();
   blocks_.clear();
+  received_.clear();
   normal_impulse_ = work_of_held_ = largest_impulse_ = largest_approach_ = 0;
   largest_ = {};
 }
@@ -34,6 +35,7 @@ std::uint32_t ImpulseSolver::add(const ImpulseSlot& slot) {
 void ImpulseSolver::join(std::uint32_t of, std::uint32_t on, const Mat6& block) {
   slots_[of].answer = slots_[on].answer = Answer::joined;
   blocks_.push_back({of, on, block});
+  received_.resize(slots_.size(), Vec6::Zero());
 }
 
 // K_ij at one point of both
@@ -73,6 +75,7 @@ void ImpulseSolver::apply(std::uint32_t slot, const Vec3& impulse, const Vec3& w
   if (s.answer != Answer::joined) return;
   Vec6 wrench;
   wrench << impulse, (where - s.x).cross(impulse);
+  received_[slot] += wrench;
   for (const Block& block : blocks_) {
     if (block.on != slot) continue;
     const Vec6 change = block.Y * wrench;

@@ -86,6 +86,8 @@ class ImpulseSolver {
                       int most_impulses);
 
   // ---- what all impulses so far add up to ----
+  // On a joined slot: the impulse, N s, and its moment about x, N m s.
+  const Vec6& received(std::uint32_t slot) const { return received_[slot]; }
   double normal_impulse() const { return normal_impulse_; }  // N s, a sum of magnitudes
   // J: a held body does work with the force it exerts at its own speed.
   double work_of_held() const { return work_of_held_; }
@@ -112,7 +114,8 @@ class ImpulseSolver {
   void apply(std::uint32_t slot, const Vec3& impulse, const Vec3& where);
 
   std::vector<ImpulseSlot> slots_;
-  std::vector<Block> blocks_;  // of joined slots
+  std::vector<Block> blocks_;   // of joined slots
+  std::vector<Vec6> received_;  // by slot, as far as any is joined
   double normal_impulse_ = 0, work_of_held_ = 0, largest_impulse_ = 0, largest_approach_ = 0;
   ImpulseContact largest_;
 };

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "dynamics/contact-book.h"
 
 namespace tw {
+
+struct Multibody;
 
 // What users set, as far as the motion depends on it.
 struct SceneOptions {
@@ -26,6 +29,7 @@ struct Scene {
 
   std::vector<std::unique_ptr<Body>> bodies;  // by number
   std::vector<BodyId> first_bodies;           // of each process, by number
+  std::vector<std::shared_ptr<const Multibody>> multibodies;  // in the order in which they came
   ContactBook contacts;
   const SceneOptions& options;
 
@@ -36,9 +40,16 @@ struct Scene {
   // The magnitude of gravity, or the standard one where there is none: the scale of what is slow,
   // m/s^2, > 0.
   double gravity_scale() const;
+  static bool are_neighbours(const Body& a, const Body& b) {
+    return a.multibody && a.multibody == b.multibody &&
+           std::binary_search(a.neighbours.begin(), a.neighbours.end(), b.id());
+  }
+  // Whether some pairs may not touch.
+  bool may_disable() const { return contacts.may_disable() || !multibodies.empty(); }
   // Whether the two may touch at all.
   bool may_collide(const Body& a, const Body& b) const {
-    return !a.info.removed && !b.info.removed && contacts.between(a.id(), b.id()).collide;
+    return !a.info.removed && !b.info.removed && !are_neighbours(a, b) &&
+           contacts.between(a.id(), b.id()).collide;
   }
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "groups/joined.h"
+
 namespace tw {
 
 const std::shared_ptr<Group>& owner_of(const State& a, const State& b) {
@@ -40,13 +42,17 @@ std::vector<ProcessId> Before::remaining(const Group& group) const {
 }
 
 std::vector<ProcessId> Before::hanging_together(ProcessId process) const {
-  std::vector<ProcessId> all{process}, next = all;
+  std::vector<ProcessId> all{process};
+  add_joined(scene_, all);
+  std::vector<ProcessId> next = all;
   while (!next.empty()) {
     std::vector<ProcessId> found;
     visit_contacts(next, [&](const Group&, const ContactPair&, BodyId other) {
       const ProcessId theirs = scene_.process_of(other);
       if (!holds(all, theirs)) insert(found, theirs);
     });
+    add_joined(scene_, found);
+    std::erase_if(found, [&](ProcessId other) { return holds(all, other); });
     for (const ProcessId other : found) insert(all, other);
     next = std::move(found);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "multibody/multibody.h"
 
 namespace tw {
 namespace {
@@ -40,6 +41,12 @@ double finest_check(const Scene& scene, const Body& body) {
   if (rate > 0) return 1 / rate;
   return on_lattice(answer::check_unit, answer::finest_check_times *
                                             std::sqrt(body.least_width / scene.gravity_scale()));
+}
+
+double joint_check_interval(const Scene& scene, const Multibody& multibody) {
+  double size = 0;
+  for (const BodyId link : multibody.links) size += scene.body(link).radius;
+  return on_lattice(answer::check_unit, std::sqrt(size / scene.gravity_scale()));
 }
 
 double next_check_time(double birth, double now, double interval) {

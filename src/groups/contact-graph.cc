@@ -295,7 +295,7 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
 std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
                                   const std::vector<ProcessId>& looked_at) {
   const Scene& scene = work.scene();
-  const bool may_disable = scene.contacts.may_disable();
+  const bool may_disable = scene.may_disable();
   std::vector<BodyId> candidates;
   work.surroundings.visit_near(body.id(), [&](BodyId other) {
     const Body& partner = scene.body(other);

@@ -9,12 +9,14 @@
 #include "groups/changes.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
+#include "groups/joints.h"
 #include "groups/placed-loads.h"
 #include "groups/rest.h"
 #include "groups/share-stiffness.h"
-#include "groups/step-tolerances.h"
+#include "groups/start-members.h"
 #include "integrate/member-trajectory.h"
 #include "integrate/standing.h"
+#include "multibody/multibody.h"
 
 namespace tw {
 namespace {
@@ -59,20 +61,12 @@ TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
 
 // Members of the arc, and the tolerances of its steps.
 void start_members(const Regrouping& work, const Group& group, GroupStart& start) {
-  double size = never, speed = 0;
+  StartOfMembers members(work.scene(), start);
   for (const ProcessId member : group.members) {
     const Successor& successor = *work.successor_of(member);
-    const Body& body = *successor.body;
-    const StateData& d = successor.data;
-    start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
-                             body.mass * d.acceleration, Vec3::Zero()});
-    size = std::min(size, body.least_width);
-    speed = std::max(speed, placed(successor).surface_speed());
+    members.add(*successor.body, successor.point, successor.data, successor.joints);
   }
-  const double accuracy = work.scene().options.accuracy, gravity = work.scene().gravity_scale();
-  const double closeness = group_closeness(accuracy, speed / std::sqrt(gravity * size));
-  start.position_tolerance = closeness * group_position_tolerance(accuracy, size);
-  start.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size, gravity);
+  members.set_tolerances();
 }
 
 // The law of a contact that stands becomes another one: its offset and its stretch go along so that
@@ -174,7 +168,11 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
   if (!before && group.has_border)
     for (const auto& old : work.old)
       if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
-  const double interval = check_interval(work, group.members);
+  const double interval =
+      group.pairs.empty()
+          ? joint_check_interval(work.scene(), *work.successor_of(group.members.front())
+                                                    ->body->multibody)
+          : check_interval(work, group.members);
   group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
   if (before && !finds_contacts(work.cause) && before->next_check >= now)
     group.next_check = std::min(group.next_check, before->next_check);
@@ -218,6 +216,10 @@ Components parts_of(const Regrouping& work) {
         work.rests[i] == work.rests[j])
       parts.join(i, j);
   }
+  for (std::size_t i = 0; i < work.successors.size(); ++i)
+    if (const Multibody* multibody = work.successors[i].body->multibody;
+        multibody && work.changes(&work.successors[i]))
+      parts.join(i, work.place_of(work.successor_of(multibody->links.front())));
   return parts;
 }
 
@@ -236,8 +238,12 @@ void make_groups(Regrouping& work) {
     for (const BodyId id : {pair.a(), pair.b()})
       if (const Successor* member = work.successor_of(id); work.changes(member))
         held[work.place_of(member)] = true;
+  // what is joined never parts; links do not rest, and keep those awake that touch them
   for (std::size_t i = 0; i < count; ++i)
-    if (held[i]) work.stillness[i] = stillness_of(work, work.successors[i]);
+    if (work.successors[i].body->multibody && work.changes(&work.successors[i])) held[i] = true;
+  for (std::size_t i = 0; i < count; ++i)
+    if (held[i] && !work.successors[i].body->multibody)
+      work.stillness[i] = stillness_of(work, work.successors[i]);
   work.rests.assign(count, false);
   Components components = parts_of(work);
   if (work.cause == Cause::check) {
@@ -264,6 +270,7 @@ void make_groups(Regrouping& work) {
     if (!group) continue;
     const int member = group->member_of(successor.process());
     data.member = static_cast<std::uint32_t>(member);
+    if (successor.joints) data.joints = successor.joints;
     data.follows =
         group->at_rest ? make_resting({data.x, data.q}) : member_trajectory(group->arc, member);
   }

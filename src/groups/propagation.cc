@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "dynamics/impulse-solver.h"
+#include "groups/joints.h"
 
 namespace tw {
 namespace {
@@ -58,6 +59,10 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
           {slot_of(a), slot_of(b), c.normal, c.point, law.restitution, law.friction, slow});
   }
   const int most = work.struck_at.empty() ? guard::most_passed_on : guard::most_struck_again;
+  JointImpulses joints(solver);
+  for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
+    if (solver.slot(slot).moves()) joints.add(*work.successor_of(ids[slot]), slot);
+  joints.join();
   const ImpulseResult result = solver.solve(touching_now, 0, most);
   if (const ImpulseContact* at = result.stopped_at) {
     std::vector<ProcessId> at_border;
@@ -75,6 +80,7 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
     for (const std::size_t i : {0, 1}) work.successors[i].data.impacts.unsettled_time = work.now();
   else if (result.left_over > 0)
     ++work.tally.impulses_given_up;
+  joints.take();
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
     if (solver.slot(slot).moves())
       take_velocities(*work.successor_of(ids[slot]), solver.slot(slot));

@@ -7,6 +7,7 @@
 #include "groups/changes.h"
 #include "groups/check-times.h"
 #include "groups/contact-graph.h"
+#include "groups/joints.h"
 #include "groups/make-groups.h"
 #include "groups/placed-loads.h"
 #include "groups/propagation.h"
@@ -64,6 +65,7 @@ std::vector<Successor> successors_of(const Region& region, const Before& before,
   }
   for (const ProcessId process : region.border)
     if (!known(process)) add_record(process, Role::border);
+  share_joints(all);
   return all;
 }
 
@@ -101,6 +103,7 @@ Successor make_successor(const Before& before, ProcessId process, bool new_arc) 
   successor.data.report.reset();
   successor.data.tally = {};
   successor.data.error = nullptr;
+  if (state.joints) successor.joints = joints_at(state, before.key().time);
   const bool keeps_states = successor.body->dynamic() || successor.data.slots;
   successor.role = keeps_states ? Role::record : Role::no_state;
   if (new_arc) start_new_arc(successor, before.key());
@@ -131,6 +134,7 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     std::vector<ProcessId> more;
     if (passes_impulses(request.cause)) more = propagate_impulses(work);
     if (more.empty()) {
+      settle_joints(work);
       make_groups(work);
       more = who_notices(work);
     }

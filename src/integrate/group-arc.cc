@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/interruption.h"
+#include "integrate/group-rows.h"
 #include "integrate/group-stepper.h"
 #include "integrate/member-trajectory.h"
 
@@ -50,6 +51,12 @@ struct GroupArc::Data {
     TW_ASSERT(record.steps() > 0 || complete(), "an arc was looked at before its first step");
     return record.steps() > 0;
   }
+  // The record of the multibody that a member is a link of; null: it moves by itself.
+  const JointRecord* joints_of(int member) const {
+    const int tree = start.members[static_cast<std::size_t>(member)].tree;
+    return tree >= 0 ? &stepper.joints(tree) : nullptr;
+  }
+  int link_of(int member) const { return start.members[static_cast<std::size_t>(member)].link; }
   // kinematics of all slots at a time that is reached
   void set_bodies(double time, GroupScratch& s) const;
   void set_slot(int slot, double time, GroupScratch& s) const;
@@ -99,6 +106,15 @@ void GroupArc::Data::fail() {
 }
 
 void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
+  if (const JointRecord* joints = joints_of(slot)) {
+    const PoseTwist point = joints->at(link_of(slot), time);
+    BodyKinematics& body = s.bodies[static_cast<std::size_t>(slot)];
+    rows::vec(body.x) = point.x;
+    rows::vec(body.v) = point.v;
+    rows::vec(body.w) = point.w;
+    rows::store_rotation(point.q.toRotationMatrix(), body.R);
+    return;
+  }
   Vec3 v, L;
   record.velocities(slot, time, v, L);
   system.set_member(slot, record.position(slot, time), record.attitude(slot, time), v, L,
@@ -160,6 +176,12 @@ bool GroupArc::extend_patiently(double time) {
 GroupSample GroupArc::evaluate(int member, double time) const {
   const double at = data_->at(time);
   GroupSample sample;
+  if (const JointRecord* joints = data_->joints_of(member)) {
+    const PoseTwist point = joints->at(data_->link_of(member), at);
+    const Mat3 R = point.q.toRotationMatrix();
+    const Vec3& moments = data_->start.members[static_cast<std::size_t>(member)].moments;
+    return {point.x, point.v, point.w, R * moments.cwiseProduct(R.transpose() * point.w), point.q};
+  }
   sample.x = data_->record.position(member, at);
   sample.q = data_->record.attitude(member, at);
   data_->record.velocities(member, at, sample.v, sample.L);
@@ -169,12 +191,24 @@ GroupSample GroupArc::evaluate(int member, double time) const {
 
 void GroupArc::pose(int member, double time, Vec3& x, Quat& q) const {
   const double at = data_->at(time);
+  if (const JointRecord* joints = data_->joints_of(member)) {
+    const Pose pose = joints->pose(data_->link_of(member), at);
+    x = pose.p;
+    q = pose.q;
+    return;
+  }
   x = data_->record.position(member, at);
   q = data_->record.attitude(member, at);
 }
 
 void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) const {
   // at the start too the rates are those of a step
+  if (const JointRecord* joints = data_->joints_of(member); joints && data_->has_steps()) {
+    const Twist rates = joints->rates(data_->link_of(member), data_->at(time));
+    dx = rates.v;
+    w = rates.w;
+    return;
+  }
   if (data_->has_steps()) return data_->record.pose_rates(member, data_->at(time), dx, w);
   const GroupSample sample = evaluate(member, time);
   dx = sample.v;
@@ -195,9 +229,12 @@ MotionBounds GroupArc::bounds(int member, double from, double to) const {
     constexpr std::size_t places = 512;
     thread_local std::vector<Kept> table(places);
     const double end = data_->at(to), begin = std::min(data_->at(from), end);
+    const JointRecord* joints = data_->joints_of(member);
     Kept& kept = table[(data_->serial * 61 + static_cast<std::uint64_t>(member)) % places];
     if (kept.arc != data_->serial || kept.member != member || kept.from != begin || kept.to != end)
-      kept = {data_->serial, member, begin, end, data_->record.bounds(member, begin, end)};
+      kept = {data_->serial, member, begin, end,
+              joints ? joints->bounds(data_->link_of(member), begin, end)
+                     : data_->record.bounds(member, begin, end)};
     return kept.bounds;
   }
   const GroupSample start = evaluate(member, from);
@@ -217,7 +254,14 @@ TrajectoryPtr GroupArc::excerpt(int member, double from, double to) const {
   PoseTwist start;
   if (!data_->has_steps()) start = trajectory(member).at(from);
   data_->at(to);
+  if (const JointRecord* joints = data_->joints_of(member))
+    return make_excerpt(joints->stretch(data_->at(from)), data_->link_of(member), start);
   return make_excerpt(data_->record.stretch_of(member, data_->at(from)), start);
+}
+
+void GroupArc::joints(int tree, double time, std::vector<double>& q,
+                      std::vector<double>& u) const {
+  data_->stepper.joints(tree).joints(data_->at(time), q, u);
 }
 
 Vec3 GroupArc::stretch(int contact, double time) const {
@@ -300,13 +344,16 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
                          double to) const {
   const Data& d = *data_;
   const GroupMember& body = d.start.members[static_cast<std::size_t>(member)];
+  const bool is_link = body.tree >= 0;
   double work = 0;
   const double end = d.at(to);
   for (double start = d.at(from); start < end;) {
     const double stop = std::min(end, step_end(start)), h = stop - start;
     Vec3 v0, v1, L, impulse = Vec3::Zero(), carrying = Vec3::Zero();
-    d.record.velocities(member, start, v0, L);
-    d.record.velocities(member, stop, v1, L);
+    if (!is_link) {
+      d.record.velocities(member, start, v0, L);
+      d.record.velocities(member, stop, v1, L);
+    }
     double normal = 0;
     for (const double side : {-1.0, 1.0}) {
       const double when = start + 0.5 * h + side * 0.5 / std::sqrt(3.0) * h;
@@ -318,6 +365,11 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
         work += 0.5 * h * f.force.dot(f.other_velocity);
         carrying += 0.5 * h * f.normal * f.other_velocity;
       }
+    }
+    // what the joints of a link did is not known
+    if (is_link) {
+      start = stop;
+      continue;
     }
     const Vec3 missed = body.mass * (v1 - v0) - h * body.force - impulse;
     if (normal > 0) work += missed.dot(carrying) / normal;

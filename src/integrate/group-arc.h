@@ -38,6 +38,7 @@
 #include "dynamics/contact-law.h"
 #include "integrate/trajectory.h"
 #include "math/vec.h"
+#include "multibody/multibody.h"
 
 namespace tw {
 
@@ -52,6 +53,17 @@ struct GroupMember {
   Vec3 L = Vec3::Zero();       // about the centre, world
   Vec3 force = Vec3::Zero();   // constant, weight included, N
   Vec3 torque = Vec3::Zero();  // constant, about the centre, N m
+  int tree = -1;               // the arc's multibody that it is a link of; -1: it moves by itself
+  int link = 0;                // which one
+};
+
+// A multibody that the arc moves, at the arc's start.
+struct GroupTree {
+  std::shared_ptr<const Multibody> multibody;
+  MultibodyStatePtr state;
+  Vec3 gravity = Vec3::Zero();  // m/s^2
+  std::vector<int> members;     // of each link
+  std::vector<Vec3> forces;     // on each link's centre of mass, constant, weight not included, N
 };
 
 // What the reference body shows the other one at a contact.
@@ -90,6 +102,7 @@ struct GroupStart {
   double time = 0;  // s
   double end = 0;   // the arc goes no further, s
   std::vector<GroupMember> members;
+  std::vector<GroupTree> trees;
   std::vector<TrajectoryPtr> outside;  // of bodies that the arc meets and does not move
   std::vector<GroupContact> contacts;
   double first_step = 0;             // to be tried first, s; 0: chosen
@@ -162,6 +175,8 @@ class GroupArc : public Counted<GroupArc> {
   TrajectoryPtr excerpt(int member, double from, double to) const;
   // What the member does; lives as long as the arc (member_trajectory shares it).
   const Trajectory& trajectory(int member) const;
+  // How the joints of a multibody stand and move.
+  void joints(int tree, double time, std::vector<double>& q, std::vector<double>& u) const;
   Vec3 stretch(int contact, double time) const;  // a's frame
   ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside

@@ -52,6 +52,14 @@ class GroupRecord {
   LaneVec stretch(int pack, double time) const;
   LaneVec side(int pack, double time) const;
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
+  Pose pose(int member, double time) const {
+    return {position(member, time), attitude(member, time)};
+  }
+  Twist rates(int member, double time) const {
+    Twist rates;
+    pose_rates(member, time, rates.v, rates.w);
+    return rates;
+  }
   // As GroupArc::bounds; from <= to, both in [start, reached], at least one step.
   MotionBounds bounds(int member, double from, double to) const;
 

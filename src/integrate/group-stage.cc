@@ -17,6 +17,7 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
       sides_[index(p)] = s.linear[index(p)].n;
   for (int i = 0; i < members_; ++i) {
     Member& m = member_[index(i)];
+    if (m.is_link) continue;
     const Mat3 R =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.bodies[index(i)].R);
     m.w = vec(s.bodies[index(i)].w);
@@ -53,7 +54,13 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
     store(transposed_times(linear.Ra, -(linear.inverse_ct * change.friction)),
           time_slope + 12 * (members_ + p));
   }
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    double* row = time_slope + tree_rows_[t] + trees_[t]->freedoms();
+    trees_[t]->gather(s.wrenches.data(), row);
+    trees_[t]->accelerate(row);
+  }
   for (int i = 0; i < members_; ++i) {
+    if (member_[index(i)].is_link) continue;
     vec(time_slope + 12 * i + 6) = member_[index(i)].inverse_mass * vec(s.wrenches[index(i)].f);
     vec(time_slope + 12 * i + 9) = vec(s.wrenches[index(i)].t);
   }
@@ -112,16 +119,21 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
   return largest;
 }
 
+void GroupSystem::set_body_stage(Member& m, double sigma) const {
+  Mat3 stage = -m.W - 0.5 * cross_matrix(m.w);
+  stage.diagonal().array() += sigma;
+  m.A = stage.inverse();
+  m.P = m.A * m.J;
+  m.V = m.J + m.W * m.P;
+}
+
 bool GroupSystem::factor(double sigma, GroupScratch& s) {
   sigma_ = sigma;
+  if (coupled_) return factor_coupled(s);
   matrix_.clear();
   for (int i = 0; i < members_; ++i) {
     Member& m = member_[index(i)];
-    Mat3 stage = -m.W - 0.5 * cross_matrix(m.w);
-    stage.diagonal().array() += sigma;
-    m.A = stage.inverse();
-    m.P = m.A * m.J;
-    m.V = m.J + m.W * m.P;
+    set_body_stage(m, sigma);
     double* block = matrix_.at(matrix_.offset(i, i));
     for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
   }
@@ -145,6 +157,7 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
 }
 
 bool GroupSystem::solve(GroupScratch& s, double* stage) {
+  if (coupled_) return solve_coupled(s, stage);
   const double inverse = 1 / sigma_;
   std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
   std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});

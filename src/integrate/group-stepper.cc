@@ -11,7 +11,10 @@
 namespace tw {
 
 GroupStepper::GroupStepper(const GroupStart& start)
-    : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {}
+    : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {
+  for (const GroupTree& tree : start.trees)
+    joints_.emplace_back(*tree.multibody, start.time, tree.state->q, tree.state->u, 3);
+}
 
 GroupCounts GroupStepper::counts() const {
   GroupCounts counts = counts_;
@@ -29,7 +32,7 @@ GroupScratch& GroupStepper::scratch() const {
   fit(shared.changes, slots);
   fit(shared.wrenches, slots);
   fit(shared.linear, static_cast<std::size_t>(system_.packs()));
-  fit(shared.right_side, 6 * static_cast<std::size_t>(system_.members()));
+  fit(shared.right_side, system_.unknowns());
   for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
     fit(*v, system_.size());
   for (std::vector<double>& v : shared.stage) fit(v, system_.size());
@@ -109,20 +112,19 @@ bool GroupStepper::try_step(double h, GroupScratch& s, double& error) {
     s.trial[e] += s.stage[5][e];
     sum += s.trial[e];
   }
-  error = error_norm(s, s.stage[5].data());
+  error = error_norm(s);
   return std::isfinite(error + sum);
 }
 
-// RMS over members and over the four parts
-double GroupStepper::error_norm(const GroupScratch& s, const double* stage) const {
+// RMS over members and over the four parts, of the changes that the last stage left
+double GroupStepper::error_norm(const GroupScratch& s) const {
   double positions = 0, velocities = 0;
   for (int i = 0; i < system_.members(); ++i) {
-    const double* e = stage + 12 * i;
-    const double* w = s.changes[static_cast<std::size_t>(i)].w;
+    const BodyChange& e = s.changes[static_cast<std::size_t>(i)];
     const double r = start_.members[static_cast<std::size_t>(i)].radius, squared = r * r;
     for (int j = 0; j < 3; ++j) {
-      positions += e[j] * e[j] + squared * e[3 + j] * e[3 + j];
-      velocities += e[6 + j] * e[6 + j] + squared * w[j] * w[j];
+      positions += e.x[j] * e.x[j] + squared * e.th[j] * e.th[j];
+      velocities += e.v[j] * e.v[j] + squared * e.w[j] * e.w[j];
     }
   }
   const double p = start_.position_tolerance, v = start_.velocity_tolerance;
@@ -154,7 +156,46 @@ void GroupStepper::accept(double time, GroupScratch& s) {
     d3[e] = sum3;
     d4[e] = sum4;
   }
+  append_joints(time, s);
   record_.append(time, system_, s.trial.data(), d3, d4);
+}
+
+// Of the step that begins at the last node.
+void GroupStepper::load_joints(GroupScratch& s) {
+  for (std::size_t t = 0; t < joints_.size(); ++t) {
+    TreeInGroup& tree = *system_.trees()[t];
+    double* row = s.state.data() + system_.tree_row(t);
+    joints_[t].joints(record_.reached(), joint_positions_, joint_velocities_);
+    tree.set_positions(joint_positions_);
+    std::fill_n(row, tree.freedoms(), 0.0);
+    std::copy(joint_velocities_.begin(), joint_velocities_.end(), row + tree.freedoms());
+  }
+}
+
+// Displacements are the cubics with the values and rates of the nodes, velocities follow the dense
+// output of the method, as those of bodies do (group-record.h): as powers of the step's fraction.
+void GroupStepper::append_joints(double time, GroupScratch& s) {
+  const double h = time - record_.reached();
+  for (std::size_t t = 0; t < joints_.size(); ++t) {
+    TreeInGroup& tree = *system_.trees()[t];
+    const std::size_t n = static_cast<std::size_t>(tree.freedoms()), row = system_.tree_row(t);
+    const double *z1 = s.trial.data() + row, *u0 = s.state.data() + row + n, *u1 = z1 + n;
+    const double *u3 = s.stage[4].data() + row + n, *u4 = s.stage[5].data() + row + n;
+    std::vector<double> rate(n), powers(8 * n);
+    multibody::chart_rate(tree.start().multibody->tree, {z1, n}, {u1, n}, rate);
+    const auto set = [&](std::size_t e, double y0, double y1, double d3, double d4) {
+      powers[e] = y0;
+      powers[2 * n + e] = y1 - y0 + d3;
+      powers[4 * n + e] = d4 - d3;
+      powers[6 * n + e] = -d4;
+    };
+    for (std::size_t e = 0; e < n; ++e) {
+      const double d3 = h * u0[e] - z1[e];
+      set(e, 0, z1[e], d3, z1[e] - d3 - h * rate[e]);
+      set(n + e, u0[e], u1[e], u3[e], u4[e]);
+    }
+    joints_[t].append(time, powers, tree.displaced(z1));
+  }
 }
 
 // one accepted step; false: failed
@@ -165,6 +206,7 @@ bool GroupStepper::step() {
   // outside bodies that do not move
   system_.set_outside(time, s.bodies);
   record_.load_last(system_, s.state.data());
+  load_joints(s);
   system_.linearise(time, s.state.data(), s, s.slope.data());
   ++counts_.evaluations;
   const double turn_limit = answer::most_step_turn / std::max(fastest_turn(s), 1e-300);

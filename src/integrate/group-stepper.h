@@ -10,6 +10,7 @@
 #include "integrate/group-arc.h"
 #include "integrate/group-record.h"
 #include "integrate/group-system.h"
+#include "integrate/joint-record.h"
 
 namespace tw {
 
@@ -24,6 +25,7 @@ class GroupStepper {
 
   const GroupSystem& system() const { return system_; }
   const GroupRecord& record() const { return record_; }
+  const JointRecord& joints(int tree) const { return joints_[static_cast<std::size_t>(tree)]; }
   double next_step() const { return next_step_; }
   GroupCounts counts() const;
   // Of this thread, fitted to the system.
@@ -34,13 +36,17 @@ class GroupStepper {
   template <int i>
   bool set_stage(double h, GroupScratch& s);
   bool try_step(double h, GroupScratch& s, double& error);
-  double error_norm(const GroupScratch& s, const double* stage) const;
+  double error_norm(const GroupScratch& s) const;
   double fastest_turn(const GroupScratch& s) const;
   void accept(double time, GroupScratch& s);
+  void load_joints(GroupScratch& s);
+  void append_joints(double time, GroupScratch& s);
 
   const GroupStart& start_;
   GroupSystem system_;
   GroupRecord record_;
+  std::vector<JointRecord> joints_;  // of each multibody
+  std::vector<double> joint_positions_, joint_velocities_;
   GroupCounts counts_;
   double next_step_;
   const char* failure_ = nullptr;

@@ -28,7 +28,8 @@ GroupSystem::GroupSystem(const GroupStart& start)
       end_(start.end),
       outside_(start.outside),
       packs_(make_contact_packs(start)),
-      matrix_(members_, member_pairs(start)) {
+      matrix_(start.trees.empty() ? members_ : 0,
+              start.trees.empty() ? member_pairs(start) : std::vector<std::pair<int, int>>()) {
   for (const GroupMember& m : start.members) {
     Member member;
     member.mass = m.mass;
@@ -37,9 +38,16 @@ GroupSystem::GroupSystem(const GroupStart& start)
     member.force = m.force;
     member.torque = m.torque;
     member.q0 = m.q;
+    member.is_link = m.tree >= 0;
     member_.push_back(member);
   }
   size_ = 12 * (start.members.size() + packs_.packs.size());
+  for (const GroupTree& tree : start.trees) {
+    trees_.push_back(std::make_unique<TreeInGroup>(tree));
+    tree_rows_.push_back(size_);
+    size_ += index(2 * trees_.back()->freedoms());
+  }
+  if (!trees_.empty()) make_coupled();
 
   // what stands still is placed once
   std::vector<BodyKinematics> bodies(index(packs_.slots));
@@ -108,12 +116,21 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
   for (int i = 0; i < members_; ++i) {
     const double* from = y + 12 * i;
     double* to = slope + 12 * i;
+    if (member_[index(i)].is_link) {
+      std::fill_n(to, 12, 0.0);
+      continue;
+    }
     BodyKinematics& body = s.bodies[index(i)];
     const Vec3 theta = vec(from + 3);
     set_member(i, vec(from), short_rotation(theta) * member_[index(i)].q0, vec(from + 6),
                vec(from + 9), body);
     vec(to) = vec(from + 6);
     vec(to + 3) = rotation_vector_rate(theta, vec(body.w));
+  }
+
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const double* row = y + tree_rows_[t];
+    trees_[t]->place(row, row + trees_[t]->freedoms(), s.bodies.data());
   }
 
   // contacts
@@ -136,9 +153,17 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
   // forces
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
+    if (m.is_link) continue;
     const BodyWrench& wrench = s.wrenches[index(i)];
     vec(slope + 12 * i + 6) = m.inverse_mass * (m.force + vec(wrench.f));
     vec(slope + 12 * i + 9) = m.torque + vec(wrench.t);
+  }
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    TreeInGroup& tree = *trees_[t];
+    const double *z = y + tree_rows_[t], *u = z + tree.freedoms();
+    double *to = slope + tree_rows_[t], *u_rate = to + tree.freedoms();
+    tree.evaluate(z, u, s.wrenches.data(), to, u_rate);
+    if constexpr (with_derivative) tree.linearise(u, u_rate, s.wrenches.data());
   }
 }
 

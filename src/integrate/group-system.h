@@ -1,19 +1,24 @@
 // The differential equations of a contact group, their derivative and the linear systems of a step.
 //
 // A state is a row of numbers: 12 a member (x, theta, v, L; theta from the step's start), then 12 a
-// pack of four contacts (the stretches: four x, four y, four z, in a's frame).
+// pack of four contacts (the stretches: four x, four y, four z, in a's frame), then 2 n a multibody
+// (tree-in-group.h).  Links are members, whose own numbers mean nothing: joints say where they are.
 //   x' = v,  theta' = Jl(theta)^-1 w,  v' = F/m,  L' = T,  w = R I^-1 R^T L,  R = exp(theta) R0
 // With J = R0 I^-1 R0^T, the derivatives at theta = 0 (exact):
 //   dw = J dL + W dth,  W = J [L]x - [w]x,     dtheta' = dw + [w]x dth/2.
 // A stage (s 1 - Jacobian) k = r is reduced to 6 unknowns a member, (kv, kL):
 //   kx = (rx + kv)/s,  kth = A (rth + J kL),  A = (s - W - [w]x/2)^-1,
 //   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h.
+// With multibodies the unknowns are those of the members that move by themselves and the joint
+// velocities; the matrix is what `solve` does to one unknown at a time.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include "integrate/body-matrix.h"
 #include "integrate/contact-linear.h"
+#include "integrate/coupled-matrix.h"
+#include "integrate/tree-in-group.h"
 
 namespace tw {
 
@@ -35,9 +40,19 @@ class GroupSystem {
   int members() const { return members_; }
   int packs() const { return static_cast<int>(packs_.packs.size()); }
   std::size_t size() const { return size_; }
+  std::size_t unknowns() const {
+    return coupled_ ? static_cast<std::size_t>(coupled_->size())
+                    : 6 * static_cast<std::size_t>(members_);
+  }
   const ContactPacks& contact_packs() const { return packs_; }
+  std::vector<std::unique_ptr<TreeInGroup>>& trees() { return trees_; }
+  const std::vector<std::unique_ptr<TreeInGroup>>& trees() const { return trees_; }
+  // Where the numbers of a multibody begin.
+  std::size_t tree_row(std::size_t tree) const { return tree_rows_[tree]; }
   bool moved_from_outside() const { return !moving_slots_.empty(); }
-  std::uint64_t factorizations() const { return matrix_.factorizations(); }
+  std::uint64_t factorizations() const {
+    return coupled_ ? coupled_->factorizations() : matrix_.factorizations();
+  }
 
   // Attitude of a member at the step's start.
   void set_attitude(int member, const Quat& q) { member_[static_cast<std::size_t>(member)].q0 = q; }
@@ -76,6 +91,8 @@ class GroupSystem {
     // at the step's start; A, P = A J and V = J + W P by the step
     Mat3 J = Mat3::Zero(), W = Mat3::Zero(), A = Mat3::Zero(), P = Mat3::Zero(), V = Mat3::Zero();
     Vec3 w = Vec3::Zero();
+    bool is_link = false;
+    int unknown = 0;  // its first one, where there are multibodies
   };
 
   // of one lane, or (-1) of the sum of the lanes
@@ -86,6 +103,16 @@ class GroupSystem {
   // Outside bodies that move; the others are where set_outside put them.
   void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
   LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
+
+  // ---- with multibodies (coupled-stage.cc) ----
+  void make_coupled();
+  void set_body_stage(Member& member, double sigma) const;
+  bool factor_coupled(GroupScratch& scratch);
+  bool solve_coupled(GroupScratch& scratch, double* stage);
+  // The wrenches that the changes of these packs' slots make, into the scratch.
+  void change_packs(const std::vector<int>& packs, GroupScratch& scratch) const;
+  // One column: the changes of its bodies are in the scratch; minus their wrenches into `column`.
+  void gather_column(const std::vector<int>& packs, GroupScratch& scratch, double* column) const;
 
   int members_;
   std::size_t size_;
@@ -98,6 +125,12 @@ class GroupSystem {
   std::vector<LaneVec> sides_;
   BodyMatrix matrix_;
   double sigma_ = 0;
+  std::vector<std::unique_ptr<TreeInGroup>> trees_;
+  std::vector<std::size_t> tree_rows_;
+  std::vector<int> tree_unknowns_;                // the first of each
+  std::vector<std::vector<int>> packs_of_slot_;   // ascending
+  std::vector<std::vector<int>> packs_of_tree_;
+  std::unique_ptr<CoupledMatrix> coupled_;        // where there are multibodies
 };
 
 }  // namespace tw

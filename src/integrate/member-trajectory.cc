@@ -6,6 +6,7 @@
 
 #include "integrate/group-arc.h"
 #include "integrate/group-record.h"
+#include "integrate/joint-record.h"
 
 namespace tw {
 
@@ -66,39 +67,43 @@ MotionBounds standing_bounds(const Vec3& x, const Vec3& v, const Vec3& w) {
 
 namespace {
 
+// `Record` answers for `part` of it: a member, or a link.
+template <class Record>
 class Excerpt final : public Trajectory {
  public:
-  Excerpt(GroupRecord record, const PoseTwist& start) : record_(std::move(record)), start_(start) {}
-  Pose pose(double time) const override {
-    const double t = at_most(time);
-    return {record_.position(0, t), record_.attitude(0, t)};
-  }
+  Excerpt(Record record, int part, const PoseTwist& start)
+      : record_(std::move(record)), part_(part), start_(start) {}
+  Pose pose(double time) const override { return record_.pose(part_, at_most(time)); }
   Twist twist(double time) const override {
-    if (record_.steps() == 0) return {start_.v, start_.w};
-    Twist rates;
-    record_.pose_rates(0, at_most(time), rates.v, rates.w);
-    return rates;
+    if (!has_steps()) return {start_.v, start_.w};
+    return record_.rates(part_, at_most(time));
   }
   MotionBounds bounds(double from, double to) const override {
-    if (record_.steps() == 0) return standing_bounds(start_.x, start_.v, start_.w);
+    if (!has_steps()) return standing_bounds(start_.x, start_.v, start_.w);
     const double end = at_most(to);
-    MotionBounds bounds = record_.bounds(0, std::min(at_most(from), end), end);
+    MotionBounds bounds = record_.bounds(part_, std::min(at_most(from), end), end);
     bounds.valid_until = to;
     return bounds;
   }
   bool stepped() const override { return true; }
 
  private:
+  bool has_steps() const { return record_.start() < record_.reached(); }
   double at_most(double time) const { return std::clamp(time, record_.start(), record_.reached()); }
 
-  GroupRecord record_;
+  Record record_;
+  int part_;
   PoseTwist start_;
 };
 
 }  // namespace
 
 TrajectoryPtr make_excerpt(GroupRecord record, const PoseTwist& start) {
-  return std::make_shared<Excerpt>(std::move(record), start);
+  return std::make_shared<Excerpt<GroupRecord>>(std::move(record), 0, start);
+}
+
+TrajectoryPtr make_excerpt(JointRecord record, int link, const PoseTwist& start) {
+  return std::make_shared<Excerpt<JointRecord>>(std::move(record), link, start);
 }
 
 }  // namespace tw

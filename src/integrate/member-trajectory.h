@@ -8,6 +8,7 @@ namespace tw {
 
 class GroupArc;
 class GroupRecord;
+class JointRecord;
 
 // Part of its GroupArc, which a pointer to it keeps alive (member_trajectory).
 class MemberTrajectory final : public Trajectory {
@@ -33,6 +34,8 @@ TrajectoryPtr member_trajectory(const std::shared_ptr<const GroupArc>& arc, int 
 // arc.  Beyond the stretch it stands.  `start`: where it stands if the record has no step.
 // Its motion is the path itself, so that contacts see what moves them.
 TrajectoryPtr make_excerpt(GroupRecord record, const PoseTwist& start);
+// The same of a link.
+TrajectoryPtr make_excerpt(JointRecord record, int link, const PoseTwist& start);
 
 // Bounds of an arc that stands at its start.
 MotionBounds standing_bounds(const Vec3& x, const Vec3& v, const Vec3& w);

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "collision/separation.h"
+#include "groups/birth-group.h"
 #include "integrate/standing.h"
 #include "kernel/active-pairs.h"
 #include "kernel/arc-accounts.h"
@@ -17,6 +18,7 @@
 #include "kernel/discontinuities.h"
 #include "kernel/editing.h"
 #include "kernel/make-body.h"
+#include "kernel/make-multibody.h"
 #include "kernel/reading.h"
 #include "kernel/simulation.h"
 #include "timeline/swept-bounds.h"
@@ -40,6 +42,41 @@ std::optional<BodyId> Bodies::find(const std::string& name) const {
 // ---- coming ----
 
 BodyId Bodies::add(const BodyDef& def) {
+  return add(def, static_cast<BodyId>(sim_.scene.bodies.size()));
+}
+
+std::uint32_t Bodies::add_multibody(const MultibodyDef& def) {
+  sim_.require_between_runs("a multibody was added");
+  Scene& scene = sim_.scene;
+  const std::uint32_t number = static_cast<std::uint32_t>(scene.multibodies.size());
+  std::shared_ptr<Multibody> multibody = make_multibody(def, number);
+  for (const LinkDef& link : def.links)
+    TW_REQUIRE(!names_.contains(multibody->name + "/" + link.name),
+               "name " + multibody->name + "/" + link.name +
+                   " is taken; expected a multibody with a name that no other has");
+  const MultibodyStatePtr joints = joints_at_birth(*multibody, def);
+  const BodyId first = static_cast<BodyId>(scene.bodies.size());
+  for (const BodyDef& body : link_bodies(*multibody, def, *joints))
+    multibody->links.push_back(add(body, first));
+  for (std::uint32_t i = 0; i < multibody->links.size(); ++i) {
+    Body& body = *scene.bodies[multibody->links[i]];
+    body.multibody = multibody.get();
+    body.link = i;
+    multibody->principal.push_back(body.X_BP);
+    for (const int link : neighbours_of(multibody->tree, static_cast<int>(i)))
+      body.neighbours.push_back(multibody->links[static_cast<std::size_t>(link)]);
+  }
+  scene.multibodies.push_back(multibody);
+
+  // born together, in a group
+  std::vector<State*> ring;
+  for (const BodyId link : multibody->links) ring.push_back(sim_.graph.tail(sim_.process_of(link)));
+  sim_.graph.close_ring(ring);
+  make_birth_group(scene, scene.multibodies.back(), joints, ring);
+  return number;
+}
+
+BodyId Bodies::add(const BodyDef& def, BodyId born_as) {
   sim_.require_between_runs("a body was added");
   Scene& scene = sim_.scene;
   const BodyId id = static_cast<BodyId>(scene.bodies.size());
@@ -54,7 +91,7 @@ BodyId Bodies::add(const BodyDef& def) {
   Process& process = sim_.processes.emplace_back();
   process.id = body->process;
   process.bodies = {id};
-  State& state = *sim_.graph.append(body->process, {present.time, 0, KeyKind::birth, id});
+  State& state = *sim_.graph.append(body->process, {present.time, 0, KeyKind::birth, born_as});
   make_birth(*body, def, present.settings.gravity, state);
   // a stream of its own for every body
   state.random = mix64(sim_.options.seed ^ mix64(id + 0x632be59bd9b4e019ull));
@@ -126,6 +163,8 @@ void Bodies::check_overlaps(const Body& body) {
 void Bodies::remove(BodyId id) {
   sim_.require_between_runs("a body was removed");
   Body& body = *sim_.scene.bodies[id];
+  TW_REQUIRE(!body.multibody, body.info.name + " cannot be removed; it is a link of " +
+                                  body.multibody->name + ", expected a body that is no link");
   TW_REQUIRE(!body.info.removed,
              "body " + body.info.name + " was removed before; expected one that is there");
   const BodyState last = body_state(body, point_at(sim_, id, sim_.present.time));

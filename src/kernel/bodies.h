@@ -28,6 +28,7 @@ class Bodies {
          Discontinuities& discontinuities, Editing& editing);
 
   BodyId add(const BodyDef& def);
+  std::uint32_t add_multibody(const MultibodyDef& def);  // its number
   void remove(BodyId id);
   std::optional<BodyId> find(const std::string& name) const;
 
@@ -39,6 +40,8 @@ class Bodies {
   void check_overlaps(const Body& body);
 
  private:
+  // `born_as`: whose id its birth has.
+  BodyId add(const BodyDef& def, BodyId born_as);
   void require_no_overlap(const Body& a, const Body& b) const;
   void bury(Body& body, const BodyState& last);
 

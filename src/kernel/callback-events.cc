@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/callback-book.h"
 #include "kernel/discontinuities.h"
@@ -38,6 +39,7 @@ Progress CallbackEvents::process(std::uint32_t number) {
   std::vector<Successor> successors;
   for (const BodyId id : callback.def.targets)
     successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));
+  share_joints(successors);
   std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
   for (Successor& successor : successors) {
     successor.role = Role::record;

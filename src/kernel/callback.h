@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/interruption.h"
 #include "dynamics/body.h"
+#include "multibody/multibody.h"
 #include "timeline/collision.h"
 #include "timeline/slots.h"
 
@@ -30,6 +31,9 @@ class StateView {
   virtual double kinetic_energy() const = 0;
   virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
   virtual const SlotsPtr& slots() const = 0;
+  // Of a link: its multibody and how the joints stand; null of other bodies.
+  virtual const Multibody* multibody() const { return nullptr; }
+  virtual const MultibodyState* joints() const { return nullptr; }
 
   // Errors: UserError where the body cannot do it (velocity of a fixed body), or a value is not
   // finite.
@@ -37,6 +41,8 @@ class StateView {
   virtual void set_angular_velocity(const Vec3& w) = 0;
   virtual void set_applied_force(const Vec3& force) = 0;
   virtual void set_slots(SlotsPtr slots) = 0;
+  // Of a link: to be changed; a new arc starts.
+  virtual MultibodyState& change_joints() { throw UserError("this view has no joints to change"); }
   // Edits only (World::edit), never in callbacks.
   virtual void set_pose(const Vec3& position, const Quat& orientation) = 0;
   // Uniform in [0, 1), from the generator that lives in the state.

@@ -214,7 +214,7 @@ void Claims::find_partners(const Body& body, const Key& claimed_before) {
 }
 
 void Claims::meet(const Body& body, const Body& other, const Key& claimed_before) {
-  if (sim_.scene.contacts.may_disable() && !sim_.scene.may_collide(body, other)) return;
+  if (sim_.scene.may_disable() && !sim_.scene.may_collide(body, other)) return;
   checks_.meet(body, other, claimed_before);
 }
 

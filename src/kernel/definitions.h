@@ -10,6 +10,7 @@
 #include "geometry/shape.h"
 #include "integrate/trajectory.h"
 #include "kernel/callback.h"
+#include "multibody/tree.h"
 
 namespace tw {
 
@@ -32,6 +33,25 @@ struct BodyDef {
   std::optional<Vec3> color;  // sRGB 0..1
   bool visible = true;
   Place place;  // of the form that made it
+};
+
+// A link of a multibody: its body, whose name, pose, velocities and motion say nothing, and how it
+// hangs on its parent.
+struct LinkDef {
+  std::string name;
+  std::string parent;  // name of an earlier link; empty: the base
+  multibody::JointSpec joint;
+  BodyDef body;
+};
+
+// How a multibody comes into the world.
+struct MultibodyDef {
+  std::string name;                     // empty: multibody-N with N its number
+  bool free = false;                    // else its base stands where it is put
+  Vec3 position = Vec3::Zero();         // of the base, or of the free first link's frame, world
+  Quat orientation = Quat::Identity();  // normalised here
+  std::vector<LinkDef> links;           // parents first; bodies are named MULTIBODY/LINK
+  Place place;
 };
 
 struct CallbackDef {

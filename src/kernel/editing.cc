@@ -51,7 +51,8 @@ void Editing::set_gravity(const Vec3& gravity) {
   sim_.present.settings.gravity = gravity;
   // a body that is still at its birth needs no discontinuity
   const auto newborn = [&](BodyId id) {
-    return !sim_.present.begun && !sim_.graph.tail(sim_.process_of(id))->prev;
+    return !sim_.present.begun && !sim_.body(id).multibody &&
+           !sim_.graph.tail(sim_.process_of(id))->prev;
   };
   for (const auto& body : sim_.scene.bodies)
     if (body->dynamic() && newborn(body->id())) {

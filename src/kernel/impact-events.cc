@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/impact-events.h"
 
+#include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/active-pairs.h"
 #include "kernel/delivery.h"
@@ -60,6 +61,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
   successors.reserve(2);
   successors.push_back(make_successor(sim_.before(key), body_a.process, body_a.dynamic()));
   successors.push_back(make_successor(sim_.before(key), body_b.process, body_b.dynamic()));
+  share_joints(successors);
   const Wanted wanted{wants_collision(body_a, body_b), delivery_.observed(CollisionKind::fusion)};
   const auto [soft, points, collision] =
       compute_impact(sim_.scene, sim_.surroundings, key, wanted, successors[0], successors[1]);

@@ -11,6 +11,7 @@
 #include "collision/separation.h"
 #include "dynamics/contact-scales.h"
 #include "dynamics/impulse-solver.h"
+#include "groups/joints.h"
 #include "groups/regrouping.h"
 
 namespace tw {
@@ -197,6 +198,10 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   solver.clear();
   const std::uint32_t slot_a = solver.add(ImpulseSlot::of(*a.body, a.point));
   const std::uint32_t slot_b = solver.add(ImpulseSlot::of(*b.body, b.point));
+  JointImpulses joints(solver);
+  joints.add(a, slot_a);
+  joints.add(b, slot_b);
+  joints.join();
   const auto contact_at = [&](const ContactPoint& c) {
     return ImpulseContact{slot_a, slot_b, c.normal, c.point, contact.restitution, contact.friction};
   };
@@ -237,6 +242,7 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   }
 
   // new arcs
+  joints.take();
   if (a.body->dynamic()) take_velocities(a, solver.slot(slot_a));
   if (b.body->dynamic()) take_velocities(b, solver.slot(slot_b));
   tally.kinematic_work = solver.work_of_held();

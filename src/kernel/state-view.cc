@@ -24,6 +24,20 @@ void SuccessorView::require_dynamic(const char* what) const {
                  (successor_.body->fixed() ? "fixed)" : "kinematic)"));
 }
 
+void SuccessorView::require_no_link(const char* what) const {
+  TW_REQUIRE(!successor_.body->multibody,
+             std::string(what) + " of " + successor_.body->info.name +
+                 " cannot be set; it is a link of " + successor_.body->multibody->name +
+                 ", expected a change of its joints");
+}
+
+MultibodyState& SuccessorView::change_joints() {
+  TW_REQUIRE(successor_.joints, successor_.body->info.name +
+                                    " has no joints; expected a link of a multibody");
+  start_arc();
+  return *successor_.joints;
+}
+
 double SuccessorView::kinetic_energy() const {
   return tw::kinetic_energy(*successor_.body, successor_.point);
 }
@@ -35,6 +49,7 @@ void SuccessorView::start_arc() {
 
 void SuccessorView::set_velocity(const Vec3& v) {
   require_dynamic("velocity");
+  require_no_link("velocity");
   TW_REQUIRE(is_finite(v), "velocity of " + successor_.body->info.name + " is not finite");
   TW_REQUIRE(v.norm() <= speed_limit, "the speed of " + successor_.body->info.name + " is " +
                                           show(v.norm()) + " m/s; expected at most " +
@@ -45,6 +60,7 @@ void SuccessorView::set_velocity(const Vec3& v) {
 
 void SuccessorView::set_angular_velocity(const Vec3& w) {
   require_dynamic("angular-velocity");
+  require_no_link("angular-velocity");
   TW_REQUIRE(is_finite(w), "angular-velocity of " + successor_.body->info.name + " is not finite");
   TW_REQUIRE(w.norm() <= greatest_angular_speed,
              "the angular velocity of " + successor_.body->info.name + " is " + show(w.norm()) +
@@ -73,6 +89,7 @@ void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::mov
 void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {
   TW_ASSERT(may_place_, "set_pose is for edits");
   require_dynamic("position");
+  require_no_link("position or orientation");
   TW_REQUIRE(is_finite(position), "position of " + successor_.body->info.name + " is not finite");
   require_near(position, successor_.body->info.name);
   TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,

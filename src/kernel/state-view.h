@@ -30,6 +30,9 @@ class SuccessorView : public StateView {
   double kinetic_energy() const override;
   const Vec3& applied_force() const override { return successor_.data.force; }
   const SlotsPtr& slots() const override { return successor_.data.slots; }
+  const Multibody* multibody() const override { return successor_.body->multibody; }
+  const MultibodyState* joints() const override { return successor_.joints.get(); }
+  MultibodyState& change_joints() override;
   void set_velocity(const Vec3& v) override;
   void set_angular_velocity(const Vec3& w) override;
   void set_applied_force(const Vec3& force) override;
@@ -39,6 +42,7 @@ class SuccessorView : public StateView {
 
  private:
   void require_dynamic(const char* what) const;
+  void require_no_link(const char* what) const;
   void start_arc();
 
   Successor& successor_;

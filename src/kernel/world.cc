@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/limits.h"
+#include "groups/joints.h"
 #include "kernel/kernel.h"
 #include "kernel/reading.h"
 #include "timeline/swept-bounds.h"
@@ -82,6 +83,30 @@ void World::set_policy(std::unique_ptr<Policy> policy) {
 }
 
 BodyId World::add_body(const BodyDef& def) { return kernel_->bodies.add(def); }
+std::uint32_t World::add_multibody(const MultibodyDef& def) {
+  return kernel_->bodies.add_multibody(def);
+}
+std::size_t World::multibody_count() const { return kernel_->simulation.scene.multibodies.size(); }
+
+const Multibody& World::multibody(std::uint32_t number) const {
+  TW_REQUIRE(number < multibody_count(),
+             "multibody " + std::to_string(number) + " does not exist");
+  return *kernel_->simulation.scene.multibodies[number];
+}
+
+std::optional<std::uint32_t> World::find_multibody(const std::string& name) const {
+  for (const auto& multibody : kernel_->simulation.scene.multibodies)
+    if (multibody->name == name) return multibody->number;
+  return std::nullopt;
+}
+
+MultibodyState World::joints(std::uint32_t number) const {
+  const Simulation& simulation = kernel_->simulation;
+  const State* state =
+      state_at(simulation, multibody(number).links.front(), simulation.present.time);
+  return *joints_at(*state, simulation.present.time);
+}
+
 std::size_t World::body_count() const { return kernel_->simulation.scene.bodies.size(); }
 
 const BodyInfo& World::body(BodyId id) const {

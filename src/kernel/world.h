@@ -66,6 +66,11 @@ class World {
 
   // ---- bodies ----
   BodyId add_body(const BodyDef& def);  // born at time()
+  // Its number.
+  std::uint32_t add_multibody(const MultibodyDef& def);
+  const Multibody& multibody(std::uint32_t number) const;
+  std::optional<std::uint32_t> find_multibody(const std::string& name) const;
+  std::size_t multibody_count() const;
   // Between runs: it touches nothing from now on, what lay on it falls, callbacks that have it
   // among their targets end. Its number is not given again, its name may be.  Errors: it was
   // removed before.
@@ -105,6 +110,7 @@ class World {
   // ---- looking and changing between runs ----
   BodyState state(BodyId id) const;  // at time()
   double kinetic_energy(BodyId id) const;
+  MultibodyState joints(std::uint32_t multibody) const;  // at time()
   Vec3 applied_force(BodyId id) const;
   SlotsPtr slots(BodyId id) const;
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.

@@ -88,11 +88,26 @@ void each_word(const Collision& c, Put&& put) {
   put(std::uint64_t{c.squeezed});
   put(c.depth);
 }
+template <class Put>
+void each_word(const multibody::ServoGains& servo, Put&& put) {
+  put(servo.stiffness);
+  put(servo.damping);
+  put(servo.max_torque);
+}
 // Rows: their length first.
 template <class T, class Put>
 void each_word(const std::vector<T>& row, Put&& put) {
   put(std::uint64_t{row.size()});
   for (const T& element : row) each_word(element, put);
+}
+template <class Put>
+void each_word(const MultibodyStatePtr& joints, Put&& put) {
+  if (!joints) return;
+  for (const std::vector<double>* row : {&joints->q, &joints->u, &joints->torques,
+                                         &joints->targets, &joints->target_velocities})
+    each_word(*row, put);
+  each_word(joints->servos, put);
+  each_word(joints->stops, put);
 }
 template <class Put>
 void each_word(const std::shared_ptr<const Report>& report, Put&& put) {

@@ -38,6 +38,7 @@ void for_each_field(Data& data, Visit&& visit) requires std::is_base_of_v<StateD
   visit("run of impacts", motion, data.impacts);
   visit("next callback", motion, data.next_callback);
   visit("place in the group", motion, data.member);
+  visit("joints", motion, data.joints);
   visit("group", motion, data.group);
   visit("whether it changed", told, data.changed);
   visit("report", told, data.report);

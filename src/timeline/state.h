@@ -22,6 +22,7 @@
 #include "dynamics/ids.h"
 #include "integrate/flight.h"
 #include "math/vec.h"
+#include "multibody/multibody.h"
 #include "timeline/collision.h"
 #include "timeline/key.h"
 #include "timeline/slots.h"
@@ -64,6 +65,8 @@ struct StateData {
   // the contact group that the body is in from here on, and its place there; null: it is isolated
   std::shared_ptr<Group> group;
   std::uint32_t member = 0;
+  // of a link: how the joints stand where the arc starts, shared by all links; null: of other bodies
+  MultibodyStatePtr joints;
 
   // how the arc begins
   Vec3 L = Vec3::Zero();  // at arc_time, and so on

@@ -22,6 +22,9 @@ struct Successor {
   bool placed = false;  // an edit put it elsewhere: its contacts are gone
   StateData data;
   PoseTwist point;  // at the discontinuity's time
+  // Of a link: its multibody's joints then, shared by all successors that are its links; becomes
+  // data.joints where new arcs start.
+  std::shared_ptr<MultibodyState> joints;
 
   ProcessId process() const { return body->process; }
   bool enters() const { return role != Role::no_state; }

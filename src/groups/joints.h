@@ -1,0 +1,69 @@
+// The joints of multibodies at a discontinuity: where they stand, what impulses and stops do to
+// them.
+//
+// A link that is struck moves all others of its multibody: with the slots i, j of its links the
+// blocks Y_ij = J_i M^-1 J_j^T join them in the impulse solver, and what they received gives
+// du = M^-1 sum J^T impulse.
+//
+// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems (1996), section 4.3.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dynamics/impulse-solver.h"
+#include "groups/regrouping.h"
+#include "multibody/impulses.h"
+#include "multibody/multibody.h"
+
+namespace tw {
+
+// A multibody's links where its joints are.
+class PlacedJoints {
+ public:
+  PlacedJoints(const Multibody& multibody, const MultibodyState& joints);
+  PoseTwist link(int link) const;
+  const multibody::Kinematics& kinematics() const { return k_; }
+
+ private:
+  const Multibody& multibody_;
+  multibody::Kinematics k_;
+};
+
+// How the arc of a link begins.
+void set_motion(const Body& body, const PoseTwist& point, StateData& data);
+
+// At a time on the arc of a link's state.
+std::shared_ptr<MultibodyState> joints_at(const State& state, double when);
+
+// Of successors that are links of one multibody the first one's joints become those of all: a copy,
+// that of none else.
+void share_joints(std::vector<Successor>& successors);
+
+// Joins the slots of links in a solver, then takes what they received.
+class JointImpulses {
+ public:
+  explicit JointImpulses(ImpulseSolver& solver) : solver_(solver) {}
+  // Nothing where the successor is no link.
+  void add(Successor& successor, std::uint32_t slot);
+  void join();
+  void take();
+
+ private:
+  struct Struck {
+    const Multibody* multibody;
+    std::shared_ptr<MultibodyState> joints;
+    std::vector<std::pair<int, std::uint32_t>> links;  // and their slots
+    std::shared_ptr<PlacedJoints> placed;
+    std::shared_ptr<multibody::Articulation> factors;
+  };
+  ImpulseSolver& solver_;
+  std::vector<Struck> struck_;
+};
+
+// Stops, then the links where their joints are: for new arcs.
+void settle_joints(Regrouping& work);
+
+}  // namespace tw

@@ -1,0 +1,45 @@
+// The members of a group's arc at its start, and the tolerances of its steps.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/start-members.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "groups/step-tolerances.h"
+
+namespace tw {
+
+void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateData& d,
+                         const MultibodyStatePtr& joints) {
+  start_.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
+                            body.mass * d.acceleration, Vec3::Zero()});
+  if (body.multibody) add_link(body, d, joints);
+  size_ = std::min(size_, body.least_width);
+  speed_ = std::max(speed_, PlacedBody(body, point).surface_speed());
+}
+
+void StartOfMembers::add_link(const Body& body, const StateData& d,
+                              const MultibodyStatePtr& joints) {
+  const auto& multibody = scene_.multibodies[body.multibody->number];
+  const int member = static_cast<int>(start_.members.size()) - 1;
+  auto tree = std::find_if(start_.trees.begin(), start_.trees.end(),
+                           [&](const GroupTree& known) { return known.multibody == multibody; });
+  if (tree == start_.trees.end()) {
+    const std::size_t links = multibody->links.size();
+    tree = start_.trees.insert(tree, {multibody, joints, scene_.options.gravity,
+                                      std::vector<int>(links), std::vector<Vec3>(links)});
+  }
+  tree->members[body.link] = member;
+  tree->forces[body.link] = d.force;
+  start_.members.back().tree = static_cast<int>(tree - start_.trees.begin());
+  start_.members.back().link = static_cast<int>(body.link);
+}
+
+void StartOfMembers::set_tolerances() {
+  const double accuracy = scene_.options.accuracy, gravity = scene_.gravity_scale();
+  const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
+  start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
+  start_.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size_, gravity);
+}
+
+}  // namespace tw

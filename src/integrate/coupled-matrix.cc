@@ -1,0 +1,101 @@
+// Dense LU and KLU of bodies and joints together.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/coupled-matrix.h"
+
+#include <Eigen/KLUSupport>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/constants.h"
+
+namespace tw {
+
+namespace {
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+struct CoupledMatrix::Data {
+  std::vector<std::vector<int>> rows_of;
+  Eigen::MatrixXd dense;
+  Eigen::PartialPivLU<Eigen::MatrixXd> dense_factors;
+  Eigen::SparseMatrix<double> sparse;
+  Eigen::KLU<Eigen::SparseMatrix<double>> sparse_factors;
+  bool is_dense = true, analysed = false;
+  Eigen::VectorXd scale;
+  std::uint64_t factorizations = 0;
+};
+
+CoupledMatrix::CoupledMatrix(std::vector<std::vector<int>> rows_of)
+    : data_(std::make_unique<Data>()) {
+  Data& d = *data_;
+  d.rows_of = std::move(rows_of);
+  const int n = size();
+  d.scale.resize(n);
+  d.is_dense = n <= cost::most_dense_unknowns;
+  if (d.is_dense) {
+    d.dense.setZero(n, n);
+    return;
+  }
+  std::vector<Eigen::Triplet<double>> pattern;
+  for (int column = 0; column < n; ++column)
+    for (const int row : d.rows_of[index(column)]) pattern.emplace_back(row, column, 0.0);
+  d.sparse.resize(n, n);
+  d.sparse.setFromTriplets(pattern.begin(), pattern.end());
+}
+CoupledMatrix::~CoupledMatrix() = default;
+
+int CoupledMatrix::size() const { return static_cast<int>(data_->rows_of.size()); }
+const std::vector<int>& CoupledMatrix::rows_of(int column) const {
+  return data_->rows_of[index(column)];
+}
+std::uint64_t CoupledMatrix::factorizations() const { return data_->factorizations; }
+
+void CoupledMatrix::set_column(int column, const double* numbers) {
+  Data& d = *data_;
+  if (d.is_dense) {
+    for (const int row : d.rows_of[index(column)]) d.dense(row, column) = numbers[row];
+    return;
+  }
+  double* to = d.sparse.valuePtr() + d.sparse.outerIndexPtr()[column];
+  for (const int row : d.rows_of[index(column)]) *to++ = numbers[row];
+}
+
+bool CoupledMatrix::factor() {
+  Data& d = *data_;
+  ++d.factorizations;
+  const int n = size();
+  d.scale.setZero();
+  if (d.is_dense)
+    d.scale = d.dense.cwiseAbs().rowwise().maxCoeff();
+  else
+    for (int column = 0; column < n; ++column)
+      for (Eigen::SparseMatrix<double>::InnerIterator it(d.sparse, column); it; ++it)
+        d.scale[it.row()] = std::max(d.scale[it.row()], std::abs(it.value()));
+  if (!d.scale.allFinite() || !(d.scale.minCoeff() > 0)) return false;
+  d.scale = d.scale.cwiseInverse();
+  if (d.is_dense) {
+    d.dense_factors.compute(d.scale.asDiagonal() * d.dense);
+    return d.dense_factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0;
+  }
+  Eigen::SparseMatrix<double> scaled = d.sparse;
+  for (int column = 0; column < n; ++column)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(scaled, column); it; ++it)
+      it.valueRef() *= d.scale[it.row()];
+  if (!d.analysed) d.sparse_factors.analyzePattern(scaled);
+  d.analysed = true;
+  d.sparse_factors.factorize(scaled);
+  return d.sparse_factors.info() == Eigen::Success;
+}
+
+bool CoupledMatrix::solve(double* right_side) const {
+  const Data& d = *data_;
+  Eigen::Map<Eigen::VectorXd> x(right_side, size());
+  const Eigen::VectorXd scaled = d.scale.cwiseProduct(x);
+  if (d.is_dense)
+    x = d.dense_factors.solve(scaled);
+  else
+    x = d.sparse_factors.solve(scaled);
+  return x.allFinite();
+}
+
+}  // namespace tw

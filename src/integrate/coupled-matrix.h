@@ -1,0 +1,39 @@
+// The matrix of a group that holds multibodies: unknowns of bodies and joints together, set column
+// by column, factored and solved again and again with the same pattern.
+//
+// Dense LU with partial pivoting for few unknowns, KLU for many (T. A. Davis, E. Palamadai
+// Natarajan, ACM TOMS 37 (2010)).  Both pivot: joints and bodies have units of their own, so rows
+// are scaled to their largest entry first.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace tw {
+
+class CoupledMatrix {
+ public:
+  // `rows_of`: of each column, the rows that may not be 0, ascending.
+  explicit CoupledMatrix(std::vector<std::vector<int>> rows_of);
+  ~CoupledMatrix();
+  CoupledMatrix(const CoupledMatrix&) = delete;
+  CoupledMatrix& operator=(const CoupledMatrix&) = delete;
+
+  int size() const;
+  const std::vector<int>& rows_of(int column) const;
+  // From a column of `size` numbers; those outside the pattern are not looked at.
+  void set_column(int column, const double* numbers);
+  // False: singular, or not finite.
+  bool factor();
+  bool solve(double* right_side) const;
+  std::uint64_t factorizations() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace tw

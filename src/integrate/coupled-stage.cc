@@ -1,0 +1,279 @@
+// The linear systems of groups with multibodies.
+//
+// A column of the matrix is what one unknown, set to 1, takes from its own equations and gives to
+// the wrenches of all contacts that it moves: the same changes, in the same functions, as when a
+// stage is solved.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
+#include "integrate/group-rows.h"
+#include "integrate/group-system.h"
+
+namespace tw {
+
+using namespace rows;
+
+namespace {
+
+void insert_all(std::vector<int>& row, const std::vector<int>& more) {
+  row.insert(row.end(), more.begin(), more.end());
+}
+void tidy(std::vector<int>& row) {
+  std::sort(row.begin(), row.end());
+  row.erase(std::unique(row.begin(), row.end()), row.end());
+}
+
+}  // namespace
+
+void GroupSystem::make_coupled() {
+  int count = 0;
+  for (Member& m : member_) {
+    if (m.is_link) continue;
+    m.unknown = count;
+    count += 6;
+  }
+  for (const auto& tree : trees_) {
+    tree_unknowns_.push_back(count);
+    count += tree->freedoms();
+  }
+
+  // whom each pack moves
+  packs_of_slot_.assign(index(packs_.slots), {});
+  for (int p = 0; p < packs(); ++p)
+    for (int i = 0; i < packs_.packs[index(p)].count; ++i)
+      for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
+        packs_of_slot_[index(slot)].push_back(p);
+  for (std::vector<int>& row : packs_of_slot_) tidy(row);
+  for (const auto& tree : trees_) {
+    std::vector<int>& all = packs_of_tree_.emplace_back();
+    for (const int member : tree->start().members) insert_all(all, packs_of_slot_[index(member)]);
+    tidy(all);
+  }
+
+  // the unknowns of each slot, and the rows that each column may reach
+  std::vector<std::vector<int>> unknowns(index(packs_.slots));
+  const auto run = [](int first, int length) {
+    std::vector<int> row(index(length));
+    for (int i = 0; i < length; ++i) row[index(i)] = first + i;
+    return row;
+  };
+  for (int i = 0; i < members_; ++i)
+    if (!member_[index(i)].is_link) unknowns[index(i)] = run(member_[index(i)].unknown, 6);
+  for (std::size_t t = 0; t < trees_.size(); ++t)
+    for (const int member : trees_[t]->start().members)
+      unknowns[index(member)] = run(tree_unknowns_[t], trees_[t]->freedoms());
+  const auto reached = [&](std::vector<int> own, const std::vector<int>& through) {
+    for (const int p : through)
+      for (int i = 0; i < packs_.packs[index(p)].count; ++i)
+        for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
+          insert_all(own, unknowns[index(slot)]);
+    tidy(own);
+    return own;
+  };
+  std::vector<std::vector<int>> rows_of(index(count));
+  for (int i = 0; i < members_; ++i)
+    if (!member_[index(i)].is_link)
+      for (const int k : unknowns[index(i)])
+        rows_of[index(k)] = reached(unknowns[index(i)], packs_of_slot_[index(i)]);
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const std::vector<int> own = run(tree_unknowns_[t], trees_[t]->freedoms());
+    for (const int k : own) rows_of[index(k)] = reached(own, packs_of_tree_[t]);
+  }
+  coupled_ = std::make_unique<CoupledMatrix>(std::move(rows_of));
+}
+
+void GroupSystem::change_packs(const std::vector<int>& packs, GroupScratch& s) const {
+  const LaneVec none = {lanes(0), lanes(0), lanes(0)};
+  for (const int p : packs) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const PackLinear& linear = s.linear[index(p)];
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), none, true, change);
+    scatter_change(pack, linear, change, s.wrenches.data());
+  }
+}
+
+void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
+                                double* column) const {
+  // the bodies that these packs may move, in and out of the scratch
+  const auto each_slot = [&](auto&& visit) {
+    for (const int p : packs)
+      for (int i = 0; i < packs_.packs[index(p)].count; ++i)
+        for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
+          visit(slot);
+  };
+  each_slot([&](int slot) { s.wrenches[index(slot)] = BodyWrench{}; });
+  change_packs(packs, s);
+  std::vector<bool> done(trees_.size(), false);
+  each_slot([&](int slot) {
+    if (slot >= members_) return;
+    BodyWrench& wrench = s.wrenches[index(slot)];
+    const Member& m = member_[index(slot)];
+    if (m.is_link) return;
+    vec(column + m.unknown) -= vec(wrench.f);
+    vec(column + m.unknown + 3) -= vec(wrench.t);
+    wrench = BodyWrench{};
+  });
+  thread_local std::vector<double> row;
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const auto& members = trees_[t]->start().members;
+    const bool moved = std::any_of(members.begin(), members.end(), [&](int member) {
+      const BodyWrench& w = s.wrenches[index(member)];
+      return !vec(w.f).isZero(0) || !vec(w.t).isZero(0);
+    });
+    if (!moved) continue;
+    row.assign(index(trees_[t]->freedoms()), 0.0);
+    trees_[t]->gather(s.wrenches.data(), row.data());
+    for (std::size_t k = 0; k < row.size(); ++k) column[index(tree_unknowns_[t]) + k] -= row[k];
+    for (const int member : members) s.wrenches[index(member)] = BodyWrench{};
+  }
+}
+
+bool GroupSystem::factor_coupled(GroupScratch& s) {
+  for (Member& m : member_)
+    if (!m.is_link) set_body_stage(m, sigma_);
+  for (const auto& tree : trees_) tree->set_stage_rate(sigma_);
+  for (int p = 0; p < packs(); ++p)
+    set_stage_rate(packs_.packs[index(p)], sigma_, s.linear[index(p)]);
+  std::fill(s.changes.begin(), s.changes.begin() + packs_.slots, BodyChange{});
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+
+  thread_local std::vector<double> column, unit, kq;
+  column.resize(index(coupled_->size()));
+  const auto clear = [&](int k) {
+    for (const int row : coupled_->rows_of(k)) column[index(row)] = 0;
+  };
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (m.is_link) continue;
+    BodyChange& change = s.changes[index(i)];
+    for (int c = 0; c < 6; ++c) {
+      clear(m.unknown + c);
+      change = BodyChange{};
+      if (c < 3) {
+        change.x[c] = 1 / sigma_;
+        change.v[c] = 1;
+      } else {
+        vec(change.th) = m.P.col(c - 3);
+        vec(change.w) = m.V.col(c - 3);
+      }
+      column[index(m.unknown + c)] = (c < 3 ? m.mass : 1.0) * sigma_;
+      gather_column(packs_of_slot_[index(i)], s, column.data());
+      coupled_->set_column(m.unknown + c, column.data());
+    }
+    change = BodyChange{};
+  }
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    TreeInGroup& tree = *trees_[t];
+    const std::size_t n = index(tree.freedoms());
+    unit.assign(n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const int number = tree_unknowns_[t] + static_cast<int>(k);
+      clear(number);
+      unit[k] = 1;
+      kq = unit;
+      tree.eliminate(kq.data());
+      if (!packs_of_tree_[t].empty()) {
+        tree.spread(kq.data(), unit.data(), s.changes.data());
+        gather_column(packs_of_tree_[t], s, column.data());
+      }
+      for (std::size_t i = 0; i < n; ++i)
+        column[index(tree_unknowns_[t]) + i] += tree.matrix()[n * k + i];
+      coupled_->set_column(number, column.data());
+      unit[k] = 0;
+    }
+    for (const int member : tree.start().members) s.changes[index(member)] = BodyChange{};
+  }
+  return coupled_->factor();
+}
+
+bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
+  const double inverse = 1 / sigma_;
+  std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+
+  // positions of the eliminated part
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (m.is_link) continue;
+    const double* r = stage + 12 * i;
+    BodyChange& change = s.changes[index(i)];
+    vec(change.x) = inverse * vec(r);
+    vec(change.th) = m.A * vec(r + 3);
+    vec(change.v).setZero();
+    vec(change.w) = m.W * vec(change.th);
+  }
+  thread_local std::vector<double> none;
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    double* r = stage + tree_rows_[t];
+    none.assign(index(trees_[t]->freedoms()), 0.0);
+    trees_[t]->eliminate(r);
+    trees_[t]->spread(r, none.data(), s.changes.data());
+  }
+
+  // right side
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    const PackLinear& linear = s.linear[index(p)];
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), linear.Ra * load(stage + 12 * (members_ + p)),
+                false, change);
+    scatter_change(pack, linear, change, s.wrenches.data());
+  }
+  double* right = s.right_side.data();
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (m.is_link) continue;
+    const double* r = stage + 12 * i;
+    vec(right + m.unknown) = m.mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
+    vec(right + m.unknown + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
+  }
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    const double* kq = stage + tree_rows_[t];
+    double* to = right + tree_unknowns_[t];
+    trees_[t]->right_side(kq + trees_[t]->freedoms(), kq, to);
+    trees_[t]->gather(s.wrenches.data(), to);
+  }
+  if (!coupled_->solve(right)) return false;
+
+  // all unknowns
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (m.is_link) continue;
+    double* k = stage + 12 * i;
+    BodyChange& change = s.changes[index(i)];
+    const Vec3 kv = vec(right + m.unknown), kL = vec(right + m.unknown + 3);
+    vec(change.x) += inverse * kv;
+    vec(change.th) += m.P * kL;
+    vec(change.v) = kv;
+    vec(change.w) += m.V * kL;
+    vec(k) = vec(change.x);
+    vec(k + 3) = vec(change.th);
+    vec(k + 6) = kv;
+    vec(k + 9) = kL;
+  }
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    TreeInGroup& tree = *trees_[t];
+    const std::size_t n = index(tree.freedoms());
+    double *kq = stage + tree_rows_[t], *ku = kq + n;
+    std::copy_n(right + tree_unknowns_[t], n, ku);
+    none.assign(ku, ku + n);
+    tree.eliminate(none.data());
+    for (std::size_t e = 0; e < n; ++e) kq[e] += none[e];
+    tree.spread(kq, ku, s.changes.data());
+  }
+  for (int p = 0; p < packs(); ++p) {
+    const ContactPack& pack = packs_.packs[index(p)];
+    if (pack.law != FrictionLaw::anchored) continue;
+    const PackLinear& linear = s.linear[index(p)];
+    double* k = stage + 12 * (members_ + p);
+    const LaneVec side = linear.Ra * load(k);
+    PackChange change;
+    change_pack(pack, linear, s.changes.data(), side, false, change);
+    store(transposed_times(linear.Ra, solve_stretch(linear, side, change.friction)), k);
+  }
+  return true;
+}
+
+}  // namespace tw

@@ -1,0 +1,71 @@
+// What an arc keeps of the joints of a multibody: positions and velocities as functions of time.
+//
+// At the nodes of the steps the positions q; within each step the displacement from its start and
+// the velocities u as polynomials.  Links are where the joints put them at every time, so that
+// joints hold to rounding, and what is asked of a link follows from its way to the base:
+// bounds go from link to link with |w'| and |a|, each by the lesser of what the joint before may
+// add and what the middle of the stretch shows.
+//
+// Frames: links by their principal frames at the centre of mass, in the world.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrate/step-polynomials.h"
+#include "integrate/trajectory.h"
+#include "multibody/kinematics.h"
+#include "multibody/multibody.h"
+
+namespace tw {
+
+class JointRecord {
+ public:
+  // `degree`: of the polynomials.
+  JointRecord(const Multibody& multibody, double start, const std::vector<double>& q,
+              const std::vector<double>& u, int degree);
+
+  double start() const { return path_.start(); }
+  double reached() const { return path_.reached(); }
+  // A step to `time`, where the positions are q: coefficients of the n displacements and the n
+  // velocities.
+  void append(double time, const std::vector<double>& coefficients, const std::vector<double>& q);
+
+  // At a time on the record.
+  void joints(double time, std::vector<double>& q, std::vector<double>& u) const;
+  Pose pose(int link, double time) const;
+  // With the velocities that were integrated.
+  PoseTwist at(int link, double time) const;
+  // The rates of the pose; at a node those of the step before it, as `pose_rates` of the group.
+  Twist rates(int link, double time) const;
+  MotionBounds bounds(int link, double from, double to) const;
+  // A copy from the step that holds `from` on.
+  JointRecord stretch(double from) const;
+
+ private:
+  // Which velocities the links have.
+  enum class Velocities { integrated, of_path };
+  struct Placed;
+  const Placed& placed(double time, Velocities which) const;
+  void add_step_bounds(int step, int link, double from, double to, MotionBounds& bounds) const;
+  const double* node(int i) const {
+    return nodes_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(
+                                                             multibody_->tree.nq());
+  }
+  static std::uint64_t next_serial();
+
+  const Multibody* multibody_;
+  int n_;
+  StepPolynomials path_;        // displacements, velocities
+  std::vector<double> nodes_;   // q
+  std::vector<double> last_u_;  // at the last node
+  std::uint64_t serial_ = next_serial();
+};
+
+// Where the principal frame of a link is, and how it moves, as placed.
+PoseTwist link_point(const Multibody& multibody, const multibody::Kinematics& k, int link);
+
+}  // namespace tw

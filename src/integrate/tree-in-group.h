@@ -1,0 +1,79 @@
+// A multibody as a part of a contact group: its unknowns, its equations and their derivative.
+//
+// Unknowns: z, the displacement of the joints from the step's start (q = q0 (+) z), and u, the joint
+// velocities; n of each.
+//   z' = G(z, u),   u' = M(q)^-1 f(q, u, wrenches)
+// With a0 = u' at the step's start the *residual* f - M a0 is differentiated at fixed a0:
+//   Kq = d(f - M a0)/dq,  Ku = df/du,  so that du'/dq = M^-1 Kq and du'/du = M^-1 Ku, exactly.
+// A stage (s 1 - Jacobian) k = r is multiplied by M, and kq eliminated, E = (s 1 - G_z)^-1:
+//   kq = E (rq + ku),   (s M - Ku - Kq E) ku = M ru + Kq E rq + (contacts).
+// Contacts see links as bodies in slots.  Changes of the unknowns move these by
+//   (dx, dth) = J kq,   (dv, dw) = J ku + d(J u),
+// J the Jacobian at the centre of mass; wrenches on them come back as J^T W, and what J^T W changes
+// by with q while W does not stands in Kq.
+//
+// Source: the paper, section 4.3; R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7;
+// S. Singh, R. Russell, P. Wensing, IEEE RA-L 7 (2022); doc/numerics.md.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "integrate/contact-linear.h"
+#include "integrate/group-arc.h"
+#include "multibody/derivatives.h"
+#include "multibody/forward-dynamics.h"
+
+namespace tw {
+
+class TreeInGroup {
+ public:
+  explicit TreeInGroup(const GroupTree& start);
+
+  int freedoms() const { return n_; }
+  const GroupTree& start() const { return *start_; }
+  const std::vector<double>& positions() const { return q0_; }  // at the step's start
+  void set_positions(const std::vector<double>& q) { q0_ = q; }
+  // q0 (+) z.
+  std::vector<double> displaced(const double* z) const;
+
+  // The links' kinematics into their slots.
+  void place(const double* z, const double* u, BodyKinematics* bodies);
+  // z' and u' where `place` put it.  What is singular gives rates that are not finite.
+  void evaluate(const double* z, const double* u, const BodyWrench* wrenches, double* z_rate,
+                double* u_rate);
+  // The derivative at z = 0, after evaluate there.
+  void linearise(const double* u, const double* u_rate, const BodyWrench* wrenches);
+
+  // From here on for stages with this s.
+  void set_stage_rate(double sigma);
+  // kq = E r in place.
+  void eliminate(double* r) const;
+  // The matrix s M - Ku - Kq E, by columns.
+  const std::vector<double>& matrix() const { return matrix_; }
+  // M ru + Kq kq.
+  void right_side(const double* ru, const double* kq, double* to) const;
+  // What changes of the unknowns do to the links.
+  void spread(const double* kq, const double* ku, BodyChange* changes) const;
+  // Adds J^T W, W the wrenches on the links about their centres of mass.
+  void gather(const BodyWrench* wrenches, double* row) const;
+  // M^-1 times a row of torques, in place.
+  void accelerate(double* row) const;
+
+ private:
+  const multibody::Tree& tree() const { return start_->multibody->tree; }
+
+  const GroupTree* start_;
+  int n_;
+  std::vector<double> q0_, q_, tau_, u0_, rate_;
+  multibody::Surroundings around_;
+  multibody::Kinematics placed_;        // at the last place
+  multibody::Kinematics linear_;        // at the step's start
+  multibody::Articulation articulation_;
+  multibody::Linearisation linearisation_;
+  std::vector<double> mass_, Kq_, Ku_, matrix_;  // by columns
+  double sigma_ = 0;
+};
+
+}  // namespace tw

@@ -1,0 +1,27 @@
+// From how a multibody comes into a world to its tree, its links' bodies and its joints.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kernel/definitions.h"
+#include "multibody/multibody.h"
+
+namespace tw {
+
+// Without its links, which come later.  Errors: those of the tree and of the links' mass properties;
+// no links; a free base with several first links or one that has a joint of its own.
+std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t number);
+
+// All joints at 0, at rest; a free first link where the multibody is put.
+MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def);
+
+// The links as bodies, where these joints put them.
+std::vector<BodyDef> link_bodies(const Multibody& multibody, const MultibodyDef& def,
+                                 const MultibodyState& joints);
+
+// The links that a joint or a weld joins to this one, ascending.
+std::vector<int> neighbours_of(const multibody::Tree& tree, int link);
+
+}  // namespace tw

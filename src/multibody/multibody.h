@@ -1,0 +1,41 @@
+// A multibody in a scene: its tree, the bodies that are its links, and its state.
+//
+// Every link is a body, with a shape, contacts and a process; the processes of one multibody get
+// new arcs together, whatever happens to one of them, so that their states are one ring.  Where the
+// joints stand is kept once: the links' states share it.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dynamics/body.h"
+#include "multibody/joint-laws.h"
+
+namespace tw {
+
+// How the joints stand where an arc starts, and what users set there.
+struct MultibodyState {
+  std::vector<double> q, u;  // multibody/tree.h
+  // joint-laws.h; rows may be empty
+  std::vector<double> torques, targets, target_velocities;
+  std::vector<multibody::ServoGains> servos;
+  std::vector<multibody::Stop> stops;
+
+  multibody::Inputs inputs() const { return {torques, servos, targets, target_velocities, stops}; }
+};
+using MultibodyStatePtr = std::shared_ptr<const MultibodyState>;
+
+struct Multibody {
+  std::uint32_t number = 0;  // among those of the scene
+  std::string name;
+  Place place;
+  multibody::Tree tree;
+  Frame base;                   // where it stands, in the world
+  std::vector<BodyId> links;    // ascending, one a link of the tree
+  std::vector<Pose> principal;  // of each: the principal frame in the link's
+};
+
+}  // namespace tw
