@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 

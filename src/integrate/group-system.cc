@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "integrate/group-rows.h"
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 namespace {

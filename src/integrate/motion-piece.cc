@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 namespace {

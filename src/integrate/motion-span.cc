@@ -9,7 +9,7 @@
 
 #include "base/constants.h"
 #include "base/error.h"
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 namespace {

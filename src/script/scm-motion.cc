@@ -7,8 +7,8 @@
 
 #include "base/limits.h"
 #include "geometry/polyhedron.h"
-#include "integrate/rotation-vector.h"
 #include "integrate/sampled-motion.h"
+#include "math/rotation-vector.h"
 #include "script/border.h"
 #include "script/primitive.h"
 #include "script/types.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/constants.h"
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 #include "support/motions.h"
 #include "support/scene.h"
 

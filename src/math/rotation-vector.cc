@@ -6,7 +6,7 @@
 // (2018), B.2.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 #include <cmath>
 
