@@ -48,6 +48,15 @@ inline constexpr double fusion_share = 0.07, least_default_speed = 1e-4, least_f
 // once.
 inline constexpr double preload_beyond = 10;
 
+// ---- multibodies ----
+// A stop at a joint's limit yields so far under the weight beyond it, rad or share of its reach.
+inline constexpr double stop_depth = 1e-4;
+// Speed at which a joint strikes its stop no more but leans on it, rad/s or m/s; it bounds what the
+// stop damps.
+inline constexpr double stop_speed = 1e-2;
+// Coulomb friction of a joint is smooth below about this speed, rad/s or m/s.
+inline constexpr double joint_friction_speed = 1e-3;
+
 // ---- where bodies meet ----
 // Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no
 // such time sees does not exist, unless it gets deeper than this share of the thinner one
