@@ -1,0 +1,224 @@
+// What acts at the joints.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "multibody/joint-laws.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "base/error.h"
+
+namespace tw::multibody {
+namespace {
+
+constexpr double v0 = answer::joint_friction_speed;
+
+// The index of an axis' first coordinate and dof, and its inputs.
+struct AxisInputs {
+  std::size_t q, u;
+  ServoGains servo;
+  Stop stop = Stop::none;
+
+  AxisInputs(const Tree& tree, const Inputs& inputs, std::size_t i)
+      : q(static_cast<std::size_t>(tree.axes()[i].q)),
+        u(static_cast<std::size_t>(tree.axes()[i].u)) {
+    if (!inputs.servos.empty()) servo = inputs.servos[i];
+    if (!inputs.stops.empty()) stop = inputs.stops[i];
+  }
+  bool driven() const { return servo.stiffness != 0 || servo.damping != 0; }
+};
+
+// -- one coordinate --
+
+struct Scalar {
+  double torque = 0, by_q = 0, by_u = 0;
+};
+
+Scalar passive(const AxisSpec& law, double q, double u) {
+  const double root = std::sqrt(u * u + v0 * v0);
+  return {-law.damping * u - law.friction * u / root - law.stiffness * (q - law.rest),
+          -law.stiffness, -law.damping - law.friction * v0 * v0 / (root * root * root)};
+}
+
+Scalar servo(const ServoGains& gains, double error, double error_rate) {
+  const double torque = gains.stiffness * error + gains.damping * error_rate;
+  if (torque > gains.max_torque) return {gains.max_torque, 0, 0};
+  if (torque < -gains.max_torque) return {-gains.max_torque, 0, 0};
+  return {torque, -gains.stiffness, -gains.damping};
+}
+
+// `side` is +1 at the lower limit: the way out.
+Scalar stop(const Axis& axis, double side, double q, double u) {
+  const double limit = side > 0 ? axis.law.lower : axis.law.upper;
+  const double depth = side * (limit - q), rate = -side * u;
+  const double k = axis.stop_stiffness, b = stop_damping(axis);
+  if (!(depth > 0 && 1 + b * rate > 0)) return {};
+  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b};
+}
+
+Scalar scalar_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, double q,
+                  double u) {
+  Scalar sum;
+  const auto add = [&](const Scalar& s) {
+    sum.torque += s.torque, sum.by_q += s.by_q, sum.by_u += s.by_u;
+  };
+  if (axis.passive) add(passive(axis.law, q, u));
+  if (in.driven()) {
+    const double speed = inputs.target_velocities.empty() ? 0 : inputs.target_velocities[in.u];
+    add(servo(in.servo, inputs.targets[in.q] - q, speed - u));
+  }
+  if (in.stop != Stop::none) add(stop(axis, in.stop == Stop::lower ? 1 : -1, q, u));
+  return sum;
+}
+
+// -- a spherical joint --
+
+struct Ball {
+  Vec3 torque = Vec3::Zero();
+  Mat3 by_q = Mat3::Zero(), by_u = Mat3::Zero();
+};
+
+Quat from_rest(const Quat& rest, const Quat& q) { return rest.conjugate() * q; }
+
+// sin(angle) axis of the quaternion e, and its derivative by a turn z in the link's frame: with
+// dw = -v.z/2, dv = (w z + v x z)/2 it is w^2 + w [v]x - v v^T
+Vec3 turn(const Quat& e) { return 2 * e.w() * e.vec(); }
+Mat3 turn_derivative(const Quat& e) {
+  const Vec3 v = e.vec();
+  return e.w() * e.w() * Mat3::Identity() + e.w() * cross_matrix(v) - v * v.transpose();
+}
+
+Ball ball_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, const Quat& q,
+              const Vec3& u) {
+  Ball sum;
+  const AxisSpec& law = axis.law;
+  if (axis.passive) {
+    const double root = std::sqrt(u.squaredNorm() + v0 * v0);
+    const Quat e = from_rest(axis.rest_attitude, q);
+    sum.torque = -law.damping * u - law.friction / root * u - law.stiffness * turn(e);
+    sum.by_q = -law.stiffness * turn_derivative(e);
+    sum.by_u = -(law.damping + law.friction / root) * Mat3::Identity() +
+               law.friction / (root * root * root) * u * u.transpose();
+  }
+  if (in.driven()) {
+    const Quat e = from_rest(quaternion_at(&inputs.targets[in.q]), q);
+    Vec3 speed = Vec3::Zero();
+    if (!inputs.target_velocities.empty()) speed = vector_at(&inputs.target_velocities[in.u]);
+    const ServoGains& gains = in.servo;
+    const Vec3 torque = -gains.stiffness * turn(e) + gains.damping * (speed - u);
+    const double length = torque.norm();
+    const bool cut = length > gains.max_torque;
+    // of what is cut to a length only the part across changes
+    const double share = cut ? gains.max_torque / length : 1;
+    Mat3 across = share * Mat3::Identity();
+    if (cut) across -= share / (length * length) * torque * torque.transpose();
+    sum.torque += share * torque;
+    sum.by_q -= across * (gains.stiffness * turn_derivative(e));
+    sum.by_u -= gains.damping * across;
+  }
+  return sum;
+}
+
+void require_length(std::size_t length, int expected, bool may_be_empty, const char* what) {
+  TW_REQUIRE(length == static_cast<std::size_t>(expected) || (may_be_empty && length == 0),
+             std::to_string(length) + " " + what + " for a multibody; expected " +
+                 std::to_string(expected));
+}
+
+void require_finite(In numbers, const Tree& tree, bool positions, const std::string& what) {
+  for (const Link& link : tree.links()) {
+    const auto begin = static_cast<std::size_t>(positions ? link.q : link.u);
+    const auto count = static_cast<std::size_t>(positions ? link.coordinates : link.dofs);
+    for (double x : numbers.subspan(begin, count))
+      TW_REQUIRE(std::isfinite(x), what + " of the joint of " + link.name + " is " + show(x) +
+                                       "; expected a finite number");
+  }
+}
+
+void require_gain(double value, bool may_be_infinite, const std::string& what) {
+  TW_REQUIRE(value >= 0 && (may_be_infinite || std::isfinite(value)),
+             what + " is " + show(value) + "; expected a number that is not negative");
+}
+
+}  // namespace
+
+double stop_damping(const Axis& axis) {
+  return 1.5 * (1 - axis.law.restitution) / answer::stop_speed;
+}
+
+void require_inputs(const Tree& tree, const Inputs& inputs) {
+  require_length(inputs.torques.size(), tree.nv(), true, "torques");
+  require_length(inputs.servos.size(), tree.axis_count(), true, "servos");
+  require_length(inputs.targets.size(), tree.nq(), inputs.servos.empty(), "targets of servos");
+  require_length(inputs.target_velocities.size(), tree.nv(), true, "target velocities");
+  require_length(inputs.stops.size(), tree.axis_count(), true, "stops");
+  if (!inputs.torques.empty()) require_finite(inputs.torques, tree, false, "torque");
+  if (!inputs.targets.empty()) require_finite(inputs.targets, tree, true, "target");
+  if (!inputs.target_velocities.empty())
+    require_finite(inputs.target_velocities, tree, false, "target velocity");
+  for (std::size_t i = 0; i < inputs.servos.size(); ++i) {
+    const ServoGains& gains = inputs.servos[i];
+    const std::string of = " of the servo of " + tree.link(tree.axes()[i].link).name;
+    require_gain(gains.stiffness, false, "stiffness" + of);
+    require_gain(gains.damping, false, "damping" + of);
+    require_gain(gains.max_torque, true, "greatest torque" + of);
+  }
+}
+
+void joint_torques(const Tree& tree, In q, In u, const Inputs& inputs, Out tau) {
+  if (inputs.torques.empty())
+    std::fill(tau.begin(), tau.end(), 0.0);
+  else
+    std::copy(inputs.torques.begin(), inputs.torques.end(), tau.begin());
+  for (std::size_t i = 0; i < tree.axes().size(); ++i) {
+    const Axis& axis = tree.axes()[i];
+    const AxisInputs in(tree, inputs, i);
+    if (!axis.passive && !in.driven() && in.stop == Stop::none) continue;
+    if (axis.ball) {
+      const Ball law = ball_law(axis, in, inputs, quaternion_at(&q[in.q]), vector_at(&u[in.u]));
+      for (int c = 0; c < 3; ++c) tau[in.u + static_cast<std::size_t>(c)] += law.torque[c];
+    } else {
+      tau[in.u] += scalar_law(axis, in, inputs, q[in.q], u[in.u]).torque;
+    }
+  }
+}
+
+void add_joint_derivatives(const Tree& tree, In q, In u, const Inputs& inputs, Out Kq, Out Ku) {
+  const auto n = static_cast<std::size_t>(tree.nv());
+  for (std::size_t i = 0; i < tree.axes().size(); ++i) {
+    const Axis& axis = tree.axes()[i];
+    const AxisInputs in(tree, inputs, i);
+    if (!axis.passive && !in.driven() && in.stop == Stop::none) continue;
+    if (axis.ball) {
+      const Ball law = ball_law(axis, in, inputs, quaternion_at(&q[in.q]), vector_at(&u[in.u]));
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t r = 0; r < 3; ++r) {
+          const std::size_t at = (in.u + r) + n * (in.u + c);
+          Kq[at] += law.by_q(static_cast<int>(r), static_cast<int>(c));
+          Ku[at] += law.by_u(static_cast<int>(r), static_cast<int>(c));
+        }
+    } else {
+      const Scalar law = scalar_law(axis, in, inputs, q[in.q], u[in.u]);
+      Kq[in.u * (n + 1)] += law.by_q;
+      Ku[in.u * (n + 1)] += law.by_u;
+    }
+  }
+}
+
+double spring_energy(const Tree& tree, In q) {
+  double sum = 0;
+  for (const Axis& axis : tree.axes()) {
+    const auto at = static_cast<std::size_t>(axis.q);
+    if (axis.ball) {
+      // 1 - cos(angle) = 2 |v|^2
+      const Quat e = from_rest(axis.rest_attitude, quaternion_at(&q[at]));
+      sum += 2 * axis.law.stiffness * e.vec().squaredNorm();
+    } else {
+      const double stretch = q[at] - axis.law.rest;
+      sum += 0.5 * axis.law.stiffness * stretch * stretch;
+    }
+  }
+  return sum;
+}
+
+}  // namespace tw::multibody

@@ -1,0 +1,64 @@
+// What acts at the joints: torques, damping, friction, springs, servos, stops.
+//
+// Of a scalar coordinate, T = sum of
+//   given        tau
+//   damping      -c u
+//   friction     -f u / sqrt(u^2 + v0^2), v0 = answer::joint_friction_speed
+//   spring       -k (q - rest)
+//   servo        kp (target - q) + kd (target velocity - u), cut to +-max torque
+//   stop         k d (1 + b d') where positive, else 0; d the depth beyond the limit
+// Of a spherical joint the same with vectors in the link's frame: of the angle, the vector
+// 2 e.w e.vec() of the quaternion e from rest (target) to the joint's position, sin(angle) axis,
+// whose potential k (1 - cos angle) is smooth everywhere; friction and the cut by length.
+//
+// Laws are smooth but where a servo is cut and a stop comes loose; derivatives there are those of
+// the branch taken.
+//
+// Source: the stop: K. Hunt, F. Crossley, Coefficient of restitution interpreted as damping in
+// vibroimpact, J. Appl. Mech. 42 (1975); b = 1.5 (1 - e)/v.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "multibody/coordinates.h"
+
+namespace tw::multibody {
+
+// A servo of one axis; of a spherical joint at all three.
+struct ServoGains {
+  double stiffness = 0;                                         // N m/rad or N/m
+  double damping = 0;                                           // N m s/rad or N s/m
+  double max_torque = std::numeric_limits<double>::infinity();  // N m or N
+};
+
+enum class Stop : std::uint8_t { none, lower, upper };
+
+// What a state gives the joints; an empty span: none of it.
+struct Inputs {
+  In torques;                          // nv
+  std::span<const ServoGains> servos;  // by axis
+  In targets;                          // nq, with servos
+  In target_velocities;                // nv; empty: 0
+  std::span<const Stop> stops;         // by axis: which limit the joint leans on
+};
+
+// Errors, naming the joint's link: gains that are negative or not finite (NaN torque limits, too),
+// torques and targets that are not finite, spans of a wrong length.
+void require_inputs(const Tree& tree, const Inputs& inputs);
+
+// tau (nv) at positions q (nq) and velocities u (nv).
+void joint_torques(const Tree& tree, In q, In u, const Inputs& inputs, Out tau);
+
+// Adds dtau/dz (z a displacement) and dtau/du to Kq and Ku, nv x nv, column by column.
+void add_joint_derivatives(const Tree& tree, In q, In u, const Inputs& inputs, Out Kq, Out Ku);
+
+// Potential of the springs, J; not of servos and stops.
+double spring_energy(const Tree& tree, In q);
+
+// b, s/rad or s/m, of an axis' stop: restitution e at answer::stop_speed.
+double stop_damping(const Axis& axis);
+
+}  // namespace tw::multibody
