@@ -54,6 +54,8 @@ inline constexpr double stop_depth = 1e-4;
 // Speed at which a joint strikes its stop no more but leans on it, rad/s or m/s; it bounds what the
 // stop damps.
 inline constexpr double stop_speed = 1e-2;
+// A joint is at its stop from this far on, rad or m, and as a share of the limit.
+inline constexpr double stop_tolerance = 1e-12;
 // Coulomb friction of a joint is smooth below about this speed, rad/s or m/s.
 inline constexpr double joint_friction_speed = 1e-3;
 
@@ -192,6 +194,8 @@ inline constexpr double undiminished = 0.99;
 }  // namespace tw::answer
 
 namespace tw::guard {
+// Impulses at the stops of one multibody at one instant.
+inline constexpr int most_stop_impulses = 200;
 
 // Impulses of one impact between two bodies, and of one that is passed on through a group; where
 // the two may strike each other again meanwhile, a body that is a thousand times as heavy as what

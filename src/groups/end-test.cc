@@ -9,6 +9,7 @@
 #include "base/constants.h"
 #include "collision/seams/seams.h"
 #include "groups/check-times.h"
+#include "integrate/joint-record.h"
 #include "math/root.h"
 
 namespace tw {
@@ -158,6 +159,38 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   return group.next_check;
 }
 
+// When a joint of the multibody gets to one of its stops that it does not lean on; `never`: none
+// does.
+double stop_time(const GroupArc& arc, int number) {
+  const GroupTree& tree = arc.start().trees[static_cast<std::size_t>(number)];
+  const auto& axes = tree.multibody->tree.axes();
+  const JointRecord& record = arc.joints_record(number);
+  double first = never;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].ball) continue;
+    const auto look = [&](multibody::Stop stop, double side, double limit) {
+      const bool leans = !tree.state->stops.empty() && tree.state->stops[i] == stop;
+      if (!leans && std::isfinite(limit))
+        first = std::min(first, record.first_beyond(axes[i], side, limit));
+    };
+    look(multibody::Stop::lower, 1, axes[i].law.lower);
+    look(multibody::Stop::upper, -1, axes[i].law.upper);
+  }
+  return first;
+}
+
+// A multibody's links end together.
+void end_at_stops(Group& group, std::vector<double>& ends) {
+  const std::vector<GroupTree>& trees = group.arc->start().trees;
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    const double end = stop_time(*group.arc, static_cast<int>(t));
+    for (const int member : trees[t].members) {
+      double& theirs = ends[static_cast<std::size_t>(member)];
+      theirs = std::min(theirs, end);
+    }
+  }
+}
+
 }  // namespace
 
 void test_end(const Scene& scene, const Surroundings& surroundings, Group& group,
@@ -175,7 +208,10 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
     const double end = early_end(scene, surroundings, group, pair);
     if (end < group.next_check) early_ends.push_back({end, pair.id});
   }
-  if (early_ends.empty()) return;
+  std::vector<double> at_stops(group.members.size(), group.next_check);
+  end_at_stops(group, at_stops);
+  const double first_stop = *std::min_element(at_stops.begin(), at_stops.end());
+  if (early_ends.empty() && !(first_stop < group.next_check)) return;
   ++counters.early_ends;
 
   double finest = never;
@@ -185,12 +221,13 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
       std::min(group.next_check, group.arc->start().time + answer::least_arc * finest);
   for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
   if (group.members.size() < answer::least_divided) {
+    group.next_check = std::min(group.next_check, first_stop);
     for (const EarlyEnd& early : early_ends)
       group.next_check = std::min(group.next_check, early.time);
     group.arc->lower_ends(std::vector<double>(group.members.size(), group.next_check));
     return;
   }
-  std::vector<double> ends(group.members.size(), group.next_check);
+  std::vector<double> ends = at_stops;
   for (const EarlyEnd& early : early_ends)
     for (const BodyId side : {first_of(early.pair), second_of(early.pair)}) {
       const int member = group.member_of(scene.process_of(side));
@@ -198,6 +235,13 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
       double& end = ends[static_cast<std::size_t>(member)];
       end = std::min(end, early.time);
     }
+  // what a contact ends of one link it ends of all
+  for (const GroupTree& tree : group.arc->start().trees) {
+    double first = never;
+    for (const int member : tree.members)
+      first = std::min(first, ends[static_cast<std::size_t>(member)]);
+    for (const int member : tree.members) ends[static_cast<std::size_t>(member)] = first;
+  }
   group.arc->lower_ends(std::move(ends));
 }
 

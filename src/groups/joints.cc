@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "groups/joint-stops.h"
 #include "integrate/joint-record.h"
 
 namespace tw {
@@ -111,7 +112,10 @@ void settle_joints(Regrouping& work) {
     Successor& successor = work.successors[at];
     const Multibody* multibody = successor.body->multibody;
     if (!multibody || !work.changes(&successor)) continue;
-    if (multibody != placed) joints = std::make_unique<PlacedJoints>(*multibody, *successor.joints);
+    if (multibody != placed) {
+      settle_stops(*multibody, finds_contacts(work.cause), *successor.joints);
+      joints = std::make_unique<PlacedJoints>(*multibody, *successor.joints);
+    }
     placed = multibody;
     successor.point = joints->link(static_cast<int>(successor.body->link));
     set_motion(*successor.body, successor.point, successor.data);

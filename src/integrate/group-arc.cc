@@ -264,6 +264,8 @@ void GroupArc::joints(int tree, double time, std::vector<double>& q,
   data_->stepper.joints(tree).joints(data_->at(time), q, u);
 }
 
+const JointRecord& GroupArc::joints_record(int tree) const { return data_->stepper.joints(tree); }
+
 Vec3 GroupArc::stretch(int contact, double time) const {
   const ContactPlace place =
       data_->system.contact_packs().places[static_cast<std::size_t>(contact)];

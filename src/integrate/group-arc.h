@@ -136,6 +136,8 @@ struct GroupCounts {
   std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
 };
 
+class JointRecord;
+
 class GroupArc : public Counted<GroupArc> {
  public:
   explicit GroupArc(GroupStart start);
@@ -177,6 +179,7 @@ class GroupArc : public Counted<GroupArc> {
   const Trajectory& trajectory(int member) const;
   // How the joints of a multibody stand and move.
   void joints(int tree, double time, std::vector<double>& q, std::vector<double>& u) const;
+  const JointRecord& joints_record(int tree) const;
   Vec3 stretch(int contact, double time) const;  // a's frame
   ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside

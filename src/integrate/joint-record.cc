@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/constants.h"
+#include "math/root.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
@@ -221,6 +223,43 @@ MotionBounds JointRecord::bounds(int link, double from, double to) const {
   result.turn *= 1 + 1e-12;
   result.turn_change *= 1 + 1e-12;
   return result;
+}
+
+double JointRecord::value(const Axis& axis, int step, double r) const {
+  thread_local std::vector<double> y;
+  y.resize(index(2 * n_));
+  path_.values(step, r, y.data());
+  return node(step)[axis.q] + y[index(axis.u)];
+}
+
+// Over a part of a step: halved until it is surely on one side, or too short to matter.
+double JointRecord::first_beyond(const Axis& axis, double side, double limit, int step, double r0,
+                                 double r1, bool& inside) const {
+  constexpr double shortest = 1.0 / 4096;
+  const double tolerance = answer::stop_tolerance * (1 + std::abs(limit));
+  const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) + tolerance; };
+  const double middle = 0.5 * (r0 + r1), here = gap(middle);
+  const double reach =
+      0.5 * (r1 - r0) * path_.length(step) * path_.bound(step, axis.u, 1, r0, r1);
+  if (here > reach) return inside = true, never;
+  if (!inside && here < -reach) return never;
+  if (r1 - r0 > shortest) {
+    const double first = first_beyond(axis, side, limit, step, r0, middle, inside);
+    return first < never ? first : first_beyond(axis, side, limit, step, middle, r1, inside);
+  }
+  const double left = gap(r0), right = gap(r1);
+  if (right >= 0) return inside = true, never;
+  if (!inside && !(left >= 0)) return never;
+  const double r = left > 0 ? find_root(gap, r0, r1, left, right).left : r0;
+  return path_.time(step) + r * path_.length(step);
+}
+
+double JointRecord::first_beyond(const Axis& axis, double side, double limit) const {
+  bool inside = false;
+  for (int step = 0; step < path_.steps(); ++step)
+    if (const double when = first_beyond(axis, side, limit, step, 0, 1, inside); when < never)
+      return when;
+  return never;
 }
 
 JointRecord JointRecord::stretch(double from) const {

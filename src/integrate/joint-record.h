@@ -42,6 +42,9 @@ class JointRecord {
   // The rates of the pose; at a node those of the step before it, as `pose_rates` of the group.
   Twist rates(int link, double time) const;
   MotionBounds bounds(int link, double from, double to) const;
+  // When a coordinate first gets below (side 1) or above (side -1) a limit, s; `never`: it does
+  // not.  One that is beyond where the record begins has to come back first.
+  double first_beyond(const multibody::Axis& axis, double side, double limit) const;
   // A copy from the step that holds `from` on.
   JointRecord stretch(double from) const;
 
@@ -50,6 +53,9 @@ class JointRecord {
   enum class Velocities { integrated, of_path };
   struct Placed;
   const Placed& placed(double time, Velocities which) const;
+  double value(const multibody::Axis& axis, int step, double r) const;
+  double first_beyond(const multibody::Axis& axis, double side, double limit, int step, double r0,
+                      double r1, bool& inside) const;
   void add_step_bounds(int step, int link, double from, double to, MotionBounds& bounds) const;
   const double* node(int i) const {
     return nodes_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(

@@ -62,6 +62,9 @@ MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef
   joints->q.resize(static_cast<std::size_t>(tree.nq()));
   joints->u.resize(static_cast<std::size_t>(tree.nv()), 0.0);
   neutral_position(tree, joints->q);
+  for (const Axis& axis : tree.axes())
+    if (!axis.ball)
+      joints->q[static_cast<std::size_t>(axis.q)] = std::clamp(0.0, axis.law.lower, axis.law.upper);
   if (def.free) {
     set_vector(joints->q.data(), def.position);
     set_quaternion(joints->q.data() + 3, def.orientation.normalized());

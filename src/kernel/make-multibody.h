@@ -14,7 +14,7 @@ namespace tw {
 // no links; a free base with several first links or one that has a joint of its own.
 std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t number);
 
-// All joints at 0, at rest; a free first link where the multibody is put.
+// All joints at 0, or at the limit that is nearest to it, at rest; a free first link where the multibody is put.
 MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def);
 
 // The links as bodies, where these joints put them.

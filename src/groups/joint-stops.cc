@@ -1,0 +1,92 @@
+// The stops of joints at a discontinuity.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/joint-stops.h"
+
+#include <cmath>
+
+#include "base/constants.h"
+#include "groups/joints.h"
+#include "multibody/impulses.h"
+
+namespace tw {
+
+using namespace multibody;
+
+namespace {
+
+// One axis against the limit that is nearer.
+struct AtStop {
+  Stop stop = Stop::none;
+  double side = 0;   // 1: at the lower limit; the way out
+  double gap = 0;    // negative: beyond
+  double speed = 0;  // towards it
+  bool touches = false;
+
+  AtStop(const Axis& axis, const MultibodyState& joints) {
+    const double q = joints.q[static_cast<std::size_t>(axis.q)];
+    const bool low = q - axis.law.lower <= axis.law.upper - q;
+    const double limit = low ? axis.law.lower : axis.law.upper;
+    if (axis.ball || !std::isfinite(limit)) return;
+    stop = low ? Stop::lower : Stop::upper;
+    side = low ? 1 : -1;
+    gap = side * (q - limit);
+    speed = -side * joints.u[static_cast<std::size_t>(axis.u)];
+    touches = gap <= answer::stop_tolerance * (1 + std::abs(limit));
+  }
+};
+
+// Impulses at the stops that are struck, the fastest first.
+void strike(const Multibody& multibody, MultibodyState& joints) {
+  const Tree& tree = multibody.tree;
+  std::unique_ptr<PlacedJoints> placed;
+  Articulation factors(tree);
+  ImpulseWork work(tree);
+  std::vector<double> unit(joints.u.size());
+  for (int count = 0; count < guard::most_stop_impulses; ++count) {
+    const Axis* struck = nullptr;
+    double fastest = answer::stop_speed;
+    for (std::size_t i = 0; i < tree.axes().size(); ++i) {
+      const AtStop at(tree.axes()[i], joints);
+      if (!at.touches || joints.stops[i] == at.stop || !(at.speed > fastest)) continue;
+      struck = &tree.axes()[i];
+      fastest = at.speed;
+    }
+    if (!struck) return;
+    if (!placed) {
+      placed = std::make_unique<PlacedJoints>(multibody, joints);
+      factor(tree, placed->kinematics(), factors);
+    }
+    const Factored factored{tree, placed->kinematics(), factors};
+    const double impulse = (1 + struck->law.restitution) * fastest * AtStop(*struck, joints).side /
+                           inverse_inertia_of_dof(factored, struck->u);
+    unit.assign(unit.size(), 0.0);
+    unit[static_cast<std::size_t>(struck->u)] = impulse;
+    velocity_change(factored, {}, unit, work, unit);
+    for (std::size_t k = 0; k < unit.size(); ++k) joints.u[k] += unit[k];
+  }
+}
+
+}  // namespace
+
+void settle_stops(const Multibody& multibody, bool may_leave, MultibodyState& joints) {
+  const std::vector<Axis>& axes = multibody.tree.axes();
+  bool any = false;
+  for (const Axis& axis : axes) any = any || AtStop(axis, joints).touches;
+  if (!any && joints.stops.empty()) return;
+  joints.stops.resize(axes.size(), Stop::none);
+  strike(multibody, joints);
+  // rounding of an impulse that leaves nothing
+  constexpr double nothing = 1e-6 * answer::stop_speed;
+  bool leans = false;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const AtStop at(axes[i], joints);
+    if (at.touches && joints.stops[i] != at.stop && at.speed > -nothing)
+      joints.stops[i] = at.stop;
+    else if (may_leave && !at.touches && at.speed < 0)
+      joints.stops[i] = Stop::none;
+    leans = leans || joints.stops[i] != Stop::none;
+  }
+  if (!leans) joints.stops.clear();
+}
+
+}  // namespace tw
