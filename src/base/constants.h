@@ -56,6 +56,13 @@ inline constexpr double stop_depth = 1e-4;
 inline constexpr double stop_speed = 1e-2;
 // A joint is at its stop from this far on, rad or m, and as a share of the limit.
 inline constexpr double stop_tolerance = 1e-12;
+// A multibody alone is followed by an explicit method while nothing at its joints is faster than so
+// many times its own motion: beyond, stability would set the steps.
+inline constexpr double stiff_ratio = 8;
+// Of its steps, share of the accuracy asked for: their errors add up (multibodies-bench).
+inline constexpr double joint_step_share = 0.05;
+// Looser steps than this are made by a method of order 5.
+inline constexpr double loose_steps = 1e-5;
 // Coulomb friction of a joint is smooth below about this speed, rad/s or m/s.
 inline constexpr double joint_friction_speed = 1e-3;
 

@@ -15,6 +15,7 @@ void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateDa
                             body.mass * d.acceleration, Vec3::Zero()});
   if (body.multibody) add_link(body, d, joints);
   size_ = std::min(size_, body.least_width);
+  reach_ += body.radius;
   speed_ = std::max(speed_, PlacedBody(body, point).surface_speed());
 }
 
@@ -39,6 +40,9 @@ void StartOfMembers::set_tolerances() {
   const double accuracy = scene_.options.accuracy, gravity = scene_.gravity_scale();
   const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
+  start_.joint_tolerance = answer::joint_step_share * accuracy;
+  start_.joint_size = size_;
+  start_.joint_rate = std::sqrt(gravity / reach_);
   start_.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size_, gravity);
 }
 

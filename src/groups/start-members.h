@@ -23,7 +23,7 @@ class StartOfMembers {
 
   const Scene& scene_;
   GroupStart& start_;
-  double size_ = never, speed_ = 0;
+  double size_ = never, speed_ = 0, reach_ = 0;
 };
 
 }  // namespace tw

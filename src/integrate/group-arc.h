@@ -108,6 +108,11 @@ struct GroupStart {
   double first_step = 0;             // to be tried first, s; 0: chosen
   double position_tolerance = 1e-6;  // m, of one step (RMS over members)
   double velocity_tolerance = 1e-5;  // m/s
+  // Of a multibody that touches nothing: the error of its joints in one step, rad; 0: it is
+  // integrated as groups are.
+  double joint_tolerance = 0;
+  double joint_size = 1;  // m, of what moves along its joints
+  double joint_rate = 1;  // 1/s, how fast it moves by gravity alone
 };
 
 struct GroupSample {

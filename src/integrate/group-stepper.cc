@@ -6,18 +6,38 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "integrate/joint-equations.h"
 #include "integrate/rodas4.h"
+#include "integrate/runge-kutta.h"
 
 namespace tw {
 
 GroupStepper::GroupStepper(const GroupStart& start)
     : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {
+  const bool alone = start.joint_tolerance > 0 && start.trees.size() == 1 &&
+                     start.contacts.empty() &&
+                     start.members.size() == start.trees.front().members.size();
+  if (alone && is_nonstiff(start.trees.front(), start.joint_rate)) {
+    const GroupTree& tree = start.trees.front();
+    std::vector<double> y(tree.state->u.size(), 0.0);
+    y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());
+    explicit_ = std::make_unique<Solution>(
+        start.joint_tolerance > answer::loose_steps ? tsit5 : dop853,
+        std::make_unique<JointEquations>(tree, start.joint_tolerance, start.joint_size,
+                                         start.joint_rate),
+        start.time, std::move(y), tree.state->q);
+  }
   for (const GroupTree& tree : start.trees)
-    joints_.emplace_back(*tree.multibody, start.time, tree.state->q, tree.state->u, 3);
+    joints_.emplace_back(*tree.multibody, start.time, tree.state->q, tree.state->u,
+                         explicit_ ? explicit_->method().degree() : 3);
 }
 
 GroupCounts GroupStepper::counts() const {
   GroupCounts counts = counts_;
+  if (explicit_) {
+    const Solution::Counts& made = explicit_->counts();
+    return {made.steps, made.rejected, 0, made.evaluations};
+  }
   counts.factorizations = system_.factorizations();
   return counts;
 }
@@ -199,7 +219,7 @@ void GroupStepper::append_joints(double time, GroupScratch& s) {
 }
 
 // one accepted step; false: failed
-bool GroupStepper::step() {
+bool GroupStepper::implicit_step() {
   if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
   GroupScratch& s = scratch();
   const double time = record_.reached(), left = start_.end - time;
@@ -240,6 +260,37 @@ bool GroupStepper::step() {
     if (!(time + 0.1 * h > time))
       return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
   }
+}
+
+// One step of the explicit method, the last one as far as the end.
+bool GroupStepper::explicit_step() {
+  if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
+  const double from = record_.reached();
+  if (!explicit_->extend(from) || !(explicit_->reached() > from))
+    return failure_ = explicit_->failure() ? explicit_->failure() : "no step", false;
+  const DenseStep& step = explicit_->at(from);
+  const double to = std::min(explicit_->reached(), start_.end);
+  const double share = (to - from) / (step.end() - step.start());
+  TreeInGroup& tree = *system_.trees().front();
+  const std::size_t n = static_cast<std::size_t>(tree.freedoms());
+  std::vector<double> powers = step.powers();
+  const std::size_t degree = powers.size() / (2 * n) - 1;
+  std::vector<double> end(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(n));
+  double scale = 1;
+  for (std::size_t k = 1; k <= degree; ++k) {
+    scale *= share;
+    for (std::size_t e = 0; e < 2 * n; ++e) powers[2 * n * k + e] *= scale;
+    for (std::size_t e = 0; e < n; ++e) end[e] += powers[2 * n * k + e];
+  }
+  joints_.front().joints(from, joint_positions_, joint_velocities_);
+  tree.set_positions(joint_positions_);
+  joints_.front().append(to, powers, tree.displaced(end.data()));
+  GroupScratch& s = scratch();
+  record_.load_last(system_, s.trial.data());
+  std::fill_n(s.stage[4].data(), system_.size(), 0.0);
+  record_.append(to, system_, s.trial.data(), s.stage[4].data(), s.stage[4].data());
+  next_step_ = 0;
+  return true;
 }
 
 }  // namespace tw

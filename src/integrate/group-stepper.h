@@ -11,6 +11,7 @@
 #include "integrate/group-record.h"
 #include "integrate/group-system.h"
 #include "integrate/joint-record.h"
+#include "integrate/solution.h"
 
 namespace tw {
 
@@ -20,7 +21,7 @@ class GroupStepper {
   explicit GroupStepper(const GroupStart& start);
 
   // One accepted step.  False: it stopped for the reason that `failure` gives.
-  bool step();
+  bool step() { return explicit_ ? explicit_step() : implicit_step(); }
   const char* failure() const { return failure_; }
 
   const GroupSystem& system() const { return system_; }
@@ -32,6 +33,8 @@ class GroupStepper {
   GroupScratch& scratch() const;
 
  private:
+  bool implicit_step();
+  bool explicit_step();
   double first_step(GroupScratch& s) const;
   template <int i>
   bool set_stage(double h, GroupScratch& s);
@@ -47,6 +50,7 @@ class GroupStepper {
   GroupRecord record_;
   std::vector<JointRecord> joints_;  // of each multibody
   std::vector<double> joint_positions_, joint_velocities_;
+  std::unique_ptr<Solution> explicit_;  // of a multibody that touches nothing
   GroupCounts counts_;
   double next_step_;
   const char* failure_ = nullptr;

@@ -1,0 +1,115 @@
+// The equations of a multibody that touches nothing, for explicit methods.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/joint-equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/constants.h"
+#include "multibody/impulses.h"
+
+namespace tw {
+
+using namespace multibody;
+
+namespace {
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+JointEquations::JointEquations(const GroupTree& tree, double tolerance, double size, double rate)
+    : tree_(tree),
+      n_(tree.multibody->tree.nv()),
+      tolerance_(tolerance),
+      size_(size),
+      rate_(rate),
+      is_distance_(index(n_), false),
+      placed_(tree.multibody->tree),
+      articulation_(tree.multibody->tree),
+      q_(index(tree.multibody->tree.nq())),
+      tau_(index(n_)) {
+  around_.gravity = tree.gravity;
+  around_.base = tree.multibody->base;
+  for (const Node& node : tree.multibody->tree.nodes())
+    if (node.kind == NodeKind::slider || node.kind == NodeKind::floating)
+      for (int k = 0; k < std::min(node.dofs, 3); ++k) is_distance_[index(node.u + k)] = true;
+}
+
+int JointEquations::chart_size() const { return tree_.multibody->tree.nq(); }
+
+void JointEquations::slope(double, const double* y, const double* chart, double* slope) const {
+  const Tree& tree = tree_.multibody->tree;
+  const std::size_t n = index(n_);
+  const In z{y, n}, u{y + n, n};
+  displace(tree, {chart, q_.size()}, z, q_);
+  place(tree, q_, u, around_, placed_);
+  for (int link = 0; link < tree.link_count(); ++link)
+    if (const Vec3& force = tree_.forces[index(link)]; !force.isZero(0))
+      add_force(tree, placed_, link, link_center_of_mass(tree, placed_, link), force);
+  chart_rate(tree, z, u, {slope, n});
+  joint_torques(tree, q_, u, tree_.state->inputs(), tau_);
+  if (!forward_dynamics(tree, placed_, tau_, articulation_, {slope + n, n}))
+    std::fill_n(slope + n, n, std::numeric_limits<double>::quiet_NaN());
+}
+
+void JointEquations::tolerances(const double* y, const double*, double* allowed) const {
+  double fastest = rate_;
+  for (int k = 0; k < n_; ++k)
+    fastest = std::max(fastest, std::abs(y[n_ + k]) / (is_distance_[index(k)] ? size_ : 1));
+  for (int k = 0; k < n_; ++k) {
+    const double scale = is_distance_[index(k)] ? size_ : 1;
+    allowed[k] = tolerance_ * scale;
+    allowed[n_ + k] = tolerance_ * scale * fastest;
+  }
+}
+
+// No joint turns by more than a chart bears; and not for ever where nothing moves.
+double JointEquations::longest_step(const double* y, const double*, const double*) const {
+  double fastest = rate_;
+  for (int k = 0; k < n_; ++k)
+    if (!is_distance_[index(k)]) fastest = std::max(fastest, std::abs(y[n_ + k]));
+  return answer::most_step_turn / fastest;
+}
+
+void JointEquations::recentre(double* y, double* slope, double* chart) const {
+  const Tree& tree = tree_.multibody->tree;
+  displace(tree, {chart, q_.size()}, {y, index(n_)}, q_);
+  std::copy(q_.begin(), q_.end(), chart);
+  std::fill_n(y, n_, 0.0);
+  // z' = u where z is 0
+  std::copy_n(y + n_, n_, slope);
+}
+
+bool is_nonstiff(const GroupTree& start, double rate) {
+  const Tree& tree = start.multibody->tree;
+  const MultibodyState& state = *start.state;
+  double fastest = rate, stiffest = 0;
+  for (const double u : state.u) fastest = std::max(fastest, std::abs(u));
+  const std::vector<Axis>& axes = tree.axes();
+  Kinematics placed(tree);
+  Articulation factors(tree);
+  bool factored = false;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const AxisSpec& law = axes[i].law;
+    ServoGains servo;
+    if (!state.servos.empty()) servo = state.servos[i];
+    double stiffness = law.stiffness + servo.stiffness, damping = law.damping + servo.damping;
+    if (law.friction > 0) damping += law.friction / answer::joint_friction_speed;
+    if (!state.stops.empty() && state.stops[i] != Stop::none) stiffness += axes[i].stop_stiffness;
+    if (stiffness == 0 && damping == 0) continue;
+    if (!factored) {
+      Surroundings around;
+      around.base = start.multibody->base;
+      place(tree, state.q, state.u, around, placed);
+      if (!factor(tree, placed, factors)) return false;
+      factored = true;
+    }
+    for (int k = axes[i].u; k < axes[i].u + (axes[i].ball ? 3 : 1); ++k) {
+      const double yields = inverse_inertia_of_dof({tree, placed, factors}, k);
+      stiffest = std::max({stiffest, damping * yields, std::sqrt(stiffness * yields)});
+    }
+  }
+  return stiffest <= answer::stiff_ratio * fastest;
+}
+
+}  // namespace tw

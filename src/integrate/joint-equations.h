@@ -1,0 +1,45 @@
+// The equations of a multibody that touches nothing, for explicit methods.
+//
+// y = (z, u): the displacement from the chart, which is q at the step's start, and the velocities.
+// z' = G(z, u), u' by the articulated-body algorithm.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "integrate/equations.h"
+#include "integrate/group-arc.h"
+#include "multibody/forward-dynamics.h"
+
+namespace tw {
+
+class JointEquations final : public Equations {
+ public:
+  // `tolerance`: the error of a step in displacements, rad; of distances a share of `size`, m, of
+  // velocities times `rate`, 1/s, or the fastest one.
+  JointEquations(const GroupTree& tree, double tolerance, double size, double rate);
+
+  int size() const override { return 2 * n_; }
+  int chart_size() const override;
+  void slope(double time, const double* y, const double* chart, double* slope) const override;
+  void tolerances(const double* y, const double* chart, double* allowed) const override;
+  double longest_step(const double* y, const double* slope, const double* chart) const override;
+  void recentre(double* y, double* slope, double* chart) const override;
+
+ private:
+  const GroupTree& tree_;
+  int n_;
+  double tolerance_, size_, rate_;
+  multibody::Surroundings around_;
+  std::vector<bool> is_distance_;  // of each dof
+  mutable multibody::Kinematics placed_;
+  mutable multibody::Articulation articulation_;
+  mutable std::vector<double> q_, tau_;
+};
+
+// Whether explicit steps of a multibody are as long as accuracy lets them be: nothing that acts at
+// its joints is stiff against how it moves, a function of the state it starts in.
+bool is_nonstiff(const GroupTree& tree, double rate);
+
+}  // namespace tw
