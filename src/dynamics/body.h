@@ -48,7 +48,7 @@ struct BodyInfo {
 
 struct Body {
   BodyInfo info;
-  ProcessId process{};  // that its motion belongs to
+  ProcessId process{};                   // that its motion belongs to
   const Multibody* multibody = nullptr;  // it is a link of; null: of none
   std::uint32_t link = 0;                // which one
   std::vector<BodyId> neighbours;        // links across a joint, which it never touches; ascending

@@ -55,7 +55,9 @@ void JointImpulses::add(Successor& successor, std::uint32_t slot) {
   auto at = std::find_if(struck_.begin(), struck_.end(),
                          [&](const Struck& s) { return s.multibody == multibody; });
   if (at == struck_.end()) {
-    Struck struck{multibody, successor.joints, {},
+    Struck struck{multibody,
+                  successor.joints,
+                  {},
                   std::make_shared<PlacedJoints>(*multibody, *successor.joints),
                   std::make_shared<Articulation>(multibody->tree)};
     factor(multibody->tree, struck.placed->kinematics(), *struck.factors);

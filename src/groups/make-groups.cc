@@ -170,8 +170,8 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
       if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
   const double interval =
       group.pairs.empty()
-          ? joint_check_interval(work.scene(), *work.successor_of(group.members.front())
-                                                    ->body->multibody)
+          ? joint_check_interval(work.scene(),
+                                 *work.successor_of(group.members.front())->body->multibody)
           : check_interval(work, group.members);
   group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
   if (before && !finds_contacts(work.cause) && before->next_check >= now)

@@ -66,8 +66,7 @@ std::vector<double> DenseStep::powers() const {
   };
   for (int j = 1; j <= degree_; ++j)
     for (int i = 0; i <= degree_ - j; ++i) {
-      const double weight =
-          choose(degree_, j) * choose(degree_ - j, i) * (i % 2 == 0 ? 1.0 : -1.0);
+      const double weight = choose(degree_, j) * choose(degree_ - j, i) * (i % 2 == 0 ? 1.0 : -1.0);
       double* to = c.data() + size * static_cast<std::size_t>(j + i);
       for (std::size_t e = 0; e < size; ++e) to[e] += weight * offsets(j)[e];
     }

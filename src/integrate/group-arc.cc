@@ -259,8 +259,7 @@ TrajectoryPtr GroupArc::excerpt(int member, double from, double to) const {
   return make_excerpt(data_->record.stretch_of(member, data_->at(from)), start);
 }
 
-void GroupArc::joints(int tree, double time, std::vector<double>& q,
-                      std::vector<double>& u) const {
+void GroupArc::joints(int tree, double time, std::vector<double>& q, std::vector<double>& u) const {
   data_->stepper.joints(tree).joints(data_->at(time), q, u);
 }
 

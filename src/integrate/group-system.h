@@ -127,10 +127,10 @@ class GroupSystem {
   double sigma_ = 0;
   std::vector<std::unique_ptr<TreeInGroup>> trees_;
   std::vector<std::size_t> tree_rows_;
-  std::vector<int> tree_unknowns_;                // the first of each
-  std::vector<std::vector<int>> packs_of_slot_;   // ascending
+  std::vector<int> tree_unknowns_;               // the first of each
+  std::vector<std::vector<int>> packs_of_slot_;  // ascending
   std::vector<std::vector<int>> packs_of_tree_;
-  std::unique_ptr<CoupledMatrix> coupled_;        // where there are multibodies
+  std::unique_ptr<CoupledMatrix> coupled_;  // where there are multibodies
 };
 
 }  // namespace tw

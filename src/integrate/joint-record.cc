@@ -54,8 +54,8 @@ PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) 
   const tw::Frame frame = link_frame(multibody.tree, k, link);
   const LinkTwist twist = link_twist(multibody.tree, k, link);
   const Vec3 arm = frame.R * principal.p;
-  return {frame.p + arm, (Quat(frame.R) * principal.q).normalized(),
-          twist.v + twist.w.cross(arm), twist.w};
+  return {frame.p + arm, (Quat(frame.R) * principal.q).normalized(), twist.v + twist.w.cross(arm),
+          twist.w};
 }
 
 struct JointRecord::Placed {
@@ -86,8 +86,7 @@ void JointRecord::append(double time, const std::vector<double>& coefficients,
   // their sum is the value at the end
   std::fill(last_u_.begin(), last_u_.end(), 0.0);
   for (int k = 0; k <= path_.degree(); ++k)
-    for (int e = 0; e < n_; ++e)
-      last_u_[index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
+    for (int e = 0; e < n_; ++e) last_u_[index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
 }
 
 // All links of a multibody are asked for the same times, one after the other: the last answers are
@@ -213,8 +212,7 @@ void JointRecord::add_step_bounds(int step, int link, double from, double to,
 MotionBounds JointRecord::bounds(int link, double from, double to) const {
   MotionBounds result;
   const int last = path_.step_to(to), first = std::min(std::max(path_.step_from(from), 0), last);
-  for (int i = from < to ? first : last; i <= last; ++i)
-    add_step_bounds(i, link, from, to, result);
+  for (int i = from < to ? first : last; i <= last; ++i) add_step_bounds(i, link, from, to, result);
   // rounding
   const double largest =
       std::max(result.path.lo.cwiseAbs().maxCoeff(), result.path.hi.cwiseAbs().maxCoeff());
@@ -239,8 +237,7 @@ double JointRecord::first_beyond(const Axis& axis, double side, double limit, in
   const double tolerance = answer::stop_tolerance * (1 + std::abs(limit));
   const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) + tolerance; };
   const double middle = 0.5 * (r0 + r1), here = gap(middle);
-  const double reach =
-      0.5 * (r1 - r0) * path_.length(step) * path_.bound(step, axis.u, 1, r0, r1);
+  const double reach = 0.5 * (r1 - r0) * path_.length(step) * path_.bound(step, axis.u, 1, r0, r1);
   if (here > reach) return inside = true, never;
   if (!inside && here < -reach) return never;
   if (r1 - r0 > shortest) {

@@ -58,8 +58,8 @@ class JointRecord {
                       double r1, bool& inside) const;
   void add_step_bounds(int step, int link, double from, double to, MotionBounds& bounds) const;
   const double* node(int i) const {
-    return nodes_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(
-                                                             multibody_->tree.nq());
+    return nodes_.data() +
+           static_cast<std::size_t>(i) * static_cast<std::size_t>(multibody_->tree.nq());
   }
   static std::uint64_t next_serial();
 

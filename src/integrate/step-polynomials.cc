@@ -69,8 +69,7 @@ StepPolynomials StepPolynomials::stretch(double from) const {
   for (int i = first; i < steps(); ++i) {
     copy.times_.push_back(time(i + 1));
     const double* begin = step(i);
-    copy.coefficients_.insert(copy.coefficients_.end(), begin,
-                              begin + count_ * (degree_ + 1));
+    copy.coefficients_.insert(copy.coefficients_.end(), begin, begin + count_ * (degree_ + 1));
   }
   return copy;
 }

@@ -77,8 +77,7 @@ void TreeInGroup::linearise(const double* u, const double* u_rate, const BodyWre
   // the force that stays while the centre c moves on by dc turns with dc x f about the origin
   linearisation_.clear_wrenches();
   for (int link = 0; link < tree().link_count(); ++link) {
-    const Vec3 force =
-        vec(wrenches[start_->members[index(link)]].f) + start_->forces[index(link)];
+    const Vec3 force = vec(wrenches[start_->members[index(link)]].f) + start_->forces[index(link)];
     if (force.isZero()) continue;
     const Mat3 across = cross_matrix(force);
     WrenchDerivative moving;
@@ -116,8 +115,7 @@ void TreeInGroup::right_side(const double* ru, const double* kq, double* to) con
   const std::size_t n = index(n_);
   for (std::size_t i = 0; i < n; ++i) {
     double sum = 0;
-    for (std::size_t k = 0; k < n; ++k)
-      sum += mass_[n * k + i] * ru[k] + Kq_[n * k + i] * kq[k];
+    for (std::size_t k = 0; k < n; ++k) sum += mass_[n * k + i] * ru[k] + Kq_[n * k + i] * kq[k];
     to[i] = sum;
   }
 }
@@ -156,8 +154,8 @@ void TreeInGroup::spread(const double* kq, const double* ku, BodyChange* changes
     const Vec3 dx = moved[node].v + moved[node].w.cross(arm);
     vec(change.x) = dx;
     vec(change.th) = moved[node].w;
-    vec(change.v) = faster[node].v + faster[node].w.cross(arm) +
-                    linear_.node(t.link(link).node).V.w.cross(dx);
+    vec(change.v) =
+        faster[node].v + faster[node].w.cross(arm) + linear_.node(t.link(link).node).V.w.cross(dx);
     vec(change.w) = faster[node].w;
   }
 }

@@ -1,7 +1,7 @@
 // A multibody as a part of a contact group: its unknowns, its equations and their derivative.
 //
-// Unknowns: z, the displacement of the joints from the step's start (q = q0 (+) z), and u, the joint
-// velocities; n of each.
+// Unknowns: z, the displacement of the joints from the step's start (q = q0 (+) z), and u, the
+// joint velocities; n of each.
 //   z' = G(z, u),   u' = M(q)^-1 f(q, u, wrenches)
 // With a0 = u' at the step's start the *residual* f - M a0 is differentiated at fixed a0:
 //   Kq = d(f - M a0)/dq,  Ku = df/du,  so that du'/dq = M^-1 Kq and du'/du = M^-1 Ku, exactly.
@@ -68,8 +68,8 @@ class TreeInGroup {
   int n_;
   std::vector<double> q0_, q_, tau_, u0_, rate_;
   multibody::Surroundings around_;
-  multibody::Kinematics placed_;        // at the last place
-  multibody::Kinematics linear_;        // at the step's start
+  multibody::Kinematics placed_;  // at the last place
+  multibody::Kinematics linear_;  // at the step's start
   multibody::Articulation articulation_;
   multibody::Linearisation linearisation_;
   std::vector<double> mass_, Kq_, Ku_, matrix_;  // by columns

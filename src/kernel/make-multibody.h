@@ -10,11 +10,12 @@
 
 namespace tw {
 
-// Without its links, which come later.  Errors: those of the tree and of the links' mass properties;
-// no links; a free base with several first links or one that has a joint of its own.
+// Without its links, which come later.  Errors: those of the tree and of the links' mass
+// properties; no links; a free base with several first links or one that has a joint of its own.
 std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t number);
 
-// All joints at 0, or at the limit that is nearest to it, at rest; a free first link where the multibody is put.
+// All joints at 0, or at the limit that is nearest to it, at rest; a free first link where the
+// multibody is put.
 MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def);
 
 // The links as bodies, where these joints put them.

@@ -25,15 +25,15 @@ void SuccessorView::require_dynamic(const char* what) const {
 }
 
 void SuccessorView::require_no_link(const char* what) const {
-  TW_REQUIRE(!successor_.body->multibody,
-             std::string(what) + " of " + successor_.body->info.name +
-                 " cannot be set; it is a link of " + successor_.body->multibody->name +
-                 ", expected a change of its joints");
+  TW_REQUIRE(!successor_.body->multibody, std::string(what) + " of " + successor_.body->info.name +
+                                              " cannot be set; it is a link of " +
+                                              successor_.body->multibody->name +
+                                              ", expected a change of its joints");
 }
 
 MultibodyState& SuccessorView::change_joints() {
-  TW_REQUIRE(successor_.joints, successor_.body->info.name +
-                                    " has no joints; expected a link of a multibody");
+  TW_REQUIRE(successor_.joints,
+             successor_.body->info.name + " has no joints; expected a link of a multibody");
   start_arc();
   return *successor_.joints;
 }

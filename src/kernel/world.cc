@@ -89,8 +89,7 @@ std::uint32_t World::add_multibody(const MultibodyDef& def) {
 std::size_t World::multibody_count() const { return kernel_->simulation.scene.multibodies.size(); }
 
 const Multibody& World::multibody(std::uint32_t number) const {
-  TW_REQUIRE(number < multibody_count(),
-             "multibody " + std::to_string(number) + " does not exist");
+  TW_REQUIRE(number < multibody_count(), "multibody " + std::to_string(number) + " does not exist");
   return *kernel_->simulation.scene.multibodies[number];
 }
 

@@ -103,8 +103,8 @@ void each_word(const std::vector<T>& row, Put&& put) {
 template <class Put>
 void each_word(const MultibodyStatePtr& joints, Put&& put) {
   if (!joints) return;
-  for (const std::vector<double>* row : {&joints->q, &joints->u, &joints->torques,
-                                         &joints->targets, &joints->target_velocities})
+  for (const std::vector<double>* row :
+       {&joints->q, &joints->u, &joints->torques, &joints->targets, &joints->target_velocities})
     each_word(*row, put);
   each_word(joints->servos, put);
   each_word(joints->stops, put);

@@ -65,7 +65,8 @@ struct StateData {
   // the contact group that the body is in from here on, and its place there; null: it is isolated
   std::shared_ptr<Group> group;
   std::uint32_t member = 0;
-  // of a link: how the joints stand where the arc starts, shared by all links; null: of other bodies
+  // of a link: how the joints stand where the arc starts, shared by all links; null: of other
+  // bodies
   MultibodyStatePtr joints;
 
   // how the arc begins

@@ -1,0 +1,232 @@
+// Multibodies in a world: what must hold of them by the laws of mechanics.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "multibody/multibody.h"
+#include "support/multibody-scenes.h"
+#include "support/schedule.h"
+
+namespace tw {
+namespace {
+
+using namespace test;
+
+// A compound pendulum swings with the period of its elliptic integral.
+TEST(Multibodies, a_pendulum_swings_as_the_elliptic_integral_says) {
+  World world;
+  world.set_accuracy(1e-9);
+  const double length = 0.5, start = 1.0;
+  const std::uint32_t rod = world.add_multibody(chain(1, length, Vec3(0, 0, 2)));
+  set_joint(world, rod, 0, 0.5 * pi - start);  // 0 is level, pi/2 hangs
+  const Multibody& multibody = world.multibody(rod);
+  const BodyInfo& body = world.body(multibody.links[0]);
+  // about the pivot: the rod's centre is half its length away
+  const double thickness = 0.1 * length;
+  const double inertia =
+      body.mass * ((length * length + thickness * thickness) / 12 + length * length / 4);
+  const double omega = std::sqrt(body.mass * 9.81 * 0.5 * length / inertia);
+  const double period = 4 * std::comp_ellint_1(std::sin(0.5 * start)) / omega;
+  world.advance(period);
+  EXPECT_NEAR(world.joints(rod).q[0], 0.5 * pi - start, 1e-7);
+  EXPECT_NEAR(world.joints(rod).u[0], 0, 1e-6);
+  world.advance(1.5 * period);
+  EXPECT_NEAR(world.joints(rod).q[0], 0.5 * pi + start, 1e-7);
+}
+
+// The error of the energy follows the accuracy that is asked for.
+TEST(Multibodies, energy_is_kept_as_accurately_as_was_asked) {
+  for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+    World world;
+    world.set_accuracy(accuracy);
+    world.add_multibody(chain(5, 0.5, Vec3(0, 0, 5)));
+    const double before = world.total_energy();
+    world.advance(2);
+    const double at_play = 5 * world.body(0).mass * 9.81 * 1.25;
+    EXPECT_LT(std::abs(world.total_energy() - before), 10 * accuracy * at_play) << accuracy;
+  }
+}
+
+// Floating, without gravity: momentum stays, whatever the joints do.
+TEST(Multibodies, a_floating_tree_keeps_its_momentum) {
+  World world;
+  world.set_gravity(Vec3::Zero());
+  const std::uint32_t number = world.add_multibody(car(Vec3(0, 0, 2)));
+  world.edit(world.multibody(number).links[0], [](StateView& view) {
+    MultibodyState& joints = view.change_joints();
+    for (std::size_t k = 0; k < joints.u.size(); ++k)
+      joints.u[k] = 0.3 * std::sin(1.0 + static_cast<double>(k));
+  });
+  const Vec3 momentum = world.total_momentum();
+  ASSERT_GT(momentum.norm(), 1);
+  const double energy = world.total_energy();
+  world.advance(5);
+  EXPECT_LT((world.total_momentum() - momentum).norm(), 1e-6 * momentum.norm());
+  EXPECT_NEAR(world.total_energy(), energy, 1e-5 * energy);
+}
+
+// Wheels that stick: the path is the angle times the radius.
+TEST(Multibodies, a_car_rolls_without_slip) {
+  World world;
+  add_floor(world);
+  const std::uint32_t number = world.add_multibody(car(Vec3(0, 0, car_height)));
+  set_velocity(world, number, 0, 2);
+  world.advance(2);  // wheels have come up to speed
+  const MultibodyState before = world.joints(number);
+  world.advance(4);
+  const MultibodyState after = world.joints(number);
+  const double path = after.q[0] - before.q[0];
+  EXPECT_GT(path, 1);
+  for (std::size_t wheel = 7; wheel < 11; ++wheel)
+    EXPECT_NEAR((after.q[wheel] - before.q[wheel]) * wheel_radius, path, 2e-3 * path);
+  EXPECT_NEAR(after.q[2], car_height, 2e-3) << "it stands on its wheels";
+}
+
+TEST(Multibodies, a_chain_comes_to_rest_on_the_floor) {
+  World world;
+  add_floor(world);
+  MultibodyDef def = chain(3, 0.5, Vec3(0, 0, 0.8));
+  for (LinkDef& link : def.links) link.joint.axes[0].damping = 0.002;
+  const std::uint32_t number = world.add_multibody(def);
+  const double before = world.total_energy();
+  world.advance(4);
+  EXPECT_LT(world.total_energy(), before);
+  for (const double u : world.joints(number).u) EXPECT_NEAR(u, 0, 1e-4);
+  for (const BodyId link : world.multibody(number).links)
+    EXPECT_GT(world.state(link).position.z(), -2e-3);
+}
+
+// Thrown against its stops an arm rests there, as deep as its weight bends them.
+TEST(Multibodies, an_arm_rests_at_its_stops) {
+  World world;
+  MultibodyDef def = chain(2, 0.5, Vec3(0, 0, 3));
+  for (LinkDef& link : def.links) {
+    link.joint.axes[0].lower = -0.5;
+    link.joint.axes[0].upper = link.parent.empty() ? 1.0 : 0.3;
+    link.joint.axes[0].restitution = 0.5;
+  }
+  const std::uint32_t number = world.add_multibody(def);
+  double before = world.total_energy();
+  for (int i = 1; i <= 10; ++i) {
+    world.advance(0.3 * i);
+    const double now = world.total_energy();
+    EXPECT_LT(now, before + 1e-4) << "at " << 0.3 * i << " s";
+    before = now;
+  }
+  const MultibodyState joints = world.joints(number);
+  EXPECT_NEAR(joints.q[0], 1.0, 2e-4);
+  EXPECT_NEAR(joints.q[1], 0.3, 2e-4);
+  EXPECT_GT(joints.q[0], 1.0);
+  for (const double u : joints.u) EXPECT_NEAR(u, 0, 1e-9);
+}
+
+// A stopped joint bounces with the stop's restitution: a bar that falls from the level on a stop
+// straight below it comes back to cos = e^2.
+TEST(Multibodies, a_stop_strikes_back_with_its_restitution) {
+  World world;
+  MultibodyDef def = chain(1, 0.5, Vec3(0, 0, 2));
+  const double e = 0.6;
+  def.links[0].joint.axes[0].lower = -1;
+  def.links[0].joint.axes[0].upper = 0.5 * pi;
+  def.links[0].joint.axes[0].restitution = e;
+  const std::uint32_t number = world.add_multibody(def);
+  double least = pi;
+  bool struck = false;
+  for (int i = 1; i < 150; ++i) {
+    world.advance(0.01 * i);
+    const MultibodyState joints = world.joints(number);
+    struck = struck || joints.u[0] < -0.1;
+    if (struck && joints.u[0] > 0.05) break;
+    if (struck) least = std::min(least, joints.q[0]);
+  }
+  // height from the bottom: 1 - sin q = e^2
+  EXPECT_NEAR(1 - std::sin(least), e * e, 2e-3);
+}
+
+// A servo holds against gravity at target - torque / stiffness, also where it is very stiff.
+TEST(Multibodies, servos_hold_and_stiff_ones_cost_little) {
+  double steps_of_soft = 0;
+  for (const double stiffness : {1e2, 1e4, 1e6}) {
+    World world;
+    const std::uint32_t number = world.add_multibody(chain(1, 0.5, Vec3(0, 0, 2)));
+    const BodyInfo& body = world.body(world.multibody(number).links[0]);
+    const double torque = body.mass * 9.81 * 0.25;
+    world.edit(body.id, [&](StateView& view) {
+      MultibodyState& joints = view.change_joints();
+      const double inertia = body.mass * 0.25 / 3;
+      joints.targets = {-0.3};
+      joints.servos = {{stiffness, 2 * std::sqrt(stiffness * inertia)}};
+    });
+    world.advance(3);
+    const double q = world.joints(number).q[0];
+    // gravity turns it down: q grows by torque cos q / stiffness
+    EXPECT_NEAR(q, -0.3 + torque * std::cos(q) / stiffness, 1e-6) << stiffness;
+    const double steps = static_cast<double>(count_of(world.statistics(), "implicit_steps"));
+    if (steps_of_soft == 0) steps_of_soft = steps;
+    EXPECT_LT(steps, 10 * steps_of_soft) << stiffness;
+  }
+}
+
+// A ball that strikes the end of a free rod of two welded halves does to it what it does to a rod.
+TEST(Multibodies, links_that_are_welded_take_impulses_as_one_body) {
+  const auto after = [](bool welded) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    BodyDef ball;
+    ball.shape = make_sphere(0.1);
+    ball.position = Vec3(0.8, 0, -0.5);
+    ball.velocity = Vec3(0, 0, 2);
+    const BodyId striker = world.add_body(ball);
+    if (welded) {
+      MultibodyDef def = chain(2, 0.5, Vec3(0, 0, 0));
+      def.free = true;
+      def.links[1].joint.kind = multibody::JointKind::weld;
+      world.add_multibody(def);
+    } else {
+      BodyDef rod;
+      rod.shape =
+          place_shape(make_box(Vec3(1, 0.05, 0.05)), Pose{Vec3(0.5, 0, 0), Quat::Identity()});
+      world.add_body(rod);
+    }
+    world.advance(0.4);
+    return world.state(striker).velocity;
+  };
+  EXPECT_LT((after(true) - after(false)).norm(), 1e-9);
+}
+
+// The schedule never changes the answer.
+TEST(Multibodies, one_history_whatever_the_schedule) {
+  const auto scene = [](World& world) {
+    add_floor(world);
+    set_velocity(world, world.add_multibody(car(Vec3(0, 0, car_height + 0.2))), 0, 2);
+    MultibodyDef limited = chain(3, 0.3, Vec3(1.2, 0, 0.7));
+    for (LinkDef& link : limited.links) {
+      link.joint.axes[0].lower = -0.4;
+      link.joint.axes[0].restitution = 0.4;
+    }
+    limited.name = "hung";
+    world.add_multibody(limited);
+  };
+  const auto hash = [&](const Schedule& schedule) {
+    World world;
+    world.set_hash(true);
+    apply(world, schedule);
+    scene(world);
+    advance_in_pieces(world, 1.0, schedule.pieces);
+    return world.history_hash();
+  };
+  const std::string plain = hash({});
+  Schedule check, undo, pieces;
+  check.check = undo.undo_redo = true;
+  pieces.pieces = 7;
+  for (const Schedule& schedule : {check, undo, pieces}) EXPECT_EQ(hash(schedule), plain);
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Schedule schedule = adversary_schedule(seed);
+    schedule.adversary->head_start *= 0.2;
+    EXPECT_EQ(hash(schedule), plain) << describe(schedule);
+  }
+}
+
+}  // namespace
+}  // namespace tw
