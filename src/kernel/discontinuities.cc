@@ -133,7 +133,8 @@ void Discontinuities::enter(const Key& key, std::vector<Successor>& successors) 
   }
   for (const ProcessId process : others.added()) affected.push_back({process, from});
   treat(affected);
-  if (sim_.options.undo_redo && removed == 0) take_back_once(key, checksum);
+  // an edit would not be found again
+  if (sim_.options.undo_redo && removed == 0 && !is_edit(key)) take_back_once(key, checksum);
 }
 
 void Discontinuities::treat(const std::vector<Affected>& affected) {
