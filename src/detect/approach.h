@@ -13,8 +13,8 @@ Separation separation_at(const Piece& piece, double when);
 double closing_at(const Piece& piece, double when, const Separation& s);
 // Whether they close at all.
 bool approaching_at(const Piece& piece, double when);
-// Whether the free accelerations press the two together, `normal` from a to b; what a group or the
-// ground carries has none.
-bool pressed_at(const Piece& piece, const Vec3& normal);
+// Whether the free accelerations at `when` press the two together, `normal` from a to b; what a
+// group or the ground carries has none.
+bool pressed_at(const Piece& piece, double when, const Vec3& normal);
 
 }  // namespace tw

@@ -65,7 +65,7 @@ void start_members(const Regrouping& work, const Group& group, GroupStart& start
     const Body& body = *successor.body;
     const StateData& d = successor.data;
     start.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
-                             body.mass * d.acceleration, Vec3::Zero()});
+                             body.mass * d.acceleration, Vec3::Zero(), d.forces});
     size = std::min(size, body.least_width);
     speed = std::max(speed, placed(successor).surface_speed());
   }

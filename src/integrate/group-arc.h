@@ -36,6 +36,7 @@
 
 #include "base/counted.h"
 #include "dynamics/contact-law.h"
+#include "dynamics/forces.h"
 #include "integrate/trajectory.h"
 #include "math/vec.h"
 
@@ -52,6 +53,7 @@ struct GroupMember {
   Vec3 L = Vec3::Zero();       // about the centre, world
   Vec3 force = Vec3::Zero();   // constant, weight included, N
   Vec3 torque = Vec3::Zero();  // constant, about the centre, N m
+  ForcesPtr forces;            // that hang on time and on what it does; may be null
 };
 
 // What the reference body shows the other one at a contact.

@@ -22,6 +22,9 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
     m.w = vec(s.bodies[index(i)].w);
     m.J = R * m.inverse_moments.asDiagonal() * R.transpose();
     m.W = m.J * cross_matrix(vec(y + 12 * i + 9)) - cross_matrix(m.w);
+    if (!m.forces) continue;
+    m.point = point_of(i, y, s.bodies[index(i)]);
+    m.forced = m.forces->derivative(time, m.point);
   }
 }
 
@@ -54,6 +57,14 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
           time_slope + 12 * (members_ + p));
   }
   for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (m.forces && m.forces->longest_unlooked() < never) {
+      Wrench f[3];
+      for (int j = 0; j < 3; ++j) f[j] = m.forces->wrench(time + j * d, m.point);
+      BodyWrench& wrench = s.wrenches[index(i)];
+      vec(wrench.f) += (4 * (f[1].force - f[0].force) - (f[2].force - f[0].force)) / (2 * d);
+      vec(wrench.t) += (4 * (f[1].torque - f[0].torque) - (f[2].torque - f[0].torque)) / (2 * d);
+    }
     vec(time_slope + 12 * i + 6) = member_[index(i)].inverse_mass * vec(s.wrenches[index(i)].f);
     vec(time_slope + 12 * i + 9) = vec(s.wrenches[index(i)].t);
   }
@@ -124,6 +135,12 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     m.V = m.J + m.W * m.P;
     double* block = matrix_.at(matrix_.offset(i, i));
     for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
+    if (!m.forces) continue;
+    // d(theta) = P kL, dw = V kL
+    Eigen::Map<Mat6> own(block);
+    own.leftCols<3>() -= m.forced.by_pose.leftCols<3>() / sigma + m.forced.by_twist.leftCols<3>();
+    own.rightCols<3>() -=
+        m.forced.by_pose.rightCols<3>() * m.P + m.forced.by_twist.rightCols<3>() * m.V;
   }
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
@@ -174,6 +191,13 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
     const double* r = stage + 12 * i;
     vec(right + 6 * i) = member_[index(i)].mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
     vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
+    const Member& m = member_[index(i)];
+    if (!m.forces) continue;
+    const BodyChange& change = s.changes[index(i)];
+    Vec6 pose, twist;
+    pose << vec(change.x), vec(change.th);
+    twist << vec(change.v), vec(change.w);
+    Eigen::Map<Vec6>(right + 6 * i) += m.forced.by_pose * pose + m.forced.by_twist * twist;
   }
   if (!matrix_.solve(right)) return false;
 

@@ -7,7 +7,7 @@
 //   dw = J dL + W dth,  W = J [L]x - [w]x,     dtheta' = dw + [w]x dth/2.
 // A stage (s 1 - Jacobian) k = r is reduced to 6 unknowns a member, (kv, kL):
 //   kx = (rx + kv)/s,  kth = A (rth + J kL),  A = (s - W - [w]x/2)^-1,
-//   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h.
+//   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h and dynamics/forces.h.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -36,7 +36,7 @@ class GroupSystem {
   int packs() const { return static_cast<int>(packs_.packs.size()); }
   std::size_t size() const { return size_; }
   const ContactPacks& contact_packs() const { return packs_; }
-  bool moved_from_outside() const { return !moving_slots_.empty(); }
+  bool moved_from_outside() const { return !moving_slots_.empty() || forces_change_; }
   std::uint64_t factorizations() const { return matrix_.factorizations(); }
 
   // Attitude of a member at the step's start.
@@ -50,7 +50,8 @@ class GroupSystem {
   // The same at theta = 0, with the derivative; sets the sides.
   void linearise(double time, const double* y, GroupScratch& scratch, double* slope);
   // Partial derivative by time, by the motion of outside bodies, whose velocities are differenced
-  // over a part of the `step`.  After linearise, before factor.
+  // over a part of the `step`, as are forces that change by themselves.  After linearise, before
+  // factor.
   void set_time_slope(double time, double step, GroupScratch& scratch, double* time_slope) const;
   // Largest over members of the sum of |dN/dd| of its contacts over its mass, 1/s^2, as linearised
   // last.
@@ -76,12 +77,17 @@ class GroupSystem {
     // at the step's start; A, P = A J and V = J + W P by the step
     Mat3 J = Mat3::Zero(), W = Mat3::Zero(), A = Mat3::Zero(), P = Mat3::Zero(), V = Mat3::Zero();
     Vec3 w = Vec3::Zero();
+    // what else acts on it, its derivative at the step's start, and what it did there
+    ForcesPtr forces;
+    WrenchDerivative forced;
+    PoseTwist point;
   };
 
   // of one lane, or (-1) of the sum of the lanes
   void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
+  PoseTwist point_of(int member, const double* y, const BodyKinematics& body) const;
   void place_outside(int slot, double time, BodyKinematics& body) const;
   // Outside bodies that move; the others are where set_outside put them.
   void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
@@ -92,6 +98,7 @@ class GroupSystem {
   double end_;
   std::vector<TrajectoryPtr> outside_;
   std::vector<BodyKinematics> outside_at_start_;
+  bool forces_change_ = false;     // of some member, with time by themselves
   std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;
   ContactPacks packs_;
