@@ -10,6 +10,7 @@
       ((timewarp shapes))
       ((timewarp bodies))
       ((timewarp contact))
+      ((timewarp forces))
       ((timewarp callbacks))
       ((timewarp running)
        run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)

@@ -151,14 +151,9 @@ set!.  It stays constant until it is changed."
   %applied-force %set-applied-force!)
 
 (define-accessor applied-torque
-  "Return the torque applied to BODY, a body or a view, in N m, world frame: zero, since setting one
-needs an integrator that comes later."
-  (lambda (body)
-    (unless (or (body? body) (view? body))
-      (bad-value "applied-torque" body "a body or a view of one"))
-    (vector 0.0 0.0 0.0))
-  (lambda (body torque)
-    (not-there-yet "set! of applied-torque" "an integrator for driven rotation")))
+  "Return the torque applied to BODY, a body or a view, about its centre of mass, in N m, world frame;
+with set!.  It stays constant until it is changed."
+  %applied-torque %set-applied-torque!)
 
 (define (kinetic-energy body)
   "Return the kinetic energy of BODY, a body or a view, in J."

@@ -24,6 +24,8 @@
      set-contact-parameters! contact-parameters disable-collisions! enable-collisions! contacts
      contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
      contact-slipping? contact?)
+    ("Forces" "what acts on bodies, from now on"
+     add-drag! add-spring! add-force!)
     ("Callbacks" "procedures that change what happens (may run again after a rollback)"
      add-callback! on-collision! collision-time collision-point collision-normal
      collision-speed collision-impulse collision-bodies collision?)

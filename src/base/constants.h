@@ -125,6 +125,12 @@ inline constexpr double most_step_turn = 2;
 // Slow groups are followed more closely: down to this part of the tolerances, and not beyond those
 // of this accuracy (groups/step-tolerances.h).
 inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
+// Driven bodies: the error of a step, share of the accuracy (the polynomial through it errs by up
+// to 13 times as much); by Tsitouras' method where the accuracy is looser than this.
+inline constexpr double driven_share = 0.05, loose_accuracy = 1e-5;
+// Such a body turns no further in a step, rad; where nothing happens to it a step lasts no longer
+// than so many times of sqrt(size / g).
+inline constexpr double most_driven_turn = 2, longest_driven_step = 1024;
 // Looser accuracies than this don't loosen the steps of groups: they took as many, and a cube that
 // slides down a slope was 20 % off at 1e-2.
 inline constexpr double loosest_steps = 1e-4;

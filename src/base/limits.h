@@ -32,6 +32,9 @@ inline constexpr double greatest_angular_speed = 1e12;
 // second.
 inline constexpr double greatest_acceleration = 1e12;
 
+// rad/s^2, of what an applied torque does: the same.
+inline constexpr double greatest_angular_acceleration = 1e12;
+
 // s, of the time of anything: 30 years, where doubles are 1.2e-7 s apart.
 inline constexpr double greatest_time = 1e9;
 
@@ -44,5 +47,8 @@ inline constexpr double greatest_rate = 1e6;
 // N/m of contact stiffness, s/m of damping.
 inline constexpr double least_stiffness = 1e-30, greatest_stiffness = 1e30;
 inline constexpr double greatest_damping = 1e30;
+
+// N/m of springs; N s/m of their damping and of linear drag; N s^2/m^2 of quadratic drag.
+inline constexpr double greatest_force_constant = 1e30;
 
 }  // namespace tw

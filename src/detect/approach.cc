@@ -36,9 +36,9 @@ double closing_at(const Piece& piece, double when, const Separation& s) {
              : 0;
 }
 
-bool pressed_at(const Piece& piece, const Vec3& normal) {
-  const Vec3 pull_a = piece.a->trajectory().free_acceleration();
-  const Vec3 pull_b = piece.b->trajectory().free_acceleration();
+bool pressed_at(const Piece& piece, double when, const Vec3& normal) {
+  const Vec3 pull_a = piece.a->trajectory().free_acceleration(when);
+  const Vec3 pull_b = piece.b->trajectory().free_acceleration(when);
   return (pull_b - pull_a).dot(normal) < 0;
 }
 

@@ -11,8 +11,8 @@ namespace tw {
 Separation separation_at(const Piece& piece, double when);
 // How fast the nearest points of `s` close at `when`, m/s; 0 where that is rounding.
 double closing_at(const Piece& piece, double when, const Separation& s);
-// Whether the free accelerations press the two together, `normal` from a to b; what a group or the
-// ground carries has none.
-bool pressed_at(const Piece& piece, const Vec3& normal);
+// Whether the free accelerations at `when` press the two together, `normal` from a to b; what a
+// group or the ground carries has none.
+bool pressed_at(const Piece& piece, double when, const Vec3& normal);
 
 }  // namespace tw

@@ -24,8 +24,8 @@ struct MovingBody : PlacedBody {
       : PlacedBody(b, trajectory.path_at(when)) {
     step_end = trajectory.step_end(when);
     double until = trajectory.end();
-    if (b.kinematic()) {
-      // a span of a motion by a procedure is bounded as narrowly as may be at once
+    if (b.kinematic() || (until == never && step_end != never)) {
+      // what goes on for ever, step by step or in spans, is bounded as narrowly as may be at once
       until = std::min(when + cost::kinematic_horizon, step_end);
       step_end = never;
     }

@@ -60,4 +60,13 @@ Key group_check_key(const Group& group, double when) {
   return {when, 1 + (starts_now ? group.key.microstep : 0), KeyKind::group_check, 0};
 }
 
+Key end_key(const State& state, double when) {
+  Key key{when, 1, KeyKind::group_check, number(state.process)};
+  if (state.group)
+    key.microstep = group_check_key(*state.group, when).microstep;
+  else if (state.arc_key.time == when)
+    key.microstep += state.arc_key.microstep;
+  return key;
+}
+
 }  // namespace tw

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "groups/regrouping.h"
+#include "timeline/state.h"
 
 namespace tw {
 
@@ -28,5 +29,9 @@ double next_check_time(double birth, double now, double interval);
 // The key of a check at `when`, but for its id, which is that of the least member: just before
 // whatever else happens to the group then.
 Key group_check_key(const Group& group, double when);
+
+// The key at which the arc of a process ends by itself at `when`: by a check of its group, or, of
+// an isolated body that cannot be followed any further, by an error.
+Key end_key(const State& state, double when);
 
 }  // namespace tw

@@ -165,7 +165,7 @@ void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, con
   const auto pull = [&](const PlacedBody& s) {
     const Successor* successor = work.successor_of(s.body->id());
     const bool free = s.body->dynamic() && successor && !successor->data.group;
-    return free ? successor->data.acceleration : Vec3(Vec3::Zero());
+    return free ? free_acceleration(*successor, work.now()) : Vec3(Vec3::Zero());
   };
   const Vec3 acceleration = pull(b) - pull(a);
   const double pressing = -acceleration.dot(n);

@@ -44,7 +44,13 @@ class Balance {
     mass_.resize(count);
     for (const GroupMember& m : start.members) {
       Vec6 weight;
-      weight << m.force, m.torque / m.radius;
+      Wrench acting{m.force, m.torque};
+      if (m.forces) {
+        const Wrench more = m.forces->wrench(start.time, {m.x, m.q, m.v, Vec3::Zero()});
+        acting.force += more.force;
+        acting.torque += more.torque;
+      }
+      weight << acting.force, acting.torque / m.radius;
       weight_.push_back(weight);
     }
   }

@@ -82,7 +82,9 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
   std::vector<bool> rests(count, false);
   for (std::size_t i = 0; i < count; ++i) {
     const Successor& successor = work.successors[i];
-    rests[i] = work.changes(&successor) &&
+    // what a spring pulls that moves at its other end waits for that
+    const ForcesPtr& forces = successor.data.forces;
+    rests[i] = work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
                is_still(work.scene(), work.stillness[i], placed(successor), work.now());
   }
 

@@ -12,7 +12,7 @@ namespace tw {
 void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateData& d,
                          const MultibodyStatePtr& joints) {
   start_.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
-                            body.mass * d.acceleration, Vec3::Zero()});
+                            body.mass * d.acceleration, Vec3::Zero(), d.forces});
   if (body.multibody) add_link(body, d, joints);
   size_ = std::min(size_, body.least_width);
   reach_ += body.radius;

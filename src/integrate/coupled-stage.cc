@@ -94,8 +94,21 @@ void GroupSystem::change_packs(const std::vector<int>& packs, GroupScratch& s) c
   }
 }
 
+// What else acts on a member, by the changes in the scratch.
+void GroupSystem::change_forced(int member, GroupScratch& s) const {
+  const Member& m = member_[index(member)];
+  if (!m.forces) return;
+  const BodyChange& change = s.changes[index(member)];
+  Vec6 pose, twist;
+  pose << vec(change.x), vec(change.th);
+  twist << vec(change.v), vec(change.w);
+  const Vec6 wrench = m.forced.by_pose * pose + m.forced.by_twist * twist;
+  vec(s.wrenches[index(member)].f) += wrench.head<3>();
+  vec(s.wrenches[index(member)].t) += wrench.tail<3>();
+}
+
 void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
-                                double* column) const {
+                                std::span<const int> moved_members, double* column) const {
   // the bodies that these packs may move, in and out of the scratch
   const auto each_slot = [&](auto&& visit) {
     for (const int p : packs)
@@ -105,8 +118,8 @@ void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
   };
   each_slot([&](int slot) { s.wrenches[index(slot)] = BodyWrench{}; });
   change_packs(packs, s);
-  std::vector<bool> done(trees_.size(), false);
-  each_slot([&](int slot) {
+  for (const int member : moved_members) change_forced(member, s);
+  const auto take = [&](int slot) {
     if (slot >= members_) return;
     BodyWrench& wrench = s.wrenches[index(slot)];
     const Member& m = member_[index(slot)];
@@ -114,15 +127,17 @@ void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
     vec(column + m.unknown) -= vec(wrench.f);
     vec(column + m.unknown + 3) -= vec(wrench.t);
     wrench = BodyWrench{};
-  });
+  };
+  each_slot(take);
+  for (const int member : moved_members) take(member);
   thread_local std::vector<double> row;
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const auto& members = trees_[t]->start().members;
-    const bool moved = std::any_of(members.begin(), members.end(), [&](int member) {
+    const bool reached = std::any_of(members.begin(), members.end(), [&](int member) {
       const BodyWrench& w = s.wrenches[index(member)];
       return !vec(w.f).isZero(0) || !vec(w.t).isZero(0);
     });
-    if (!moved) continue;
+    if (!reached) continue;
     row.assign(index(trees_[t]->freedoms()), 0.0);
     trees_[t]->gather(s.wrenches.data(), row.data());
     for (std::size_t k = 0; k < row.size(); ++k) column[index(tree_unknowns_[t]) + k] -= row[k];
@@ -159,7 +174,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
         vec(change.w) = m.V.col(c - 3);
       }
       column[index(m.unknown + c)] = (c < 3 ? m.mass : 1.0) * sigma_;
-      gather_column(packs_of_slot_[index(i)], s, column.data());
+      gather_column(packs_of_slot_[index(i)], s, {&i, 1}, column.data());
       coupled_->set_column(m.unknown + c, column.data());
     }
     change = BodyChange{};
@@ -174,10 +189,8 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
       unit[k] = 1;
       kq = unit;
       tree.eliminate(kq.data());
-      if (!packs_of_tree_[t].empty()) {
-        tree.spread(kq.data(), unit.data(), s.changes.data());
-        gather_column(packs_of_tree_[t], s, column.data());
-      }
+      tree.spread(kq.data(), unit.data(), s.changes.data());
+      gather_column(packs_of_tree_[t], s, tree.start().members, column.data());
       for (std::size_t i = 0; i < n; ++i)
         column[index(tree_unknowns_[t]) + i] += tree.matrix()[n * k + i];
       coupled_->set_column(number, column.data());
@@ -221,6 +234,7 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
                 false, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
+  for (int i = 0; i < members_; ++i) change_forced(i, s);
   double* right = s.right_side.data();
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];

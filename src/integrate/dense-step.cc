@@ -105,21 +105,26 @@ Vec3 DenseStep::vector_rate(int first, double time) const {
   return degree_ / (end_ - start_) * sum;
 }
 
-void DenseStep::control(int first, double from, double to, Control& points) const {
-  const double r0 = fraction(from), r1 = fraction(to);
+void DenseStep::control(int order, int first, double from, double to, Control& points) const {
   points[0] = Vec3::Zero();
   for (int j = 1; j <= degree_; ++j) points[j] = Eigen::Map<const Vec3>(offsets(j) + first);
+  // derivatives of the whole step first: differences of a small part of it would be rounding
+  int degree = degree_;
+  for (; degree > degree_ - order; --degree)
+    for (int j = 0; j < degree; ++j)
+      points[j] = degree / (end_ - start_) * (points[j + 1] - points[j]);
   // the part up to r1, then that of it from r0 on
+  const double r0 = fraction(from), r1 = fraction(to);
   if (r1 < 1)
-    for (int round = 1; round <= degree_; ++round)
-      for (int j = degree_; j >= round; --j) points[j] = (1 - r1) * points[j - 1] + r1 * points[j];
+    for (int round = 1; round <= degree; ++round)
+      for (int j = degree; j >= round; --j) points[j] = (1 - r1) * points[j - 1] + r1 * points[j];
   if (r0 > 0) {
     const double r = r0 / r1;
-    for (int round = 1; round <= degree_; ++round)
-      for (int j = 0; j <= degree_ - round; ++j)
-        points[j] = (1 - r) * points[j] + r * points[j + 1];
+    for (int round = 1; round <= degree; ++round)
+      for (int j = 0; j <= degree - round; ++j) points[j] = (1 - r) * points[j] + r * points[j + 1];
   }
-  for (int j = 0; j <= degree_; ++j) points[j] += Eigen::Map<const Vec3>(numbers_.data() + first);
+  if (order > 0) return;
+  for (int j = 0; j <= degree; ++j) points[j] += Eigen::Map<const Vec3>(numbers_.data() + first);
 }
 
 }  // namespace tw

@@ -36,9 +36,10 @@ class DenseStep {
   // The numbers as polynomials of the step's fraction: the c_0 of all, then the c_1, and so on.
   std::vector<double> powers() const;
 
-  // The control points of three numbers over [from, to], both in the step, from < to: degree() + 1.
+  // The control points, over [from, to] in the step, of three numbers (order 0), of their rates (1)
+  // or second derivatives (2): degree() + 1 - order.
   using Control = Vec3[most_dense_degree + 1];
-  void control(int first, double from, double to, Control& points) const;
+  void control(int order, int first, double from, double to, Control& points) const;
 
  private:
   double fraction(double time) const;

@@ -36,6 +36,7 @@
 
 #include "base/counted.h"
 #include "dynamics/contact-law.h"
+#include "dynamics/forces.h"
 #include "integrate/trajectory.h"
 #include "math/vec.h"
 #include "multibody/multibody.h"
@@ -53,6 +54,7 @@ struct GroupMember {
   Vec3 L = Vec3::Zero();       // about the centre, world
   Vec3 force = Vec3::Zero();   // constant, weight included, N
   Vec3 torque = Vec3::Zero();  // constant, about the centre, N m
+  ForcesPtr forces;            // that hang on time and on what it does; may be null
   int tree = -1;               // the arc's multibody that it is a link of; -1: it moves by itself
   int link = 0;                // which one
 };

@@ -17,6 +17,10 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
       sides_[index(p)] = s.linear[index(p)].n;
   for (int i = 0; i < members_; ++i) {
     Member& m = member_[index(i)];
+    if (m.forces) {
+      m.point = point_of(i, y, s.bodies[index(i)]);
+      m.forced = m.forces->derivative(time, m.point);
+    }
     if (m.is_link) continue;
     const Mat3 R =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.bodies[index(i)].R);
@@ -53,6 +57,15 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
     scatter_change(pack, linear, change, s.wrenches.data());
     store(transposed_times(linear.Ra, -(linear.inverse_ct * change.friction)),
           time_slope + 12 * (members_ + p));
+  }
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    if (!m.forces || !(m.forces->longest_unlooked() < never)) continue;
+    Wrench f[3];
+    for (int j = 0; j < 3; ++j) f[j] = m.forces->wrench(time + j * d, m.point);
+    BodyWrench& wrench = s.wrenches[index(i)];
+    vec(wrench.f) += (4 * (f[1].force - f[0].force) - (f[2].force - f[0].force)) / (2 * d);
+    vec(wrench.t) += (4 * (f[1].torque - f[0].torque) - (f[2].torque - f[0].torque)) / (2 * d);
   }
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     double* row = time_slope + tree_rows_[t] + trees_[t]->freedoms();
@@ -136,6 +149,12 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     set_body_stage(m, sigma);
     double* block = matrix_.at(matrix_.offset(i, i));
     for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
+    if (!m.forces) continue;
+    // d(theta) = P kL, dw = V kL
+    Eigen::Map<Mat6> own(block);
+    own.leftCols<3>() -= m.forced.by_pose.leftCols<3>() / sigma + m.forced.by_twist.leftCols<3>();
+    own.rightCols<3>() -=
+        m.forced.by_pose.rightCols<3>() * m.P + m.forced.by_twist.rightCols<3>() * m.V;
   }
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
@@ -187,6 +206,13 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
     const double* r = stage + 12 * i;
     vec(right + 6 * i) = member_[index(i)].mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
     vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
+    const Member& m = member_[index(i)];
+    if (!m.forces) continue;
+    const BodyChange& change = s.changes[index(i)];
+    Vec6 pose, twist;
+    pose << vec(change.x), vec(change.th);
+    twist << vec(change.v), vec(change.w);
+    Eigen::Map<Vec6>(right + 6 * i) += m.forced.by_pose * pose + m.forced.by_twist * twist;
   }
   if (!matrix_.solve(right)) return false;
 

@@ -37,6 +37,8 @@ GroupSystem::GroupSystem(const GroupStart& start)
     member.inverse_moments = m.moments.cwiseInverse();
     member.force = m.force;
     member.torque = m.torque;
+    member.forces = m.forces;
+    forces_change_ = forces_change_ || (m.forces && m.forces->longest_unlooked() < never);
     member.q0 = m.q;
     member.is_link = m.tree >= 0;
     member_.push_back(member);
@@ -78,6 +80,15 @@ void GroupSystem::set_member(int member, const Vec3& x, const Quat& q, const Vec
   vec(out.v) = v;
   vec(out.w) = R * member_[index(member)].inverse_moments.cwiseProduct(R.transpose() * L);
   store_rotation(R, out.R);
+}
+
+PoseTwist GroupSystem::point_of(int member, const double* y, const BodyKinematics& body) const {
+  const double* from = y + 12 * member;
+  if (member_[index(member)].is_link) {
+    const Mat3 R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(body.R);
+    return {vec(body.x), Quat(R), vec(body.v), vec(body.w)};
+  }
+  return {vec(from), short_rotation(vec(from + 3)) * attitude(member), vec(from + 6), vec(body.w)};
 }
 
 void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) const {
@@ -153,8 +164,13 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
   // forces
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
+    BodyWrench& wrench = s.wrenches[index(i)];
+    if (m.forces) {
+      const Wrench forced = m.forces->wrench(time, point_of(i, y, s.bodies[index(i)]));
+      vec(wrench.f) += forced.force;
+      vec(wrench.t) += forced.torque;
+    }
     if (m.is_link) continue;
-    const BodyWrench& wrench = s.wrenches[index(i)];
     vec(slope + 12 * i + 6) = m.inverse_mass * (m.force + vec(wrench.f));
     vec(slope + 12 * i + 9) = m.torque + vec(wrench.t);
   }

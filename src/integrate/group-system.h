@@ -8,12 +8,14 @@
 //   dw = J dL + W dth,  W = J [L]x - [w]x,     dtheta' = dw + [w]x dth/2.
 // A stage (s 1 - Jacobian) k = r is reduced to 6 unknowns a member, (kv, kL):
 //   kx = (rx + kv)/s,  kth = A (rth + J kL),  A = (s - W - [w]x/2)^-1,
-//   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h.
+//   m s kv - dF = m rv,  s kL - dT = rL,  dF, dT by contact-linear.h and dynamics/forces.h.
 // With multibodies the unknowns are those of the members that move by themselves and the joint
 // velocities; the matrix is what `solve` does to one unknown at a time.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
+
+#include <span>
 
 #include "integrate/body-matrix.h"
 #include "integrate/contact-linear.h"
@@ -49,7 +51,7 @@ class GroupSystem {
   const std::vector<std::unique_ptr<TreeInGroup>>& trees() const { return trees_; }
   // Where the numbers of a multibody begin.
   std::size_t tree_row(std::size_t tree) const { return tree_rows_[tree]; }
-  bool moved_from_outside() const { return !moving_slots_.empty(); }
+  bool moved_from_outside() const { return !moving_slots_.empty() || forces_change_; }
   std::uint64_t factorizations() const {
     return coupled_ ? coupled_->factorizations() : matrix_.factorizations();
   }
@@ -65,7 +67,8 @@ class GroupSystem {
   // The same at theta = 0, with the derivative; sets the sides.
   void linearise(double time, const double* y, GroupScratch& scratch, double* slope);
   // Partial derivative by time, by the motion of outside bodies, whose velocities are differenced
-  // over a part of the `step`.  After linearise, before factor.
+  // over a part of the `step`, as are forces that change by themselves.  After linearise, before
+  // factor.
   void set_time_slope(double time, double step, GroupScratch& scratch, double* time_slope) const;
   // Largest over members of the sum of |dN/dd| of its contacts over its mass, 1/s^2, as linearised
   // last.
@@ -93,12 +96,17 @@ class GroupSystem {
     Vec3 w = Vec3::Zero();
     bool is_link = false;
     int unknown = 0;  // its first one, where there are multibodies
+    // what else acts on it, its derivative at the step's start, and what it did there
+    ForcesPtr forces;
+    WrenchDerivative forced;
+    PoseTwist point;
   };
 
   // of one lane, or (-1) of the sum of the lanes
   void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
+  PoseTwist point_of(int member, const double* y, const BodyKinematics& body) const;
   void place_outside(int slot, double time, BodyKinematics& body) const;
   // Outside bodies that move; the others are where set_outside put them.
   void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
@@ -112,13 +120,16 @@ class GroupSystem {
   // The wrenches that the changes of these packs' slots make, into the scratch.
   void change_packs(const std::vector<int>& packs, GroupScratch& scratch) const;
   // One column: the changes of its bodies are in the scratch; minus their wrenches into `column`.
-  void gather_column(const std::vector<int>& packs, GroupScratch& scratch, double* column) const;
+  void gather_column(const std::vector<int>& packs, GroupScratch& scratch,
+                     std::span<const int> moved_members, double* column) const;
+  void change_forced(int member, GroupScratch& scratch) const;
 
   int members_;
   std::size_t size_;
   double end_;
   std::vector<TrajectoryPtr> outside_;
   std::vector<BodyKinematics> outside_at_start_;
+  bool forces_change_ = false;     // of some member, with time by themselves
   std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;
   ContactPacks packs_;

@@ -49,6 +49,7 @@ Effort MemberTrajectory::effort() const {
   effort.rejected = counts.rejected;
   effort.factorizations = counts.factorizations;
   effort.evaluations = counts.evaluations;
+  effort.implicit = true;
   return effort;
 }
 

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 
 #include "base/never.h"
@@ -53,6 +54,7 @@ struct Effort {
   double length = 0;  // s, of the stretch that was computed
   // of the integrator: those of a whole group, told by its first member
   std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
+  bool implicit = false;
 };
 
 class Trajectory {
@@ -76,17 +78,19 @@ class Trajectory {
   virtual const Parabola* ballistic() const { return nullptr; }
   // Whether it is computed step by step.
   virtual bool stepped() const { return false; }
+  // What would move it if nothing held it: none of what is carried, or moves as it was given.
+  virtual Vec3 free_acceleration(double /*time*/) const {
+    const Parabola* path = ballistic();
+    return path ? path->acceleration : Vec3(Vec3::Zero());
+  }
+  // Why it ends, where that is an error; null: it doesn't, or nobody looked so far yet.
+  virtual std::exception_ptr failure() const { return nullptr; }
   virtual Effort effort() const { return {}; }
 
   Frame frame(double time) const { return Frame(pose(time)); }
   Vec3 center(double time) const {
     const Parabola* path = ballistic();
     return path ? path->position(time) : pose(time).p;
-  }
-  // What would move it if nothing held it: none of what is carried, or moves as it was given.
-  Vec3 free_acceleration() const {
-    const Parabola* path = ballistic();
-    return path ? path->acceleration : Vec3(Vec3::Zero());
   }
   // The pose and its own rates: what `bounds` are about.
   PoseTwist path_at(double time) const { return stepped() ? joined(time) : at(time); }

@@ -15,7 +15,7 @@ namespace {
 double count_steps(Counters& counters, const Trajectory& trajectory) {
   const Effort effort = trajectory.effort();
   counters.integrations += effort.steps;
-  counters.implicit_steps += effort.steps;
+  if (effort.implicit) counters.implicit_steps += effort.steps;
   counters.rejected_steps += effort.rejected;
   counters.factorizations += effort.factorizations;
   counters.force_evaluations += effort.evaluations;

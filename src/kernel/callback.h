@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/interruption.h"
 #include "dynamics/body.h"
+#include "dynamics/forces.h"
 #include "multibody/multibody.h"
 #include "timeline/collision.h"
 #include "timeline/slots.h"
@@ -30,6 +31,7 @@ class StateView {
   virtual const BodyState& state() const = 0;
   virtual double kinetic_energy() const = 0;
   virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
+  virtual Vec3 applied_torque() const = 0;        // N m, world
   virtual const SlotsPtr& slots() const = 0;
   // Of a link: its multibody and how the joints stand; null of other bodies.
   virtual const Multibody* multibody() const { return nullptr; }
@@ -40,6 +42,9 @@ class StateView {
   virtual void set_velocity(const Vec3& v) = 0;
   virtual void set_angular_velocity(const Vec3& w) = 0;
   virtual void set_applied_force(const Vec3& force) = 0;
+  virtual void set_applied_torque(const Vec3& torque) = 0;
+  // Acts from here on, beside those that do.
+  virtual void add_force(ForceLawPtr law) = 0;
   virtual void set_slots(SlotsPtr slots) = 0;
   // Of a link: to be changed; a new arc starts.
   virtual MultibodyState& change_joints() { throw UserError("this view has no joints to change"); }

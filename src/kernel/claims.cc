@@ -77,8 +77,7 @@ void Claims::schedule_group_check(ProcessId id) {
     sim_.queue.withdraw(waiting.group_check);
     return;
   }
-  Key key = group_check_key(*tail->group, end);
-  key.id = number(id);
+  const Key key = end_key(*tail, end);
   sim_.schedule(waiting.group_check, key, EventKind::group_check, number(id), waiting.head_start);
 }
 
@@ -97,7 +96,7 @@ double Claims::window_end(const Body& body) const {
   const double least = std::nextafter(start, never);
   const Trajectory& trajectory = tail.trajectory();
   const Parabola* path = tail.ballistic();
-  if (!path && !body.kinematic()) return std::max(std::min(trajectory.end(), limit), least);
+  if (!path && tail.group) return std::max(std::min(trajectory.end(), limit), least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - cost::patience));
@@ -131,7 +130,8 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
     if (to < from) continue;
     // checks find the contacts of members with what is so near
     Aabb swept = swept_bounds(body, state->trajectory(), from, to);
-    if (state->trajectory().stepped()) swept.grow(answer::contact_margin * body.least_width);
+    if (state->group && state->trajectory().stepped())
+      swept.grow(answer::contact_margin * body.least_width);
     box.add(swept);
   }
   box.grow(cost::box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
@@ -146,11 +146,19 @@ void Claims::claim_window(const Body& body) {
   if (tail.error || process.claim.time >= tail.arc_end()) {
     // a stopped process moves no further, a member of a group not past the next check
     sim_.queue.withdraw(process.advance);
+    // others may have found out already that it cannot be followed
+    if (tail.driven() && !tail.error) schedule_group_check(body.process);
     return;
   }
 
   const Key before = process.claim;
-  const double end = body.fixed() ? never : window_end(body);
+  double end = body.fixed() ? never : window_end(body);
+  if (tail.driven() && body.dynamic()) {
+    // where it fails it stops: found out before anybody relies on this claim
+    static_cast<void>(tail.trajectory().pose(end));
+    if (tail.arc_end() < never) schedule_group_check(body.process);
+    end = std::min(end, tail.arc_end());
+  }
   process.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
   if (body.shape_P) {
     if (!body.unbounded)

@@ -54,6 +54,25 @@ struct MultibodyDef {
   Place place;
 };
 
+// Two points of bodies, in their body frames, and what holds between them.
+struct SpringDef {
+  BodyId a = no_body, b = no_body;  // one of them dynamic
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();
+  double stiffness = 0;        // N/m
+  double damping = 0;          // N s/m
+  std::optional<double> rest;  // m; absent: as long as it is now
+};
+
+// Of a procedure of the user: force and torque, N and N m, world frame, on the body as it is seen;
+// pure.  Errors: UserError.
+class ForceProcedure {
+ public:
+  virtual ~ForceProcedure() = default;
+  virtual Wrench force(double time, const BodyState& body) = 0;
+  // Tells it from others, the same in every run.
+  virtual std::uint64_t number() const = 0;
+};
+
 struct CallbackDef {
   std::vector<BodyId> targets;
   std::shared_ptr<Callback> callback;

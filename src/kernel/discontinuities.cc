@@ -78,8 +78,8 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
       successor.data.arc_key = key;
       successor.role = Role::new_arc;
     }
-    const bool flies = successor.starts_arc() && successor.body->dynamic() && !successor.data.group;
-    if (flies) let_fly(*successor.body, successor.data);
+    const bool alone = successor.starts_arc() && successor.body->dynamic() && !successor.data.group;
+    if (alone) let_move(sim_.scene, *successor.body, successor.data);
     State* state = sim_.graph.append(successor.process(), key);
     static_cast<StateData&>(*state) = std::move(successor.data);
     ring.push_back(state);

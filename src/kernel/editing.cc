@@ -58,7 +58,7 @@ void Editing::set_gravity(const Vec3& gravity) {
     if (body->dynamic() && newborn(body->id())) {
       State* tail = sim_.graph.tail(body->process);
       tail->acceleration = gravity + tail->force / body->mass;
-      let_fly(*body, *tail);
+      let_move(sim_.scene, *body, *tail);
     }
   edit_together([&](BodyId id) { return !newborn(id); },
                 [&](Successor& successor) {
@@ -99,10 +99,20 @@ void Editing::renew_groups() {
       [](Successor&) {});
 }
 
+namespace {
+
+bool hangs_on(const ForcesPtr& forces, BodyId id) {
+  return forces && std::any_of(forces->laws().begin(), forces->laws().end(),
+                               [&](const ForceLawPtr& law) { return law->hangs_on(id); });
+}
+
+}  // namespace
+
 void Editing::let_go_of(BodyId id) {
   edit_together(
       [&](BodyId other) {
         const State& state = sim_.before(sim_.present.key()).state_of(other);
+        if (hangs_on(state.forces, id)) return true;
         if (!state.group || state.error) return false;
         const auto in_contact = state.group->pairs_of(state.member);
         return std::any_of(in_contact.begin(), in_contact.end(), [&](std::uint32_t number) {
@@ -110,7 +120,10 @@ void Editing::let_go_of(BodyId id) {
           return first_of(pair) == id || second_of(pair) == id;
         });
       },
-      [](Successor&) {});
+      [&](Successor& successor) {
+        ForcesPtr& forces = successor.data.forces;
+        if (hangs_on(forces, id)) forces = without_those_on(forces, id);
+      });
 }
 
 }  // namespace tw

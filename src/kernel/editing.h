@@ -27,7 +27,7 @@ class Editing {
   void set_gravity(const Vec3& gravity);
   // All groups take what was set since, and wake.
   void renew_groups();
-  // Whoever touches the body gets an arc without it.
+  // Whoever touches the body, or hangs on it by a spring, gets an arc without it.
   void let_go_of(BodyId id);
 
  private:

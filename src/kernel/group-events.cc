@@ -28,8 +28,7 @@ bool GroupEvents::own_check_before(ProcessId id, const Key& key) const {
   if (!sim_.body_of(id).dynamic()) return false;
   const State& tail = *sim_.graph.tail(id);
   if (tail.error || tail.arc_end() != key.time) return false;
-  Key check = group_check_key(*tail.group, key.time);
-  check.id = number(id);
+  const Key check = end_key(tail, key.time);
   return tail.key < check && check < key;
 }
 
@@ -100,8 +99,19 @@ void GroupEvents::regroup_edited(const Key& key, std::vector<Successor>& success
   TW_ASSERT(progress == Progress::done, "an edit between runs waits for nobody");
 }
 
+// An isolated body that cannot be followed any further: it stops with an error.
+Progress GroupEvents::stop_driven(ProcessId id) {
+  const State& tail = *sim_.graph.tail(id);
+  const Key key = end_key(tail, tail.arc_end());
+  std::vector<Successor> successors{make_successor(sim_.before(key), id, true)};
+  successors[0].data.error = tail.trajectory().failure();
+  discontinuities_.enter(key, successors);
+  return Progress::done;
+}
+
 Progress GroupEvents::check(ProcessId id) {
   const State& tail = *sim_.graph.tail(id);
+  if (tail.driven()) return stop_driven(id);
   TW_ASSERT(tail.group && !tail.group->at_rest, "group check of nobody");
   const std::shared_ptr<Group> group = tail.group;
   if (!group->end_tested) {

@@ -43,6 +43,7 @@ class GroupEvents {
   Progress check(ProcessId id);
 
  private:
+  Progress stop_driven(ProcessId id);
   bool own_check_before(ProcessId id, const Key& key) const;
   bool claims_reach(ProcessId id, const Key& key) const;
   bool known(ProcessId id, const Key& key) const;

@@ -156,9 +156,7 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
   }
 
   // what a group carries does not fall away from what comes to lie on it
-  const auto pull = [](const Successor& d) {
-    return d.body->dynamic() ? d.data.acceleration : Vec3(Vec3::Zero());
-  };
+  const auto pull = [&](const Successor& d) { return free_acceleration(d, key.time); };
   const bool pressed = a.data.group || b.data.group || (pull(b) - pull(a)).dot(normal) < 0;
 
   // what comes back to the same partner is pressed by its own motion, as a disc is that rolls

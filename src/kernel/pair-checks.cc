@@ -64,7 +64,9 @@ double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
   return pair.touch;
 }
 
-bool moves_in_group(const State& state) { return state.trajectory().stepped() && !state.error; }
+bool moves_in_group(const State& state) {
+  return state.group && state.trajectory().stepped() && !state.error;
+}
 
 }  // namespace
 
@@ -173,7 +175,7 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
   const Separation s = separation_at(piece, start);
   if (s.distance > 0) return false;
   const double closing = closing_at(piece, start, s);
-  if (closing < 0 || (closing == 0 && !pressed_at(piece, s.normal))) return false;
+  if (closing < 0 || (closing == 0 && !pressed_at(piece, start, s.normal))) return false;
   pair.impact = pieces_.impact_key(piece, start);
   return true;
 }

@@ -36,6 +36,8 @@ double total_energy(const Simulation& simulation, double when) {
     if (!body->dynamic()) continue;
     const PoseTwist p = point_at(simulation, body->id(), when);
     energy += kinetic_energy(*body, p) - body->mass * simulation.present.settings.gravity.dot(p.x);
+    const State& state = *state_at(simulation, body->id(), when);
+    if (state.forces) energy += state.forces->energy(when, p);
   }
   // what springs started with was given with the poses: it came from nowhere and counts for nothing
   energy -= simulation.present.counters.placed_energy;

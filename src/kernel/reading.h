@@ -21,7 +21,7 @@ const State* state_at(const Simulation& simulation, BodyId id, double when);
 // The state of each body that holds at the instant.
 StateOf states_at(const Simulation& simulation, double when);
 PoseTwist point_at(const Simulation& simulation, BodyId id, double when);
-// Kinetic, of gravity and of contact springs, J.
+// Kinetic, of gravity, of contact springs and of springs, J.
 double total_energy(const Simulation& simulation, double when);
 // Linear, of dynamic bodies, kg m/s.
 Vec3 total_momentum(const Simulation& simulation, double when);

@@ -84,6 +84,34 @@ void SuccessorView::set_applied_force(const Vec3& force) {
   successor_.data.acceleration = gravity_ + force / successor_.body->mass;
 }
 
+Vec3 SuccessorView::applied_torque() const {
+  const ForcesPtr& forces = successor_.data.forces;
+  return forces ? forces->torque() : Vec3(Vec3::Zero());
+}
+
+void SuccessorView::set_applied_torque(const Vec3& torque) {
+  require_dynamic("applied-torque");
+  const Body& body = *successor_.body;
+  TW_REQUIRE(is_finite(torque), "applied-torque of " + body.info.name + " is #(" +
+                                    show(torque.x()) + " " + show(torque.y()) + " " +
+                                    show(torque.z()) + "); expected three finite numbers");
+  const double most = torque.norm() / body.moments.minCoeff();
+  TW_REQUIRE(most <= greatest_angular_acceleration,
+             "applied-torque of " + body.info.name + " is " + show(torque.norm()) +
+                 " N m on a moment of inertia of " + show(body.moments.minCoeff()) +
+                 " kg m^2; expected an angular acceleration of at most " +
+                 show(greatest_angular_acceleration) + " rad/s^2");
+  if (torque == applied_torque()) return;
+  start_arc();
+  successor_.data.forces = with_torque(successor_.data.forces, torque);
+}
+
+void SuccessorView::add_force(ForceLawPtr law) {
+  require_dynamic("a force on it, that");
+  start_arc();
+  successor_.data.forces = with_law(successor_.data.forces, std::move(law));
+}
+
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }
 
 void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {

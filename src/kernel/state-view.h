@@ -29,6 +29,7 @@ class SuccessorView : public StateView {
   const BodyState& state() const override { return state_; }
   double kinetic_energy() const override;
   const Vec3& applied_force() const override { return successor_.data.force; }
+  Vec3 applied_torque() const override;
   const SlotsPtr& slots() const override { return successor_.data.slots; }
   const Multibody* multibody() const override { return successor_.body->multibody; }
   const MultibodyState* joints() const override { return successor_.joints.get(); }
@@ -36,6 +37,8 @@ class SuccessorView : public StateView {
   void set_velocity(const Vec3& v) override;
   void set_angular_velocity(const Vec3& w) override;
   void set_applied_force(const Vec3& force) override;
+  void set_applied_torque(const Vec3& torque) override;
+  void add_force(ForceLawPtr law) override;
   void set_slots(SlotsPtr slots) override;
   void set_pose(const Vec3& position, const Quat& orientation) override;
   double draw_random() override;

@@ -73,7 +73,8 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
   // arcs that still stand count up to the present
   double length = counters.integration_length, kinematic_work = counters.kinematic_work;
   std::uint64_t kinematic_arcs = 0;
-  std::uint64_t steps = 0, factorizations = 0;  // of groups that still stand
+  // of arcs that still stand
+  std::uint64_t steps = 0, implicit = 0, factorizations = 0;
   for (const auto& body : scene.bodies) {
     if (body->info.kind == BodyKind::kinematic) {
       length += present.time;
@@ -90,6 +91,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
         const Effort effort = s->trajectory().effort();
         length += effort.length;
         steps += effort.steps;
+        if (effort.implicit) implicit += effort.steps;
         factorizations += effort.factorizations;
         continue;
       }
@@ -146,7 +148,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"largest_group_contacts", whole(counters.largest_group_contacts)},
       {"early_ends", whole(counters.early_ends)},
       {"manifolds", whole(counters.manifolds)},
-      {"implicit_steps", whole(counters.implicit_steps + steps)},
+      {"implicit_steps", whole(counters.implicit_steps + implicit)},
       {"rejected_steps", whole(counters.rejected_steps)},
       {"factorizations", whole(counters.factorizations + factorizations)},
       {"dearest_pair_checks", whole(counters.dearest_pair_checks)},

@@ -16,6 +16,7 @@ namespace tw {
 namespace {
 
 bool flies_as_it_began(const State& state) {
+  if (state.forces) return state.driven();
   const Parabola* path = state.trajectory().ballistic();
   return path && path->start == state.arc_time && path->x == state.x && path->v == state.v &&
          path->acceleration == state.acceleration;
@@ -55,6 +56,7 @@ std::string validate_event_queue(const Simulation& simulation, const ActivePairs
         const State* tail = simulation.graph.tail(simulation.process_of(event.subject));
         if (simulation.process(simulation.body(event.subject)).group_check != handle)
           return "group check of nobody";
+        if (tail->driven() && tail->trajectory().failure()) break;
         if (!tail->group || tail->group->at_rest) return "group check of a dead group";
         break;
       }

@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "groups/joints.h"
 #include "kernel/kernel.h"
+#include "kernel/laws.h"
 #include "kernel/reading.h"
 #include "timeline/swept-bounds.h"
 
@@ -127,6 +128,14 @@ ContactParameters World::contact_parameters(BodyId a, BodyId b) const {
   return kernel_->simulation.scene.contacts.between(a, b);
 }
 
+void World::add_drag(BodyId id, double linear, double quadratic) {
+  tw::add_drag(*kernel_, id, linear, quadratic);
+}
+void World::add_spring(const SpringDef& def) { tw::add_spring(*kernel_, def); }
+void World::add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure) {
+  tw::add_force(*kernel_, id, std::move(procedure));
+}
+
 std::uint64_t World::removals() const { return kernel_->simulation.present.removals; }
 void World::remove_body(BodyId id) { kernel_->bodies.remove(id); }
 
@@ -169,6 +178,11 @@ double World::kinetic_energy(BodyId id) const {
 
 Vec3 World::applied_force(BodyId id) const {
   return state_at(kernel_->simulation, id, kernel_->simulation.present.time)->force;
+}
+Vec3 World::applied_torque(BodyId id) const {
+  const ForcesPtr& forces =
+      state_at(kernel_->simulation, id, kernel_->simulation.present.time)->forces;
+  return forces ? forces->torque() : Vec3(Vec3::Zero());
 }
 SlotsPtr World::slots(BodyId id) const {
   return state_at(kernel_->simulation, id, kernel_->simulation.present.time)->slots;

@@ -83,6 +83,13 @@ class World {
   void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   ContactParameters contact_parameters(BodyId a, BodyId b) const;
 
+  // ---- forces, from time() on, beside those that act already ----
+  // -(linear + quadratic |v|) v at the centre of mass, N s/m and N s^2/m^2.
+  void add_drag(BodyId id, double linear, double quadratic);
+  // Errors: between two dynamic bodies, which is not there yet.
+  void add_spring(const SpringDef& def);
+  void add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure);
+
   // ---- callbacks and observers ----
   // Number of the callback, counted from 0 in order of registration.
   std::uint64_t add_callback(const CallbackDef& def);
@@ -112,6 +119,7 @@ class World {
   double kinetic_energy(BodyId id) const;
   MultibodyState joints(std::uint32_t multibody) const;  // at time()
   Vec3 applied_force(BodyId id) const;
+  Vec3 applied_torque(BodyId id) const;
   SlotsPtr slots(BodyId id) const;
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.
   void edit(BodyId id, const std::function<void(StateView&)>& change);

@@ -1,4 +1,5 @@
-// A view of one body in a committed frame: it looks, and refuses to change.
+// A view that looks, and refuses to change: of one body in a committed frame, or of one for which a
+// procedure tells a force.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,30 +9,36 @@ namespace tw {
 
 class FrameView : public StateView {
  public:
-  explicit FrameView(const BodyPose& pose) : pose_(&pose) {}
+  // `holder` and `caller`: "a frame", "an observer".
+  explicit FrameView(const BodyPose& pose, const char* holder = "a frame",
+                     const char* caller = "an observer")
+      : pose_(&pose), holder_(holder), caller_(caller) {}
   BodyId body() const override { return pose_->body; }
   const BodyState& state() const override { return pose_->state; }
   double kinetic_energy() const override { refuse("its energy is not"); }
   const Vec3& applied_force() const override { refuse("its applied force is not"); }
+  Vec3 applied_torque() const override { refuse("its applied torque is not"); }
   const SlotsPtr& slots() const override { refuse("its slots are not"); }
   void set_velocity(const Vec3&) override { refuse_change(); }
   void set_angular_velocity(const Vec3&) override { refuse_change(); }
   void set_applied_force(const Vec3&) override { refuse_change(); }
+  void set_applied_torque(const Vec3&) override { refuse_change(); }
+  void add_force(ForceLawPtr) override { refuse_change(); }
   void set_slots(SlotsPtr) override { refuse_change(); }
   void set_pose(const Vec3&, const Quat&) override { refuse_change(); }
   double draw_random() override { refuse_change(); }
 
  private:
-  [[noreturn]] static void refuse(const char* what) {
-    throw UserError(std::string("a frame holds poses and velocities only: ") + what +
+  [[noreturn]] void refuse(const char* what) const {
+    throw UserError(std::string(holder_) + " holds poses and velocities only: " + what +
                     " in it; expected position, orientation, velocity or angular-velocity");
   }
-  [[noreturn]] static void refuse_change() {
-    throw UserError(
-        "a body was changed in an observer; expected observers to look only, and callbacks to "
-        "change");
+  [[noreturn]] void refuse_change() const {
+    throw UserError(std::string("a body was changed in ") + caller_ +
+                    "; expected it to look only, and callbacks to change");
   }
   const BodyPose* pose_;
+  const char *holder_, *caller_;
 };
 
 }  // namespace tw

@@ -19,6 +19,7 @@ void define_contact();
 void define_callbacks();
 void define_collisions();
 void define_contacts();
+void define_forces();
 void define_worlds();
 void define_motions();
 void define_recorder_type();
@@ -41,6 +42,7 @@ extern "C" void tw_init_guile() {
   tw::define_callbacks();
   tw::define_collisions();
   tw::define_contacts();
+  tw::define_forces();
   tw::define_worlds();
   tw::define_motions();
   tw::define_recorder_type();

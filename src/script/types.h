@@ -31,6 +31,7 @@ struct WorldBox : Live<LiveKind::world> {
   std::int64_t guile_calls = 0;
   std::int64_t frames = 0;  // that recorders took; closed recorders count
   double callback_cpu_seconds = 0, draw_cpu_seconds = 0;
+  std::uint64_t forces = 0;  // by procedures, so far
 };
 
 // ---- worlds ----

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "dynamics/forces.h"
 #include "dynamics/ids.h"
 #include "math/vec.h"
 #include "timeline/collision.h"
@@ -46,6 +47,10 @@ void each_word(const Key& key, Put&& put) {
 template <class Put>
 void each_word(const SlotsPtr& slots, Put&& put) {
   if (slots) put(slots->hash());
+}
+template <class Put>
+void each_word(const ForcesPtr& forces, Put&& put) {
+  if (forces) put(forces->hash());
 }
 template <class Put>
 void each_word(const std::exception_ptr& error, Put&& put) {

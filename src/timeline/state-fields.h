@@ -31,6 +31,7 @@ void for_each_field(Data& data, Visit&& visit) requires std::is_base_of_v<StateD
   visit("angular momentum", motion, data.L);
   visit("force", motion, data.force);
   visit("acceleration", motion, data.acceleration);
+  visit("forces", motion, data.forces);
   visit("start of the arc", motion, data.arc_time);
   visit("key of the arc", motion, data.arc_key);
   visit("slots", history, data.slots);

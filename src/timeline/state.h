@@ -19,6 +19,7 @@
 #include <exception>
 #include <memory>
 
+#include "dynamics/forces.h"
 #include "dynamics/ids.h"
 #include "integrate/flight.h"
 #include "math/vec.h"
@@ -54,6 +55,7 @@ struct StateData {
   std::uint64_t random = 0;
   ImpactRun impacts;
   SlotsPtr slots;
+  ForcesPtr forces;  // that act beside weight and applied force; null: none
 
   // what this discontinuity was
   bool changed = true;                   // false: a record that changed nothing
@@ -90,6 +92,8 @@ struct StateData {
   // little else.
   double arc_end() const { return follows ? follows->end() : never; }
   const Parabola* ballistic() const { return follows ? follows->ballistic() : &flight.path(); }
+  // Of a dynamic body: it is isolated and does not fly; what acts on it is integrated.
+  bool driven() const { return follows && !group; }
 };
 
 struct State : StateData {

@@ -4,6 +4,7 @@
 
 #include "dynamics/impulse-solver.h"
 #include "dynamics/placed-body.h"
+#include "dynamics/scene.h"
 #include "timeline/state.h"
 
 namespace tw {
@@ -38,7 +39,12 @@ void start_new_arc(Successor& successor, const Key& key);
 // Its motion is now what impulses made of it.
 void take_velocities(Successor& successor, const ImpulseSlot& after);
 
-// Gives an isolated dynamic body its flight, from how its arc begins: when the state is published.
+// What would move it if nothing touched it, at the discontinuity's time.
+Vec3 free_acceleration(const Successor& successor, double now);
+
+// Gives an isolated dynamic body its motion, from how its arc begins: when the state is published.
+void let_move(const Scene& scene, const Body& body, StateData& data);
+// The same for one on which nothing acts but weight and a constant force.
 void let_fly(const Body& body, StateData& data);
 
 }  // namespace tw

@@ -166,5 +166,19 @@ TEST(Edits, gravity_that_is_set_before_the_first_run_holds_for_bodies_that_are_t
   EXPECT_LT((world.state(ball).velocity - Vec3(1, 0, -2)).norm(), 1e-14);
 }
 
+// The test mode that takes everything back once would not find an edit again.
+TEST(Edits, outlast_undo_redo) {
+  World world;
+  world.set_undo_redo(true);
+  world.set_gravity(Vec3::Zero());
+  const BodyId ball = add_ball(world, 0.1, Vec3::Zero(), Vec3::Zero());
+  world.edit(ball, [](StateView& view) { view.set_velocity({1, 0, 0}); });
+  world.advance(1);
+  EXPECT_EQ(world.state(ball).position, Vec3(1, 0, 0));
+  world.edit(ball, [](StateView& view) { view.set_velocity({0, 2, 0}); });
+  world.advance(2);
+  EXPECT_EQ(world.state(ball).position, Vec3(1, 2, 0));
+}
+
 }  // namespace
 }  // namespace tw::test

@@ -52,7 +52,10 @@
     (run-for! 1)
     (test-assert "a constant force against gravity keeps the velocity"
       (close? #(0 0 -9.81) (velocity a) 1e-12))
-    (test-message "no torque yet" "applied-torque is not there yet" (set! (applied-torque a) #(0 0 1)))
+    (set! (applied-torque a) #(0 0 1))
+    (test-equal "torque is set" #(0.0 0.0 1.0) (applied-torque a))
+    (test-message "torque not finite" "applied-torque" (set! (applied-torque a) #(0 0 +nan.0)))
+    (set! (applied-torque a) #(0 0 0))
     (test-message "a fixed body has no velocity to set" "ground" (set! (velocity g) #(1 0 0)))
     (test-message "a velocity that is no vector" "velocity is 5; expected a vector"
       (set! (velocity a) 5))

@@ -65,10 +65,10 @@ TEST(Pieces, what_is_carried_is_followed_on_the_grid_and_pressed_by_what_falls) 
   Flyer a(0, make_sphere(0.5), {0, 0, 0}, {0, 0, 0});
   const Flyer b(1, make_sphere(0.5), {0, 0, 1.5}, {0, 0, 0});
   EXPECT_TRUE(predicted_exactly(between(a, b)));
-  EXPECT_FALSE(pressed_at(between(a, b), Vec3::UnitZ())) << "both fall alike";
+  EXPECT_FALSE(pressed_at(between(a, b), 0, Vec3::UnitZ())) << "both fall alike";
   a.carried();
   EXPECT_FALSE(predicted_exactly(between(a, b)));
-  EXPECT_TRUE(pressed_at(between(a, b), Vec3::UnitZ()));
+  EXPECT_TRUE(pressed_at(between(a, b), 0, Vec3::UnitZ()));
 }
 
 // Never after the first overlap, and on the way it comes near to it.

@@ -183,24 +183,31 @@ TEST(Solution, ControlPointsBoundTheirPart) {
   solution.extend(1);
   const DenseStep& step = solution.at(1);
   const double length = step.end() - step.start();
-  for (const auto& [r0, r1] : {std::pair{0.0, 1.0}, {0.2, 0.3}, {0.6, 1.0}, {0.0, 0.1}}) {
+  for (const auto& [r0, r1] :
+       {std::pair{0.0, 1.0}, {0.2, 0.3}, {0.6, 1.0}, {0.0, 0.1}, {0.3, 0.3 + 1e-9}}) {
     const double from = step.start() + r0 * length, to = step.start() + r1 * length;
-    DenseStep::Control points;
-    step.control(0, from, to, points);
-    Vec3 lo = points[0], hi = points[0];
-    for (int j = 1; j <= step.degree(); ++j) {
-      lo = lo.cwiseMin(points[j]);
-      hi = hi.cwiseMax(points[j]);
+    for (int order = 0; order < 2; ++order) {
+      DenseStep::Control points;
+      step.control(order, 0, from, to, points);
+      const int last = step.degree() - order;
+      Vec3 lo = points[0], hi = points[0];
+      for (int j = 1; j <= last; ++j) {
+        lo = lo.cwiseMin(points[j]);
+        hi = hi.cwiseMax(points[j]);
+      }
+      const auto exact = [&](double t) {
+        return order == 0 ? step.vector(0, t) : step.vector_rate(0, t);
+      };
+      EXPECT_LT((points[0] - exact(from)).norm(), 1e-12);
+      EXPECT_LT((points[last] - exact(to)).norm(), 1e-12);
+      for (int i = 0; i <= 50; ++i) {
+        const Vec3 y = exact(from + (to - from) * i / 50);
+        EXPECT_TRUE((y.array() >= lo.array() - 1e-12).all() &&
+                    (y.array() <= hi.array() + 1e-12).all());
+      }
+      // and not far around it
+      EXPECT_LT((hi - lo).norm(), 1.5 * (exact(to) - exact(from)).norm() + 0.02);
     }
-    EXPECT_LT((points[0] - step.vector(0, from)).norm(), 1e-14);
-    EXPECT_LT((points[step.degree()] - step.vector(0, to)).norm(), 1e-14);
-    for (int i = 0; i <= 50; ++i) {
-      const Vec3 y = step.vector(0, from + (to - from) * i / 50);
-      EXPECT_TRUE((y.array() >= lo.array() - 1e-14).all() &&
-                  (y.array() <= hi.array() + 1e-14).all());
-    }
-    // and not far around it
-    EXPECT_LT((hi - lo).norm(), 1.5 * (step.vector(0, to) - step.vector(0, from)).norm() + 0.02);
   }
 }
 

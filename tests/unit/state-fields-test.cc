@@ -45,6 +45,7 @@ void change(Key& key) { key.id += 1; }
 void change(ImpactRun& run) { change(run.partner); }
 void change(Tally& tally) { tally.depth += 1; }
 void change(SlotsPtr& slots) { slots = std::make_shared<SomeSlots>(); }
+void change(ForcesPtr& forces) { forces = with_law(forces, make_drag(1, 2)); }
 void change(std::exception_ptr& error) { error = std::make_exception_ptr(UserError("stop")); }
 void change(std::shared_ptr<const Report>& report) {
   report = std::make_shared<const Report>(Report{Collision{}});

@@ -1,0 +1,249 @@
+// The motion of a driven body.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/driven-arc.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "base/interruption.h"
+#include "integrate/rotation-vector.h"
+
+namespace tw {
+namespace {
+
+// places in y
+enum : int { x_at = 0, theta_at = 3, v_at = 6, L_at = 9, numbers = 12 };
+
+Eigen::Map<const Vec3> vec(const double* p) { return Eigen::Map<const Vec3>(p); }
+Eigen::Map<Vec3> vec(double* p) { return Eigen::Map<Vec3>(p); }
+Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
+
+Vec3 angular_velocity_of(const Quat& q, const Vec3& inverse_moments, const Vec3& L) {
+  const Mat3 R = q.toRotationMatrix();
+  return R * inverse_moments.cwiseProduct(R.transpose() * L);
+}
+
+class DrivenEquations final : public Equations {
+ public:
+  explicit DrivenEquations(const DrivenStart& s)
+      : inverse_mass_(1 / s.mass),
+        inverse_moments_(s.moments.cwiseInverse()),
+        largest_moment_(s.moments.maxCoeff()),
+        size_(s.size),
+        tolerance_(answer::driven_share * s.accuracy),
+        acceleration_(s.acceleration),
+        forces_(s.forces),
+        slow_speed_(std::sqrt(s.gravity * s.size)),
+        slow_turn_(std::sqrt(s.gravity / s.size)),
+        longest_(std::min(answer::longest_driven_step / slow_turn_, s.forces->longest_unlooked())) {
+  }
+
+  int size() const override { return numbers; }
+  int chart_size() const override { return 4; }
+
+  void slope(double time, const double* y, const double* chart, double* slope) const override {
+    PoseTwist body;
+    const Vec3 theta = vec(y + theta_at);
+    body.x = vec(y + x_at);
+    body.q = short_rotation(theta) * quat(chart);
+    body.v = vec(y + v_at);
+    body.w = angular_velocity_of(body.q, inverse_moments_, vec(y + L_at));
+    const Wrench wrench = forces_->wrench(time, body);
+    vec(slope + x_at) = body.v;
+    vec(slope + theta_at) = rotation_vector_rate(theta, body.w);
+    vec(slope + v_at) = acceleration_ + inverse_mass_ * wrench.force;
+    vec(slope + L_at) = wrench.torque;
+  }
+
+  void tolerances(const double* y, const double* chart, double* allowed) const override {
+    const Vec3 w = angular_velocity_of(quat(chart), inverse_moments_, vec(y + L_at));
+    const double speed = std::max(vec(y + v_at).norm(), slow_speed_);
+    const double turn = std::max(w.norm(), slow_turn_);
+    for (int i = 0; i < 3; ++i) {
+      allowed[x_at + i] = tolerance_ * size_;
+      allowed[theta_at + i] = tolerance_;
+      allowed[v_at + i] = tolerance_ * speed;
+      allowed[L_at + i] = tolerance_ * largest_moment_ * turn;
+    }
+  }
+
+  // rotation vectors stay well below 2 pi
+  double longest_step(const double*, const double* slope, const double*) const override {
+    return std::min(longest_, answer::most_driven_turn / vec(slope + theta_at).norm());
+  }
+
+  void recentre(double* y, double* slope, double* chart) const override {
+    const Vec3 theta = vec(y + theta_at);
+    const Quat q = (short_rotation(theta) * quat(chart)).normalized();
+    chart[0] = q.w();
+    chart[1] = q.x();
+    chart[2] = q.y();
+    chart[3] = q.z();
+    vec(y + theta_at).setZero();
+    // theta' = w where theta = 0
+    vec(slope + theta_at) = angular_velocity_of(q, inverse_moments_, vec(y + L_at));
+  }
+
+ private:
+  double inverse_mass_;
+  Vec3 inverse_moments_;
+  double largest_moment_, size_, tolerance_;
+  Vec3 acceleration_;
+  ForcesPtr forces_;
+  double slow_speed_, slow_turn_, longest_;
+};
+
+std::vector<double> starting_row(const DrivenStart& s) {
+  std::vector<double> y(numbers, 0.0);
+  vec(y.data() + x_at) = s.x;
+  vec(y.data() + v_at) = s.v;
+  vec(y.data() + L_at) = s.L;
+  return y;
+}
+
+}  // namespace
+
+DrivenArc::DrivenArc(const DrivenStart& s)
+    : mass_(s.mass),
+      inverse_moments_(s.moments.cwiseInverse()),
+      acceleration_(s.acceleration),
+      forces_(s.forces),
+      start_{s.x, s.q, s.v, angular_velocity_of(s.q, inverse_moments_, s.L)},
+      name_(s.name),
+      place_(s.place),
+      solution_(s.accuracy > answer::loose_accuracy ? tsit5 : dop853,
+                std::make_unique<DrivenEquations>(s), s.time, starting_row(s),
+                {s.q.w(), s.q.x(), s.q.y(), s.q.z()}) {}
+
+const DenseStep* DrivenArc::step_at(double time) const {
+  if (!failure_ && !(time < solution_.reached())) {
+    try {
+      solution_.extend(time);
+      if (solution_.failure())
+        throw UserError("the motion of " + name_ + " cannot be followed beyond " +
+                            show(solution_.reached()) + " s: " + solution_.failure() +
+                            "; expected forces under which it stays finite",
+                        place_);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+  }
+  // at the end of the last step that end: velocities from the left
+  if (failure_ && !(time < solution_.reached())) return nullptr;
+  return &solution_.at(time);
+}
+
+Quat DrivenArc::attitude(const DenseStep& step, const Vec3& theta) const {
+  return short_rotation(theta) * quat(step.chart());
+}
+
+Pose DrivenArc::pose(double time) const {
+  const DenseStep* step = step_at(time);
+  if (!step) {
+    if (solution_.reached() == solution_.start()) return {start_.x, start_.q};
+    step = &solution_.at(solution_.reached());
+    time = step->end();
+  }
+  return {step->vector(x_at, time), attitude(*step, step->vector(theta_at, time))};
+}
+
+Twist DrivenArc::twist(double time) const {
+  const DenseStep* step = step_at(time);
+  if (!step) return {};
+  return {step->vector_rate(x_at, time),
+          angular_velocity(step->vector(theta_at, time), step->vector_rate(theta_at, time))};
+}
+
+PoseTwist DrivenArc::at(double time) const {
+  const DenseStep* step = step_at(time);
+  if (!step) {
+    const Pose there = pose(time);
+    return {there.p, there.q, Vec3::Zero(), Vec3::Zero()};
+  }
+  const Quat q = attitude(*step, step->vector(theta_at, time));
+  return {step->vector(x_at, time), q, step->vector(v_at, time),
+          angular_velocity_of(q, inverse_moments_, step->vector(L_at, time))};
+}
+
+Vec3 DrivenArc::free_acceleration(double time) const {
+  return acceleration_ + forces_->wrench(time, at(time)).force / mass_;
+}
+
+double DrivenArc::end() const { return failure_ ? solution_.reached() : never; }
+
+double DrivenArc::step_end(double time) const {
+  const DenseStep* step = step_at(time);
+  return step ? step->end() : never;
+}
+
+Effort DrivenArc::effort() const {
+  Effort effort;
+  effort.length = solution_.reached() - solution_.start();
+  effort.steps = solution_.counts().steps;
+  effort.rejected = solution_.counts().rejected;
+  effort.evaluations = solution_.counts().evaluations;
+  return effort;
+}
+
+void DrivenArc::add_step_bounds(const DenseStep& step, double from, double to,
+                                MotionBounds& bounds) const {
+  const int degree = step.degree();
+  const auto longest = [&](int order, int first) {
+    DenseStep::Control points;
+    step.control(order, first, from, to, points);
+    double squared = 0;
+    for (int j = 0; j <= degree - order; ++j) squared = std::max(squared, points[j].squaredNorm());
+    return std::sqrt(squared);
+  };
+  DenseStep::Control points;
+  step.control(0, x_at, from, to, points);
+  for (int j = 0; j <= degree; ++j) bounds.path.add(points[j]);
+  step.control(2, x_at, from, to, points);
+  for (int j = 0; j <= degree - 2; ++j) bounds.acceleration.add(points[j]);
+  bounds.speed = std::max(bounds.speed, longest(1, x_at));
+
+  // |w| <= |theta'|, |w'| <= |theta''| + |theta'| |theta x theta'|/6
+  const double rate = longest(1, theta_at);
+  bounds.turn = std::max(bounds.turn, rate);
+  bounds.turn_change =
+      std::max(bounds.turn_change, longest(2, theta_at) + rate * rate * longest(0, theta_at) / 6);
+}
+
+MotionBounds DrivenArc::bounds(double from, double to) const {
+  MotionBounds bounds;
+  if (!std::isfinite(from) || !std::isfinite(to)) {
+    // of all times nothing is known
+    bounds.path = bounds.acceleration = Aabb::everywhere();
+    bounds.speed = bounds.turn = never;
+    return bounds;
+  }
+  step_at(to);
+  const double reached = solution_.reached();
+  if (!(from < reached)) {
+    bounds.path.add(pose(from).p);
+    bounds.acceleration.add(Vec3(Vec3::Zero()));
+  }
+  for (double t = from; t < reached;) {
+    const DenseStep& step = solution_.at(t);
+    add_step_bounds(step, t, std::min(to, step.end()), bounds);
+    t = step.end();
+    if (!(t < to)) break;
+  }
+  // rounding
+  const double largest =
+      std::max(bounds.path.lo.cwiseAbs().maxCoeff(), bounds.path.hi.cwiseAbs().maxCoeff());
+  bounds.path.grow(1e-15 * largest);
+  bounds.acceleration.grow(1e-12 * std::max(bounds.acceleration.lo.cwiseAbs().maxCoeff(),
+                                            bounds.acceleration.hi.cwiseAbs().maxCoeff()));
+  const double widen = 1 + 1e-12;
+  bounds.speed *= widen;
+  bounds.turn *= widen;
+  bounds.turn_change *= widen;
+  bounds.valid_until = to;
+  return bounds;
+}
+
+}  // namespace tw

@@ -1,0 +1,18 @@
+// Forces that users give to bodies: what is checked, and the laws that follow.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "kernel/definitions.h"
+
+namespace tw {
+
+class Kernel;
+
+// As of World (world.h); all are edits at the present time.
+void add_drag(Kernel& kernel, BodyId id, double linear, double quadratic);
+void add_spring(Kernel& kernel, const SpringDef& def);
+void add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure);
+
+}  // namespace tw
