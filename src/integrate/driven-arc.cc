@@ -7,7 +7,7 @@
 
 #include "base/constants.h"
 #include "base/interruption.h"
-#include "integrate/rotation-vector.h"
+#include "math/rotation-vector.h"
 
 namespace tw {
 namespace {
