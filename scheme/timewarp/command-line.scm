@@ -65,7 +65,7 @@
 
 (define override-keys
   '(accuracy seed fps size quality contacts hash check undo-redo gvt-interval window
-    group-check-rate adversary write-states compare-states))
+    group-check-rate integrator adversary write-states compare-states))
 
 (define (take-overrides! options)
   (set-overrides! (filter (lambda (pair) (memq (car pair) override-keys)) options))

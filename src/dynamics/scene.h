@@ -22,6 +22,7 @@ struct SceneOptions {
   Vec3 gravity{0, 0, -9.81};    // m/s^2
   double accuracy = 1e-6;       // relative
   double group_check_rate = 0;  // Hz, the finest; 0: by the sizes of the members
+  bool cash_karp = false;       // isolated bodies never fly in closed form: the paper's integrator
 };
 
 struct Scene {

@@ -24,6 +24,17 @@ Vec3 angular_velocity_of(const Quat& q, const Vec3& inverse_moments, const Vec3&
   return R * inverse_moments.cwiseProduct(R.transpose() * L);
 }
 
+ForcesPtr forces_of(const DrivenStart& s) {
+  static const ForcesPtr none =
+      std::make_shared<ActingForces>(Vec3::Zero(), std::vector<ForceLawPtr>{});
+  return s.forces ? s.forces : none;
+}
+
+const RungeKutta& method_of(const DrivenStart& s) {
+  if (s.method) return *s.method;
+  return s.accuracy > answer::loose_accuracy ? tsit5 : dop853;
+}
+
 class DrivenEquations final : public Equations {
  public:
   explicit DrivenEquations(const DrivenStart& s)
@@ -33,11 +44,10 @@ class DrivenEquations final : public Equations {
         size_(s.size),
         tolerance_(answer::driven_share * s.accuracy),
         acceleration_(s.acceleration),
-        forces_(s.forces),
+        forces_(forces_of(s)),
         slow_speed_(std::sqrt(s.gravity * s.size)),
         slow_turn_(std::sqrt(s.gravity / s.size)),
-        longest_(std::min(answer::longest_driven_step / slow_turn_, s.forces->longest_unlooked())) {
-  }
+        longest_(std::min(answer::longest_driven_step / slow_turn_, forces_->longest_unlooked())) {}
 
   int size() const override { return numbers; }
   int chart_size() const override { return 4; }
@@ -108,12 +118,11 @@ DrivenArc::DrivenArc(const DrivenStart& s)
     : mass_(s.mass),
       inverse_moments_(s.moments.cwiseInverse()),
       acceleration_(s.acceleration),
-      forces_(s.forces),
+      forces_(forces_of(s)),
       start_{s.x, s.q, s.v, angular_velocity_of(s.q, inverse_moments_, s.L)},
       name_(s.name),
       place_(s.place),
-      solution_(s.accuracy > answer::loose_accuracy ? tsit5 : dop853,
-                std::make_unique<DrivenEquations>(s), s.time, starting_row(s),
+      solution_(method_of(s), std::make_unique<DrivenEquations>(s), s.time, starting_row(s),
                 {s.q.w(), s.q.x(), s.q.y(), s.q.z()}) {}
 
 const DenseStep* DrivenArc::step_at(double time) const {

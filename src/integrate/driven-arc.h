@@ -37,9 +37,10 @@ struct DrivenStart {
   Quat q = Quat::Identity();
   Vec3 v = Vec3::Zero();
   Vec3 L = Vec3::Zero();
-  Vec3 acceleration = Vec3::Zero();  // constant: gravity and applied force
-  ForcesPtr forces;
-  std::string name;  // for messages
+  Vec3 acceleration = Vec3::Zero();    // constant: gravity and applied force
+  ForcesPtr forces;                    // null: none
+  const RungeKutta* method = nullptr;  // null: by the accuracy
+  std::string name;                    // for messages
   Place place;
 };
 

@@ -61,11 +61,14 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
     if (!m.forces || !(m.forces->longest_unlooked() < never)) continue;
-    Wrench f[3];
-    for (int j = 0; j < 3; ++j) f[j] = m.forces->wrench(time + j * d, m.point);
+    // forwards, to the fourth order: the arc may begin at a corner of what moves
+    constexpr double weight[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
     BodyWrench& wrench = s.wrenches[index(i)];
-    vec(wrench.f) += (4 * (f[1].force - f[0].force) - (f[2].force - f[0].force)) / (2 * d);
-    vec(wrench.t) += (4 * (f[1].torque - f[0].torque) - (f[2].torque - f[0].torque)) / (2 * d);
+    for (int j = 0; j < 5; ++j) {
+      const Wrench f = m.forces->wrench(time + j * d, m.point);
+      vec(wrench.f) += weight[j] / d * f.force;
+      vec(wrench.t) += weight[j] / d * f.torque;
+    }
   }
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     double* row = time_slope + tree_rows_[t] + trees_[t]->freedoms();

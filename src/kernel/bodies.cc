@@ -93,6 +93,7 @@ BodyId Bodies::add(const BodyDef& def, BodyId born_as) {
   process.bodies = {id};
   State& state = *sim_.graph.append(body->process, {present.time, 0, KeyKind::birth, born_as});
   make_birth(*body, def, present.settings.gravity, state);
+  if (body->dynamic()) let_move(scene, *body, state);
   // a stream of its own for every body
   state.random = mix64(sim_.options.seed ^ mix64(id + 0x632be59bd9b4e019ull));
   process.claim = state.key;

@@ -25,7 +25,7 @@ void require_point(const Vec3& point, const std::string& what) {
                  "); expected coordinates of at most " + show(greatest_length) + " m");
 }
 
-// By differences: the procedure is asked twelve times for each derivative, in groups alone.
+// By differences: the procedure is asked 24 times for each derivative, in groups alone.
 class ProcedureLaw final : public ForceLaw {
  public:
   ProcedureLaw(const Body& body, double gravity, std::shared_ptr<ForceProcedure> procedure)

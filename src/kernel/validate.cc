@@ -16,7 +16,8 @@ namespace tw {
 namespace {
 
 bool flies_as_it_began(const State& state) {
-  if (state.forces) return state.driven();
+  if (state.driven()) return true;
+  if (state.forces) return false;
   const Parabola* path = state.trajectory().ballistic();
   return path && path->start == state.arc_time && path->x == state.x && path->v == state.v &&
          path->acceleration == state.acceleration;

@@ -76,6 +76,14 @@ void World::set_adversary(std::optional<AdversaryOptions> adversary) {
   kernel_->simulation.options.adversary = adversary;
 }
 
+void World::set_integrator(const std::string& integrator) {
+  TW_REQUIRE(integrator == "auto" || integrator == "rk45",
+             "integrator is " + integrator + "; expected auto or rk45");
+  TW_REQUIRE(kernel_->simulation.scene.bodies.empty(),
+             "the integrator was set when there were bodies; expected it before the first");
+  kernel_->simulation.present.settings.cash_karp = integrator == "rk45";
+}
+
 void World::set_policy(const std::string& policy) { set_policy(make_policy(policy)); }
 
 void World::set_policy(std::unique_ptr<Policy> policy) {

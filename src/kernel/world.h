@@ -61,6 +61,9 @@ class World {
   void set_group_check_rate(double rate);                         // before the first run
   void set_adversary(std::optional<AdversaryOptions> adversary);  // before the first run
   // "timewarp" is the only policy so far; others raise UserError.
+  // "auto", or "rk45": isolated bodies are integrated by Cash and Karp's method, even where their
+  // flight has a closed form.  Before there are bodies.
+  void set_integrator(const std::string& integrator);
   void set_policy(const std::string& policy);
   void set_policy(std::unique_ptr<Policy> policy);  // one of your own: policy.h
 

@@ -90,6 +90,7 @@ constexpr WorldSetting world_settings[] = {
      [](World& w, SCM v, const char* n) { w.set_group_check_rate(to_real(v, n)); }},
     {"accuracy", [](World& w, SCM v, const char* n) { w.set_accuracy(to_real(v, n)); }},
     {"seed", [](World& w, SCM v, const char* n) { w.set_seed(to_seed(v, n)); }},
+    {"integrator", [](World& w, SCM v, const char* n) { w.set_integrator(to_string(v, n)); }},
     {"policy", [](World& w, SCM v, const char* n) { w.set_policy(to_string(v, n)); }},
     {"hash", [](World& w, SCM v, const char*) { w.set_hash(to_bool(v)); }},
     {"check", [](World& w, SCM v, const char*) { w.set_check(to_bool(v)); }},

@@ -34,7 +34,7 @@ Vec3 free_acceleration(const Successor& successor, double now) {
 }
 
 void let_move(const Scene& scene, const Body& body, StateData& data) {
-  if (!data.forces) return let_fly(body, data);
+  if (!data.forces && !scene.options.cash_karp) return let_fly(body, data);
   DrivenStart start;
   start.time = data.arc_time;
   start.mass = body.mass;
@@ -49,6 +49,7 @@ void let_move(const Scene& scene, const Body& body, StateData& data) {
   start.L = data.L;
   start.acceleration = data.acceleration;
   start.forces = data.forces;
+  if (scene.options.cash_karp) start.method = &cash_karp;
   start.name = body.info.name;
   start.place = body.info.place;
   data.follows = std::make_shared<DrivenArc>(start);

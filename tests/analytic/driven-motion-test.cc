@@ -218,6 +218,64 @@ TEST(DrivenMotion, springs_follow_kinematic_bodies) {
   EXPECT_NEAR(driven.position(t).x(), t - std::sin(w * t) / w, 1e-6 * radius);
 }
 
+// Bounces with linear drag: heights follow from the closed form between impacts; here the first
+// impact's time and the speed just after.
+TEST(DrivenMotion, dragged_balls_meet_the_floor_in_time) {
+  Driven driven(1e-6, {0, 0, -9.81});
+  const double c = 0.4, tau = mass / c, height = 2;
+  driven.world.edit(driven.ball, [&](StateView& v) {
+    v.set_pose({0, 0, height + radius}, Quat::Identity());
+  });
+  add_wall(driven.world, Vec3::UnitZ(), 0);
+  set_contact_for_all(driven.world, 0.5, 0);
+  driven.world.add_drag(driven.ball, c, 0);
+  std::vector<Collision> told;
+  driven.world.add_collision_observer([&](const Collision& struck) { told.push_back(struck); });
+  driven.world.advance(1);
+  // fallen by g tau (t - tau (1 - e^(-t/tau))) = height
+  double t = 0.6;
+  for (int i = 0; i < 50; ++i) {
+    const double decay = -std::expm1(-t / tau);
+    t -= (9.81 * tau * (t - tau * decay) - height) / (9.81 * tau * decay);
+  }
+  const double speed = -9.81 * tau * std::expm1(-t / tau);
+  ASSERT_GE(told.size(), 1u);
+  EXPECT_NEAR(told[0].time, t, 1e-6 * t);
+  EXPECT_NEAR(told[0].speed, speed, 1e-6 * speed);
+  const double s = 1 - t;
+  const double up = tau * -std::expm1(-s / tau) * (0.5 * speed + 9.81 * tau) - 9.81 * tau * s;
+  EXPECT_NEAR(driven.world.state(driven.ball).position.z(), radius + up, 2e-6 * radius);
+}
+
+// In a contact group: rolls on a floor with drag at its centre, m (1 + 2/5) v' = -c v.
+TEST(DrivenMotion, dragged_balls_roll_out) {
+  Driven driven(1e-6, {0, 0, -9.81}, {2, 0, 0}, {0, 2 / radius, 0});
+  driven.world.edit(driven.ball, [&](StateView& v) {
+    v.set_pose({0, 0, radius}, Quat::Identity());
+  });
+  add_wall(driven.world, Vec3::UnitZ(), 0);
+  const double c = 0.5, tau = 1.4 * mass / c;
+  driven.world.add_drag(driven.ball, c, 0);
+  driven.world.advance(1);
+  const BodyState s = driven.world.state(driven.ball);
+  EXPECT_NEAR(s.position.z(), radius, 1e-3 * radius);
+  EXPECT_NEAR(s.velocity.x(), 2 * std::exp(-1 / tau), 2e-3);
+  EXPECT_NEAR(s.position.x(), 2 * tau * -std::expm1(-1 / tau), 2e-3);
+}
+
+// A torque on a ball that lies on the floor rolls it: v' = T / (7/5 m r).
+TEST(DrivenMotion, torques_roll_what_lies) {
+  Driven driven(1e-6, {0, 0, -9.81});
+  driven.world.edit(driven.ball, [&](StateView& v) {
+    v.set_pose({0, 0, radius}, Quat::Identity());
+    v.set_applied_torque({0, 0.3, 0});
+  });
+  add_wall(driven.world, Vec3::UnitZ(), 0);
+  driven.world.advance(1.5);
+  const double a = 0.3 / (1.4 * mass * radius);
+  EXPECT_NEAR(driven.world.state(driven.ball).velocity.x(), 1.5 * a, 2e-3 * 1.5 * a);
+}
+
 // A force without bound in finite time: named, with time, and the world stays usable.
 class Exploding final : public ForceProcedure {
  public:

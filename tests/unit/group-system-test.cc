@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "integrate/anchored-spring.h"
 #include "integrate/group-system.h"
 #include "integrate/standing.h"
 
@@ -66,6 +67,14 @@ GroupMember random_member(Draw& draw) {
   m.L = draw.vec(0.1);
   m.force = draw.vec(1);
   m.torque = draw.vec(0.1);
+  // every other one in the wind, and on a spring to what moves
+  if (draw.in(0, 1) < 0.5) {
+    m.forces = with_law(with_torque(nullptr, draw.vec(0.1)), make_drag(0.3, 0.2));
+    const Vec3 arm = draw.vec(0.3);
+    m.forces = with_law(m.forces,
+                        make_anchored_spring({20, 2, 0.4}, arm,
+                                             {9, std::make_shared<Slide>(), false, draw.vec(0.5)}));
+  }
   return m;
 }
 

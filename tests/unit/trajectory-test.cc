@@ -61,7 +61,7 @@ TEST(Trajectories, a_flight_is_ballistic_and_never_ends) {
   ASSERT_TRUE(flight.ballistic());
   EXPECT_EQ(flight.ballistic()->position(3), flight.at(3).x);
   EXPECT_EQ(flight.ballistic()->velocity(3), flight.at(3).v);
-  EXPECT_EQ(flight.free_acceleration(), Vec3(0, 0.5, -9.81));
+  EXPECT_EQ(flight.free_acceleration(0), Vec3(0, 0.5, -9.81));
   EXPECT_EQ(flight.end(), never);
   EXPECT_FALSE(flight.stepped());
   EXPECT_EQ(flight.effort().steps, 0u);
@@ -85,7 +85,7 @@ TEST(Trajectories, what_rests_is_carried_and_what_is_fixed_falls_nowhere) {
     EXPECT_EQ(still->pose(7).q.coeffs(), pose.q.coeffs());
     EXPECT_EQ(still->bounds(0, never).path.lo, pose.p);
     EXPECT_EQ(still->bounds(0, never).speed, 0);
-    EXPECT_EQ(still->free_acceleration(), Vec3::Zero());
+    EXPECT_EQ(still->free_acceleration(0), Vec3::Zero());
     EXPECT_EQ(still->end(), never);
   }
   EXPECT_TRUE(make_standing(pose)->ballistic());

@@ -1,0 +1,95 @@
+// What driven arcs cost, and the error got for the accuracy asked for: a Markdown table.
+//
+// A damped oscillator, a fall with quadratic drag, a torsion pendulum of springs; errors in sizes
+// of the body, worst over 200 times of 10 s against closed forms, or the same at an accuracy of
+// 1e-12.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "base/cpu-clock.h"
+#include "integrate/anchored-spring.h"
+#include "integrate/driven-arc.h"
+#include "integrate/standing.h"
+
+namespace tw {
+namespace {
+
+constexpr double duration = 10;
+
+SpringAnchor at(const Vec3& place) {
+  return {0, make_standing({place, Quat::Identity()}), true, Vec3::Zero()};
+}
+
+DrivenStart oscillator() {
+  DrivenStart start;
+  start.size = 0.5;
+  start.gravity = 9.81;
+  start.v = {0.6, 0, 0};
+  start.forces = with_law(nullptr, make_anchored_spring({7, 0.5, 2}, Vec3::Zero(), at({-2, 0, 0})));
+  return start;
+}
+
+DrivenStart fall() {
+  DrivenStart start = oscillator();
+  start.v = {3, 0, 8};
+  start.L = {0.1, 0, 0.3};
+  start.acceleration = {0, 0, -9.81};
+  start.forces = with_law(nullptr, make_drag(0, 0.3));
+  return start;
+}
+
+DrivenStart tumbling() {
+  DrivenStart start = oscillator();
+  start.moments = {0.05, 0.1, 0.12};
+  start.L = {0.2, 0.3, 0.1};
+  start.forces =
+      with_law(with_law(nullptr, make_anchored_spring({20, 0, 0}, {0.4, 0.1, 0}, at({3, 0, 0}))),
+               make_anchored_spring({20, 0, 0}, {-0.4, 0, 0.1}, at({-3, 0, 0})));
+  return start;
+}
+
+double error_of(const DrivenArc& arc, const DrivenArc& exact) {
+  double worst = 0;
+  for (int i = 1; i <= 200; ++i) {
+    const double time = duration * i / 200;
+    worst = std::max(worst, (arc.pose(time).p - exact.pose(time).p).norm());
+  }
+  return worst;
+}
+
+void print_row(const std::string& name, DrivenStart start) {
+  start.accuracy = 1e-12;
+  start.method = &dop853;
+  const DrivenArc exact(start);
+  start.method = nullptr;
+  for (double accuracy = 1e-3; accuracy > 5e-10; accuracy *= 0.1) {
+    start.accuracy = accuracy;
+    const DrivenArc arc(start);
+    const double error = error_of(arc, exact) / start.size;
+    constexpr int repeats = 20;
+    const double before = thread_cpu_seconds();
+    for (int i = 0; i < repeats; ++i) {
+      const DrivenArc again(start);
+      for (double t = 0; t < duration; t = again.step_end(t)) {
+      }
+    }
+    const double cpu = (thread_cpu_seconds() - before) / repeats / duration;
+    std::printf("| %s | %.0e | %.1e | %.0f | %.0f |\n", name.c_str(), accuracy, error,
+                static_cast<double>(arc.effort().steps) / duration, 1e6 * cpu);
+  }
+}
+
+}  // namespace
+}  // namespace tw
+
+int main() {
+  std::printf("| motion | accuracy | error / size | steps a second | CPU, us a second |\n");
+  std::printf("| --- | --- | --- | --- | --- |\n");
+  tw::print_row("damped oscillator", tw::oscillator());
+  tw::print_row("throw with quadratic drag", tw::fall());
+  tw::print_row("brick between two springs", tw::tumbling());
+}
