@@ -80,7 +80,7 @@ void TreeInGroup::linearise(const double* u, const double* u_rate, const BodyWre
     const Vec3 force = vec(wrenches[start_->members[index(link)]].f) + start_->forces[index(link)];
     if (force.isZero()) continue;
     const Mat3 across = cross_matrix(force);
-    multibody::WrenchDerivative moving;
+    multibody::ForceDerivative moving;
     moving.by_displacement.topLeftCorner<3, 3>() =
         across * cross_matrix(link_center_of_mass(tree(), linear_, link) - linear_.origin);
     moving.by_displacement.topRightCorner<3, 3>() = -across;

@@ -71,7 +71,7 @@ void sweep_outward(const Tree& tree, const Kinematics& k, In rate, Linearisation
     terms.F = net_force(node.mass, motion, A) + motion.W;
     terms.wrench_beyond = terms.wrench;
     if (terms.wrench) {
-      const WrenchDerivative& given = work.wrenches[static_cast<std::size_t>(i)];
+      const ForceDerivative& given = work.wrenches[static_cast<std::size_t>(i)];
       terms.Y = given.by_velocity;
       terms.L = given.by_displacement - given.by_velocity * cross_matrix6(motion.V);
     } else {
@@ -107,10 +107,10 @@ void Linearisation::clear_wrenches() {
   for (NodeTerms& terms : nodes) terms.wrench = false;
 }
 
-void Linearisation::add_wrench(const Tree& tree, int link, const WrenchDerivative& derivative) {
+void Linearisation::add_wrench(const Tree& tree, int link, const ForceDerivative& derivative) {
   const int at = tree.link(link).node;
-  WrenchDerivative& sum = wrenches[static_cast<std::size_t>(at)];
-  if (!node(at).wrench) sum = WrenchDerivative();
+  ForceDerivative& sum = wrenches[static_cast<std::size_t>(at)];
+  if (!node(at).wrench) sum = ForceDerivative();
   node(at).wrench = true;
   sum.by_displacement += derivative.by_displacement;
   sum.by_velocity += derivative.by_velocity;
@@ -176,7 +176,7 @@ void linearise(const Tree& tree, const Kinematics& k, In rate, Linearisation& wo
   }
 }
 
-void add_cross_derivative(const Side& a, const Side& b, const WrenchDerivative& derivative,
+void add_cross_derivative(const Side& a, const Side& b, const ForceDerivative& derivative,
                           std::size_t stride, double* Kq, double* Ku) {
   TW_ASSERT(a.k.origin == b.k.origin, "coupled multibodies are placed about different origins");
   const int node_a = a.tree.link(a.link).node, node_b = b.tree.link(b.link).node;

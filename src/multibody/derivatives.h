@@ -35,7 +35,7 @@ namespace tw::multibody {
 
 // How the wrench on a link depends on its motion; order (torque, force) by (turn, shift), about the
 // origin.  N m and N by rad and m, or rad/s and m/s.
-struct WrenchDerivative {
+struct ForceDerivative {
   Mat6 by_displacement = Mat6::Zero(), by_velocity = Mat6::Zero();
 };
 
@@ -46,7 +46,7 @@ class Linearisation {
 
   // 0 for all links; then adds of one.
   void clear_wrenches();
-  void add_wrench(const Tree& tree, int link, const WrenchDerivative& derivative);
+  void add_wrench(const Tree& tree, int link, const ForceDerivative& derivative);
 
   // By node.
   struct NodeTerms {
@@ -63,7 +63,7 @@ class Linearisation {
     Motion P, Q, X;
   };
   std::vector<DofTerms> dofs;
-  std::vector<WrenchDerivative> wrenches;
+  std::vector<ForceDerivative> wrenches;
 
   NodeTerms& node(int i) { return nodes[static_cast<std::size_t>(i)]; }
   DofTerms& dof(int k) { return dofs[static_cast<std::size_t>(k)]; }
@@ -86,7 +86,7 @@ struct Side {
   const Linearisation& work;
   int link;
 };
-void add_cross_derivative(const Side& a, const Side& b, const WrenchDerivative& derivative,
+void add_cross_derivative(const Side& a, const Side& b, const ForceDerivative& derivative,
                           std::size_t stride, double* Kq, double* Ku);
 
 }  // namespace tw::multibody

@@ -197,7 +197,7 @@ struct Tie {
     add_force(tree, m, link[1], point(tree, m, 1), -f);
   }
   // Of the wrench on `side` by the motion of the link at `by`.
-  WrenchDerivative derivative(const Tree& tree, const Kinematics& m, int side, int by) const {
+  ForceDerivative derivative(const Tree& tree, const Kinematics& m, int side, int by) const {
     const Vec3 x = point(tree, m, side) - m.origin, y = point(tree, m, by) - m.origin;
     const Vec3 f = force(tree, m, side);
     const Vec3 w = link_twist(tree, m, link[by]).w;
@@ -207,7 +207,7 @@ struct Tie {
     Jy << -cross_matrix(y), Mat3::Identity();
     forces = sign * (k * Jy + c * cross_matrix(w) * Jy);
     rates = sign * c * Jy;
-    WrenchDerivative d;
+    ForceDerivative d;
     d.by_displacement << cross_matrix(x) * forces, forces;
     d.by_velocity << cross_matrix(x) * rates, rates;
     // the lever moves too
