@@ -11,6 +11,14 @@
       ((timewarp bodies))
       ((timewarp contact))
       ((timewarp forces))
+      ((timewarp multibodies)
+       add-multibody! multibody? multibody-name multibody-links body-multibody link-body
+       find-multibody world-multibodies link link? joint? revolute prismatic universal spherical weld
+       joint-names joint-limits joint-position joint-velocity joint-torque joint-servo
+       joint-positions joint-velocities joint-torques
+       servo servo? servo-target servo-target-velocity servo-stiffness servo-damping
+       servo-max-torque
+       jacobian forward-kinematics inverse-kinematics inverse-dynamics)
       ((timewarp callbacks))
       ((timewarp running)
        run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
@@ -28,5 +36,9 @@
        (let ((source (resolve-interface (car entry))))
          (if (null? (cdr entry))
              (module-for-each add! source)
-             (for-each (lambda (name) (add! name (module-variable source name))) (cdr entry)))))
+             (for-each (lambda (name) (add! name (module-variable source name))) (cdr entry)))
+         ;; what takes the place of one of Guile's own
+         (hash-for-each (lambda (name _)
+                          (hashq-set! (module-replacements interface) name #t))
+                        (module-replacements source))))
      public-modules)))

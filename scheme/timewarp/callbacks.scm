@@ -6,6 +6,7 @@
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp bodies)
+  #:use-module ((timewarp multibodies) #:select (multibody? call-with-sides))
   #:use-module (timewarp purity)
   #:use-module (ice-9 match)
   #:use-module ((srfi srfi-1) #:select (first second third fourth fifth))
@@ -17,18 +18,20 @@
 
 (define-keyword-procedure (add-callback! targets procedure #:key start period)
   "Call PROCEDURE with the time and a view of each of TARGETS, a body or a list of bodies, at start
-+ k period.  It may run again after a rollback: it must change only what it is handed, by set!.
++ k period; of a multibody a view of its first link.  It may run again after a rollback: it must change only what it is handed, by set!.
 
 #:start   s, not before the world's time; at once
 #:period  s, positive; #f: PROCEDURE returns its next time, or #f for never again; #f"
   (%add-callback! (current-world)
-                  (if (body? targets) (list targets) targets)
+                  (if (or (body? targets) (multibody? targets)) (list targets) targets)
                   (watched procedure) start period (caller-place)))
 
 (define (on-collision! a b procedure)
   "Call PROCEDURE with the collision and two views, in the order A, B, after each impact between A and
-B; each is a body, a material, or #t for all.  It may run again after a rollback."
-  (%on-collision! (current-world) a b (watched procedure) (caller-place)))
+B; each is a body, a multibody (for each of its links), a material, or #t for all.  It may run again
+after a rollback."
+  (let ((watched (watched procedure)) (place (caller-place)))
+    (call-with-sides (lambda (a b) (%on-collision! (current-world) a b watched place)) a b)))
 
 (define (observe! kind procedure)
   "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,

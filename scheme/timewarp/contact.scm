@@ -4,6 +4,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
+  #:use-module ((timewarp multibodies) #:select (call-with-sides))
   #:use-module (srfi srfi-9)
   #:export (set-contact-parameters! contact-parameters disable-collisions! enable-collisions!
             contacts contact? contact-bodies contact-point contact-normal contact-gap contact-force
@@ -12,8 +13,8 @@
 (define-keyword-procedure
   (set-contact-parameters! a b #:key restitution friction stiffness damping fusion-speed
                            friction-law impact-law)
-  "Set what holds where A and B touch; each is a body, a material (a symbol), or #t for all.  Looked
-up keyword by keyword: a body goes before a material, a material before #t, the later call before
+  "Set what holds where A and B touch; each is a body, a multibody (for each of its links), a material
+(a symbol), or #t for all.  Looked up keyword by keyword: a body goes before a material, a material before #t, the later call before
 the earlier.
 
 #:restitution   the share of the approach speed that is left after an impact, 0 to 1; 0.3
@@ -27,15 +28,14 @@ the earlier.
 #:friction-law  'anchored (a spring holds what sticks) or 'smooth; 'anchored
 #:impact-law    'chatterjee-ruina, the only one that is there yet"
   (check-impact-law impact-law)
-  (%set-contact! (current-world) a b
-                 (let loop ((names '(restitution friction stiffness damping fusion-speed
-                                                 friction-law))
-                            (values (list restitution friction stiffness damping fusion-speed
-                                          friction-law)))
-                   (cond ((null? names) '())
-                         ((car values) (acons (car names) (car values)
-                                              (loop (cdr names) (cdr values))))
-                         (else (loop (cdr names) (cdr values)))))))
+  (let ((settings (filter cdr `((restitution . ,restitution) (friction . ,friction)
+                                (stiffness . ,stiffness) (damping . ,damping)
+                                (fusion-speed . ,fusion-speed) (friction-law . ,friction-law)))))
+    (set-contact! a b settings)))
+
+(define (set-contact! a b settings)
+  (call-with-sides (lambda (a b) (%set-contact! (current-world) a b settings)) a b)
+  (if #f #f))
 
 ;; Chatterjee and Ruina's law is the only one so far.
 (define (check-impact-law law)
@@ -50,12 +50,14 @@ the earlier.
   (%contact-parameters (current-world) a b))
 
 (define (disable-collisions! a b)
-  "Let A and B pass through each other; each is a body, a material, or #t for all."
-  (%set-contact! (current-world) a b '((collide? . #f))))
+  "Let A and B pass through each other; each is a body, a multibody (for each of its links; both the
+same: its links pass through each other), a material, or #t for all."
+  (set-contact! a b '((collide? . #f))))
 
 (define (enable-collisions! a b)
-  "Let A and B collide again; each is a body, a material, or #t for all."
-  (%set-contact! (current-world) a b '((collide? . #t))))
+  "Let A and B collide again; each is a body, a multibody (for each of its links), a material, or #t
+for all."
+  (set-contact! a b '((collide? . #t))))
 
 ;; ---- contacts at present ----
 

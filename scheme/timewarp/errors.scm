@@ -40,7 +40,8 @@
   (let ((folder (own-directory)))
     (cons (string-append (dirname folder) "/timewarp.scm")
           (map (lambda (name) (string-append folder "/" name ".scm"))
-               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "purity" "callbacks" "vectors"
+               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "forces" "multibodies"
+                 "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "time-left" "progress" "interrupts" "help" "repl" "command-line")))))
 

@@ -26,6 +26,13 @@
      contact-slipping? contact?)
     ("Forces" "what acts on bodies, from now on"
      add-drag! add-spring! add-force!)
+    ("Multibodies" "links that hang on one another by joints"
+     add-multibody! link revolute prismatic universal spherical weld link-body joint-names
+     joint-limits joint-position joint-velocity joint-torque joint-servo servo joint-positions
+     joint-velocities joint-torques jacobian forward-kinematics inverse-kinematics inverse-dynamics
+     multibody-name multibody-links body-multibody find-multibody world-multibodies servo-target
+     servo-target-velocity servo-stiffness servo-damping servo-max-torque multibody? link? joint?
+     servo?)
     ("Callbacks" "procedures that change what happens (may run again after a rollback)"
      add-callback! on-collision! collision-time collision-point collision-normal
      collision-speed collision-impulse collision-bodies collision?)

@@ -42,7 +42,7 @@ struct Scene {
   // m/s^2, > 0.
   double gravity_scale() const;
   static bool are_neighbours(const Body& a, const Body& b) {
-    return a.multibody && a.multibody == b.multibody &&
+    return !a.neighbours.empty() &&
            std::binary_search(a.neighbours.begin(), a.neighbours.end(), b.id());
   }
   // Whether some pairs may not touch.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/error.h"
 #include "multibody/multibody.h"
 
 namespace tw {
@@ -45,11 +46,12 @@ double finest_check(const Scene& scene, const Body& body) {
 
 double joint_check_interval(const Scene& scene, const Multibody& multibody) {
   double size = 0;
-  for (const BodyId link : multibody.links) size += scene.body(link).radius;
+  for (const BodyId link : multibody.links) size += extent_of_link(scene.body(link));
   return on_lattice(answer::check_unit, std::sqrt(size / scene.gravity_scale()));
 }
 
 double next_check_time(double birth, double now, double interval) {
+  TW_ASSERT(interval > 0, "checks are apart");
   double k = std::max(0.0, std::floor((now - birth) / interval));
   while (birth + k * interval <= now) ++k;
   return birth + k * interval;

@@ -49,6 +49,18 @@ void share_joints(std::vector<Successor>& successors) {
   }
 }
 
+void follow_changed_joints(std::vector<Successor>& successors) {
+  for (const Successor& changed : successors) {
+    if (!changed.joints_changed) continue;
+    const PlacedJoints joints(*changed.body->multibody, *changed.joints);
+    for (Successor& link : successors) {
+      if (link.body->multibody != changed.body->multibody) continue;
+      link.point = joints.link(static_cast<int>(link.body->link));
+      link.placed = link.placed || changed.placed;
+    }
+  }
+}
+
 void JointImpulses::add(Successor& successor, std::uint32_t slot) {
   const Multibody* multibody = successor.body->multibody;
   if (!multibody) return;

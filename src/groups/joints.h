@@ -42,6 +42,9 @@ std::shared_ptr<MultibodyState> joints_at(const State& state, double when);
 // that of none else.
 void share_joints(std::vector<Successor>& successors);
 
+// The links of multibodies whose joints an edit or a callback has changed, where their joints are.
+void follow_changed_joints(std::vector<Successor>& successors);
+
 // Joins the slots of links in a solver, then takes what they received.
 class JointImpulses {
  public:

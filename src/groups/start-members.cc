@@ -11,11 +11,12 @@ namespace tw {
 
 void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateData& d,
                          const MultibodyStatePtr& joints) {
-  start_.members.push_back({body.mass, body.moments, body.radius, d.x, d.q, d.v, d.L,
-                            body.mass * d.acceleration, Vec3::Zero(), d.forces});
+  const double extent = body.multibody ? extent_of_link(body) : body.radius;
+  start_.members.push_back({body.mass, body.moments, body.shape_P ? body.radius : extent, d.x, d.q,
+                            d.v, d.L, body.mass * d.acceleration, Vec3::Zero(), d.forces});
   if (body.multibody) add_link(body, d, joints);
-  size_ = std::min(size_, body.least_width);
-  reach_ += body.radius;
+  if (body.shape_P) size_ = std::min(size_, body.least_width);
+  reach_ += extent;
   speed_ = std::max(speed_, PlacedBody(body, point).surface_speed());
 }
 
@@ -37,6 +38,8 @@ void StartOfMembers::add_link(const Body& body, const StateData& d,
 }
 
 void StartOfMembers::set_tolerances() {
+  // nothing of it can touch
+  if (size_ == never) size_ = reach_;
   const double accuracy = scene_.options.accuracy, gravity = scene_.gravity_scale();
   const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);

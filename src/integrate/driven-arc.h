@@ -3,7 +3,8 @@
 //
 // y = (x, theta, v, L), with theta the rotation vector from the step's start and L the angular
 // momentum, so that no gyroscopic term appears; the chart is the attitude at the step's start:
-//   x' = v,  theta' = Jl(theta)^-1 w,  v' = a + F/m,  L' = T,  w = R I^-1 R^T L,  R = exp(theta) R0.
+//   x' = v,  theta' = Jl(theta)^-1 w,  v' = a + F/m,  L' = T,  w = R I^-1 R^T L,
+//   R = exp(theta) R0.
 // Poses follow the polynomials of x and theta, which are continuous with their rates; velocities
 // follow those of v and L.
 //

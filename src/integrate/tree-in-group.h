@@ -9,11 +9,11 @@
 //   kq = E (rq + ku),   (s M - Ku - Kq E) ku = M ru + Kq E rq + (contacts).
 // Contacts see links as bodies in slots.  Changes of the unknowns move these by
 //   (dx, dth) = J kq,   (dv, dw) = J ku + d(J u),
-// J the Jacobian at the centre of mass; wrenches on them come back as J^T W, and what J^T W changes
-// by with q while W does not stands in Kq.
+// J the Jacobian at the centre of mass; wrenches on them come back as J^T W, and what J^T W
+// changes by with q while W does not stands in Kq.
 //
-// Source: the paper, section 4.3; R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 7;
-// S. Singh, R. Russell, P. Wensing, IEEE RA-L 7 (2022); doc/numerics.md.
+// Source: the paper, section 4.3; R. Featherstone, Rigid Body Dynamics Algorithms (2008),
+// chapter 7; S. Singh, R. Russell, P. Wensing, IEEE RA-L 7 (2022); doc/numerics.md.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -45,9 +45,25 @@ BodyId Bodies::add(const BodyDef& def) {
   return add(def, static_cast<BodyId>(sim_.scene.bodies.size()));
 }
 
-std::uint32_t Bodies::add_multibody(const MultibodyDef& def) {
+// Where the base is in the world.
+Pose Bodies::base_of(const MultibodyDef& def) const {
+  const Pose given{def.position, def.orientation.normalized()};
+  if (def.base == no_body) return given;
+  const Body& base = sim_.body(def.base);
+  TW_REQUIRE(base.fixed() && !base.info.removed && !def.free,
+             "the base of the multibody " + def.name + " is " + base.info.name +
+                 "; expected a fixed body, 'fixed or 'free");
+  return base.motion->pose(0) * base.X_PB * given;
+}
+
+std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   sim_.require_between_runs("a multibody was added");
   Scene& scene = sim_.scene;
+  MultibodyDef def = given;
+  if (def.base != no_body) {
+    const Pose base = base_of(def);
+    def.position = base.p, def.orientation = base.q;
+  }
   const std::uint32_t number = static_cast<std::uint32_t>(scene.multibodies.size());
   std::shared_ptr<Multibody> multibody = make_multibody(def, number);
   for (const LinkDef& link : def.links)
@@ -56,8 +72,10 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& def) {
                    " is taken; expected a multibody with a name that no other has");
   const MultibodyStatePtr joints = joints_at_birth(*multibody, def);
   const BodyId first = static_cast<BodyId>(scene.bodies.size());
-  for (const BodyDef& body : link_bodies(*multibody, def, *joints))
-    multibody->links.push_back(add(body, first));
+  const std::vector<BodyDef> bodies = link_bodies(*multibody, def, *joints);
+  // errors come before there are some of them
+  for (const BodyDef& body : bodies) make_body(body, first, body.name);
+  for (const BodyDef& body : bodies) multibody->links.push_back(add(body, first));
   for (std::uint32_t i = 0; i < multibody->links.size(); ++i) {
     Body& body = *scene.bodies[multibody->links[i]];
     body.multibody = multibody.get();
@@ -65,6 +83,10 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& def) {
     multibody->principal.push_back(body.X_BP);
     for (const int link : neighbours_of(multibody->tree, static_cast<int>(i)))
       body.neighbours.push_back(multibody->links[static_cast<std::size_t>(link)]);
+    if (def.base == no_body || !hangs_on_base(multibody->tree, static_cast<int>(i))) continue;
+    body.neighbours.insert(
+        std::lower_bound(body.neighbours.begin(), body.neighbours.end(), def.base), def.base);
+    scene.bodies[def.base]->neighbours.push_back(body.id());
   }
   scene.multibodies.push_back(multibody);
 

@@ -40,6 +40,7 @@ class Bodies {
   void check_overlaps(const Body& body);
 
  private:
+  Pose base_of(const MultibodyDef& def) const;
   // `born_as`: whose id its birth has.
   BodyId add(const BodyDef& def, BodyId born_as);
   void require_no_overlap(const Body& a, const Body& b) const;

@@ -46,8 +46,11 @@ class StateView {
   // Acts from here on, beside those that do.
   virtual void add_force(ForceLawPtr law) = 0;
   virtual void set_slots(SlotsPtr slots) = 0;
-  // Of a link: to be changed; a new arc starts.
-  virtual MultibodyState& change_joints() { throw UserError("this view has no joints to change"); }
+  // Of a link: `change` gets a copy of how the joints stand, which is checked and then holds; a new
+  // arc starts where it differs.  Errors: as of check_joints (kernel/joint-changes.h).
+  virtual void change_joints(const std::function<void(MultibodyState&)>& /*change*/) {
+    throw UserError("this view has no joints to change");
+  }
   // Edits only (World::edit), never in callbacks.
   virtual void set_pose(const Vec3& position, const Quat& orientation) = 0;
   // Uniform in [0, 1), from the generator that lives in the state.

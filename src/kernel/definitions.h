@@ -48,7 +48,9 @@ struct LinkDef {
 struct MultibodyDef {
   std::string name;                     // empty: multibody-N with N its number
   bool free = false;                    // else its base stands where it is put
-  Vec3 position = Vec3::Zero();         // of the base, or of the free first link's frame, world
+  BodyId base = no_body;                // a fixed body that it stands on; excludes `free`
+  Vec3 position = Vec3::Zero();         // of the base, or of the free first link's frame; in the
+                                        // world, or the base's body frame
   Quat orientation = Quat::Identity();  // normalised here
   std::vector<LinkDef> links;           // parents first; bodies are named MULTIBODY/LINK
   Place place;

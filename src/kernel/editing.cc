@@ -27,7 +27,7 @@ Key Editing::edit_key(const std::vector<ProcessId>& concerned) {
   return {sim_.present.time, microstep, KeyKind::edit, sim_.present.edits++};
 }
 
-bool Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
+std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
   sim_.require_between_runs("a body was changed");
   const Body& body = sim_.body(id);
   const Region region = region_of(sim_.before(sim_.present.key()), {body.process}, true);
@@ -36,13 +36,13 @@ bool Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
   const Key key = edit_key(concerned);
   std::vector<Successor> successors{make_successor(sim_.before(key), body.process, false)};
   successors[0].role = Role::record;
-  const Vec3 x_before = successors[0].point.x;
-  const Quat q_before = successors[0].point.q;
   SuccessorView view(successors[0], key, true, sim_.present.settings.gravity);
   change(view);
   groups_.regroup_edited(key, successors);
   discontinuities_.enter(key, successors);
-  return successors[0].point.x != x_before || successors[0].point.q.coeffs() != q_before.coeffs();
+  if (!successors[0].placed) return {};
+  if (body.multibody) return body.multibody->links;
+  return {id};
 }
 
 void Editing::set_gravity(const Vec3& gravity) {

@@ -22,8 +22,9 @@ class Editing {
   Editing(Simulation& simulation, Discontinuities& discontinuities, GroupEvents& groups)
       : sim_(simulation), discontinuities_(discontinuities), groups_(groups) {}
 
-  // `change` gets a view of the body.  True: it was placed elsewhere.
-  bool edit(BodyId id, const std::function<void(StateView&)>& change);
+  // `change` gets a view of the body.  Those that were placed elsewhere: it, or the links of its
+  // multibody.
+  std::vector<BodyId> edit(BodyId id, const std::function<void(StateView&)>& change);
   void set_gravity(const Vec3& gravity);
   // All groups take what was set since, and wake.
   void renew_groups();

@@ -50,8 +50,8 @@ void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
 }
 
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
-  const bool moved = editing.edit(id, change);
-  if (moved && simulation.present.begun) bodies.check_overlaps(simulation.body(id));
+  for (const BodyId placed : editing.edit(id, change))
+    if (simulation.present.begun) bodies.check_overlaps(simulation.body(placed));
 }
 
 // ---- the loop ----

@@ -90,24 +90,34 @@ std::vector<BodyDef> link_bodies(const Multibody& multibody, const MultibodyDef&
   return bodies;
 }
 
-std::vector<int> neighbours_of(const Tree& tree, int link) {
-  // two nodes may stand for one joint: a universal one has one without a link of its own
-  const auto parent_with_links = [&](int node) {
-    int at = tree.node(node).parent;
-    const auto has_links = [&](int n) {
-      return std::any_of(tree.links().begin(), tree.links().end(),
-                         [n](const Link& other) { return other.node == n; });
-    };
-    while (at >= first_node && !has_links(at)) at = tree.node(at).parent;
-    return at;
+namespace {
+
+// Two nodes may stand for one joint: a universal one has one without a link of its own.
+int parent_with_links(const Tree& tree, int node) {
+  int at = tree.node(node).parent;
+  const auto has_links = [&](int n) {
+    return std::any_of(tree.links().begin(), tree.links().end(),
+                       [n](const Link& other) { return other.node == n; });
   };
+  while (at >= first_node && !has_links(at)) at = tree.node(at).parent;
+  return at;
+}
+
+}  // namespace
+
+bool hangs_on_base(const Tree& tree, int link) {
+  const int node = tree.link(link).node;
+  return node == base_node || (node >= first_node && parent_with_links(tree, node) == base_node);
+}
+
+std::vector<int> neighbours_of(const Tree& tree, int link) {
   const int node = tree.link(link).node;
   std::vector<int> found;
   for (int other = 0; other < tree.link_count(); ++other) {
     if (other == link) continue;
     const int theirs = tree.link(other).node;
-    if (theirs == node || (node >= first_node && parent_with_links(node) == theirs) ||
-        (theirs >= first_node && parent_with_links(theirs) == node))
+    if (theirs == node || (node >= first_node && parent_with_links(tree, node) == theirs) ||
+        (theirs >= first_node && parent_with_links(tree, theirs) == node))
       found.push_back(other);
   }
   return found;

@@ -24,5 +24,7 @@ std::vector<BodyDef> link_bodies(const Multibody& multibody, const MultibodyDef&
 
 // The links that a joint or a weld joins to this one, ascending.
 std::vector<int> neighbours_of(const multibody::Tree& tree, int link);
+// Whether a joint or a weld joins it to the base.
+bool hangs_on_base(const multibody::Tree& tree, int link);
 
 }  // namespace tw

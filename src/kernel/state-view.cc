@@ -7,6 +7,8 @@
 
 #include "base/limits.h"
 #include "base/random.h"
+#include "groups/joints.h"
+#include "kernel/joint-changes.h"
 
 namespace tw {
 
@@ -31,11 +33,20 @@ void SuccessorView::require_no_link(const char* what) const {
                                               ", expected a change of its joints");
 }
 
-MultibodyState& SuccessorView::change_joints() {
+void SuccessorView::change_joints(const std::function<void(MultibodyState&)>& change) {
   TW_REQUIRE(successor_.joints,
              successor_.body->info.name + " has no joints; expected a link of a multibody");
+  MultibodyState changed = *successor_.joints;
+  change(changed);
+  if (changed == *successor_.joints) return;
+  check_joints(*successor_.body->multibody, *successor_.joints, may_place_, changed);
   start_arc();
-  return *successor_.joints;
+  successor_.placed = successor_.placed || changed.q != successor_.joints->q;
+  successor_.joints_changed = true;
+  *successor_.joints = std::move(changed);
+  successor_.point = PlacedJoints(*successor_.body->multibody, *successor_.joints)
+                         .link(static_cast<int>(successor_.body->link));
+  state_ = body_state(*successor_.body, successor_.point);
 }
 
 double SuccessorView::kinetic_energy() const {

@@ -108,6 +108,12 @@ std::optional<std::uint32_t> World::find_multibody(const std::string& name) cons
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> World::multibody_of(BodyId id) const {
+  const Multibody* multibody = kernel_->simulation.body(id).multibody;
+  if (!multibody) return std::nullopt;
+  return multibody->number;
+}
+
 MultibodyState World::joints(std::uint32_t number) const {
   const Simulation& simulation = kernel_->simulation;
   const State* state =

@@ -74,6 +74,8 @@ class World {
   const Multibody& multibody(std::uint32_t number) const;
   std::optional<std::uint32_t> find_multibody(const std::string& name) const;
   std::size_t multibody_count() const;
+  // Of a link; nullopt of other bodies.
+  std::optional<std::uint32_t> multibody_of(BodyId id) const;
   // Between runs: it touches nothing from now on, what lay on it falls, callbacks that have it
   // among their targets end. Its number is not given again, its name may be.  Errors: it was
   // removed before.

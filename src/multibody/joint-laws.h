@@ -32,6 +32,7 @@ struct ServoGains {
   double stiffness = 0;                                         // N m/rad or N/m
   double damping = 0;                                           // N m s/rad or N s/m
   double max_torque = std::numeric_limits<double>::infinity();  // N m or N
+  bool operator==(const ServoGains&) const = default;
 };
 
 enum class Stop : std::uint8_t { none, lower, upper };

@@ -7,6 +7,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +26,7 @@ struct MultibodyState {
   std::vector<multibody::ServoGains> servos;
   std::vector<multibody::Stop> stops;
 
+  bool operator==(const MultibodyState&) const = default;
   multibody::Inputs inputs() const { return {torques, servos, targets, target_velocities, stops}; }
 };
 using MultibodyStatePtr = std::shared_ptr<const MultibodyState>;
@@ -37,5 +40,12 @@ struct Multibody {
   std::vector<BodyId> links;    // ascending, one a link of the tree
   std::vector<Pose> principal;  // of each: the principal frame in the link's
 };
+
+// How far a link reaches, m: its shape, what lies between its joint and its parent's, or, where
+// there is neither, its radius of gyration.
+inline double extent_of_link(const Body& body) {
+  const Vec3& offset = body.multibody->tree.link(static_cast<int>(body.link)).placement.p;
+  return std::max({body.radius, offset.norm(), std::sqrt(body.moments.maxCoeff() / body.mass)});
+}
 
 }  // namespace tw

@@ -1,6 +1,7 @@
 // Scheme primitives: making bodies and asking about them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "integrate/keyframes.h"
+#include "script/body-def.h"
 #include "script/primitive.h"
 #include "script/scm-slots.h"
 #include "script/types.h"
@@ -41,16 +42,16 @@ constexpr Property properties[] = {
     {"visible?", [](BodyDef& d, SCM v, const char*) { d.visible = to_bool(v); }},
 };
 
-void read_property(BodyDef& def, SCM name, SCM value) {
+void read_property(BodyDef& def, SCM name, SCM value, const char* who) {
   const std::string text = to_symbol_name(name, "the property");
   for (const Property& property : properties)
     if (text == property.name) return property.read(def, value, property.name);
-  throw UserError("add-body! knows no " + text);
+  throw UserError(std::string(who) + " knows no " + text);
 }
 
 const BodyInfo& info_of(SCM object) {
   if (is_view(object)) return to_world(view_world(object)).body(to_view(object).body());
-  if (!is_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
+  if (!stands_for_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
   return to_world(body_world(object)).body(body_number(object));
 }
 
@@ -64,12 +65,17 @@ const char* kind_text(BodyKind kind) {
 
 }  // namespace
 
+BodyDef to_body_def(SCM alist, const char* who) {
+  BodyDef def;
+  for (SCM rest = alist; scm_is_pair(rest); rest = SCM_CDR(rest))
+    read_property(def, SCM_CAAR(rest), SCM_CDAR(rest), who);
+  return def;
+}
+
 TW_PRIMITIVE(add_body, "%add-body!", (SCM world, SCM alist, SCM place),
              "Add a body with the properties of an alist; return its handle.") {
   require_outside_callbacks("add-body!");
-  BodyDef def;
-  for (SCM rest = alist; scm_is_pair(rest); rest = SCM_CDR(rest))
-    read_property(def, SCM_CAAR(rest), SCM_CDAR(rest));
+  BodyDef def = to_body_def(alist, "add-body!");
   if (is_place(place)) def.place = to_place(place);
   const BodyId id = to_world(world).add_body(def);
   // keeps the symbols that name the slots, and a motion's procedure
@@ -103,11 +109,16 @@ TW_PRIMITIVE(find_body, "%find-body", (SCM world, SCM name),
 }
 
 TW_PRIMITIVE(body_name, "%body-name", (SCM body), "Return the name of a body or view.") {
+  if (is_multibody(body)) return from_string(to_own_multibody(body).name);
   return from_string(info_of(body).name);
 }
 
 TW_PRIMITIVE(body_mass, "%body-mass", (SCM body), "Return the mass in kg.") {
-  return scm_from_double(info_of(body).mass);
+  if (!is_multibody(body)) return scm_from_double(info_of(body).mass);
+  double sum = 0;
+  for (const BodyId link : to_own_multibody(body).links)
+    sum += to_world(body_world(body)).body(link).mass;
+  return scm_from_double(sum);
 }
 
 TW_PRIMITIVE(body_kind, "%body-kind", (SCM body), "Return dynamic, fixed or kinematic.") {

@@ -82,7 +82,7 @@ class ScmForce final : public ForceProcedure, Live<LiveKind::callback> {
 
 TW_PRIMITIVE(applied_torque, "%applied-torque", (SCM object), "Applied torque, N m, world frame.") {
   if (is_view(object)) return from_vec3(to_view(object).applied_torque());
-  if (!is_body(object)) throw BadValue{"applied-torque", object, "a body or a view of one"};
+  if (!stands_for_body(object)) throw BadValue{"applied-torque", object, "a body or a view of one"};
   return from_vec3(quiet_world_of(object, "applied-torque").applied_torque(to_own_body(object)));
 }
 
@@ -94,7 +94,7 @@ TW_PRIMITIVE(set_applied_torque, "%set-applied-torque!", (SCM object, SCM value)
     change(to_view(object));
     return SCM_UNSPECIFIED;
   }
-  if (!is_body(object)) throw BadValue{"applied-torque", object, "a body or a view of one"};
+  if (!stands_for_body(object)) throw BadValue{"applied-torque", object, "a body or a view of one"};
   quiet_world_of(object, "applied-torque").edit(to_own_body(object), change);
   return SCM_UNSPECIFIED;
 }

@@ -15,6 +15,8 @@ void define_interrupt();
 void define_shapes();
 void define_bodies();
 void define_states();
+void define_multibodies();
+void define_joints();
 void define_contact();
 void define_callbacks();
 void define_collisions();
@@ -38,6 +40,8 @@ extern "C" void tw_init_guile() {
   tw::define_shapes();
   tw::define_bodies();
   tw::define_states();
+  tw::define_multibodies();
+  tw::define_joints();
   tw::define_contact();
   tw::define_callbacks();
   tw::define_collisions();

@@ -49,7 +49,7 @@ class Freezer {
   SCM copy(SCM value, int depth = 0) {
     // what nobody can change stands for itself
     if (SCM_IMP(value) || scm_is_number(value) || scm_is_symbol(value) || scm_is_keyword(value) ||
-        is_body(value))
+        stands_for_body(value))
       return value;
     if (depth == most_depth) refuse(value, shallow);
     if (scm_is_pair(value)) return copy_list(value, depth);

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* body_or_view = "a body or a view of one";
 
 World& readable_world(SCM body, const char* what) {
-  if (!is_body(body)) throw BadValue{what, body, body_or_view};
+  if (!stands_for_body(body)) throw BadValue{what, body, body_or_view};
   require_outside_callbacks(what);
   return to_world(body_world(body));
 }
@@ -85,8 +85,11 @@ TW_PRIMITIVE(angular_velocity, "%angular-velocity", (SCM object), "Angular veloc
 
 TW_PRIMITIVE(kinetic_energy, "%kinetic-energy", (SCM object), "Kinetic energy, J.") {
   if (is_view(object)) return scm_from_double(to_view(object).kinetic_energy());
-  return scm_from_double(
-      readable_world(object, "kinetic-energy").kinetic_energy(to_own_body(object)));
+  const World& world = readable_world(object, "kinetic-energy");
+  if (!is_multibody(object)) return scm_from_double(world.kinetic_energy(to_own_body(object)));
+  double sum = 0;
+  for (const BodyId link : to_own_multibody(object).links) sum += world.kinetic_energy(link);
+  return scm_from_double(sum);
 }
 
 TW_PRIMITIVE(applied_force, "%applied-force", (SCM object), "Applied force, N, world frame.") {

@@ -9,7 +9,8 @@ namespace tw {
 
 namespace {
 
-SCM world_type, body_type, view_type, shape_type, motion_type, collision_type, checkpoint_type;
+SCM world_type, body_type, multibody_type, view_type, shape_type, motion_type, collision_type,
+    checkpoint_type;
 
 struct ShapeBox : Live<LiveKind::shape> {
   ShapePtr shape;
@@ -50,6 +51,22 @@ SCM scm_field(SCM object, std::size_t index) {
   return SCM_PACK_POINTER(scm_foreign_object_ref(object, index));
 }
 
+// Of a body or multibody.
+std::uint32_t number_of(SCM object) {
+  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(field(object, 0)));
+}
+
+// The object that stands for a number in a world's table, made at first use.
+SCM handle_of(SCM type, SCM world, std::uint32_t number, SCM key) {
+  const SCM table = world_table(world);
+  SCM object = scm_hashv_ref(table, key, SCM_BOOL_F);
+  if (scm_is_true(object)) return object;
+  object = scm_make_foreign_object_2(type, reinterpret_cast<void*>(std::uintptr_t{number}),
+                                     SCM_UNPACK_POINTER(world));
+  scm_hashv_set_x(table, key, object);
+  return object;
+}
+
 }  // namespace
 
 // ---- worlds ----
@@ -84,7 +101,7 @@ bool is_body(SCM object) { return has_type(object, body_type); }
 SCM body_world(SCM body) { return scm_field(body, 1); }
 
 BodyId to_body(SCM world, SCM object, const char* name) {
-  if (!is_body(object)) throw BadValue{name, object, "a body"};
+  if (!stands_for_body(object)) throw BadValue{name, object, "a body"};
   if (!scm_is_eq(body_world(object), world))
     throw BadValue{name, object, "a body of the current world (this one belongs to another)"};
   const BodyId id = body_number(object);
@@ -93,18 +110,25 @@ BodyId to_body(SCM world, SCM object, const char* name) {
 }
 
 BodyId body_number(SCM body) {
-  return static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(field(body, 0)));
+  if (is_multibody(body)) return to_own_multibody(body).links.front();
+  return number_of(body);
 }
 
-SCM from_body(SCM world, BodyId id) {
-  const SCM table = world_table(world);
-  const SCM key = scm_from_uint32(id);
-  SCM body = scm_hashv_ref(table, key, SCM_BOOL_F);
-  if (scm_is_true(body)) return body;
-  body = scm_make_foreign_object_2(body_type, reinterpret_cast<void*>(std::uintptr_t{id}),
-                                   SCM_UNPACK_POINTER(world));
-  scm_hashv_set_x(table, key, body);
-  return body;
+SCM from_body(SCM world, BodyId id) { return handle_of(body_type, world, id, scm_from_uint32(id)); }
+
+// ---- multibodies ----
+
+bool is_multibody(SCM object) { return has_type(object, multibody_type); }
+
+const Multibody& to_multibody(SCM world, SCM object, const char* name) {
+  if (!is_multibody(object)) throw BadValue{name, object, "a multibody, as add-multibody! returns"};
+  if (!scm_is_eq(body_world(object), world))
+    throw BadValue{name, object, "a multibody of the current world (this one belongs to another)"};
+  return to_world(world).multibody(number_of(object));
+}
+
+SCM from_multibody(SCM world, std::uint32_t number) {
+  return handle_of(multibody_type, world, number, scm_from_int64(-1 - std::int64_t{number}));
 }
 
 // ---- views ----
@@ -199,6 +223,7 @@ void define_types() {
   checkpoint_type = make_type("<checkpoint>", {"box", "world"}, finalize_box<CheckpointBox>);
   world_type = make_type("<world>", {"box", "table"}, finalize_box<WorldBox>);
   body_type = make_type("<body>", {"id", "world"}, nullptr);
+  multibody_type = make_type("<multibody>", {"number", "world"}, nullptr);
   view_type = make_type("<view>", {"state", "world"}, nullptr);
   shape_type = make_type("<shape>", {"box"}, finalize_box<ShapeBox>);
   motion_type = make_type("<motion>", {"box", "kept"}, finalize_box<MotionBox>);

@@ -46,7 +46,7 @@ void keep_with_world(SCM world, SCM object);
 
 // ---- bodies ----
 bool is_body(SCM object);
-// The world that a body belongs to.
+// The world that a body or multibody belongs to.
 SCM body_world(SCM body);
 // The number of a body of `world`.  BadValue for what is no body, and for a body of another world.
 BodyId to_body(SCM world, SCM object, const char* name);
@@ -56,6 +56,16 @@ BodyId body_number(SCM body);
 inline BodyId to_own_body(SCM body) { return to_body(body_world(body), body, "the body"); }
 // The handle of a body, always the same object.
 SCM from_body(SCM world, BodyId id);
+
+// ---- multibodies ----
+bool is_multibody(SCM object);
+// What procedures on bodies take: a multibody stands for its first link.
+inline bool stands_for_body(SCM object) { return is_body(object) || is_multibody(object); }
+const Multibody& to_multibody(SCM world, SCM object, const char* name);
+inline const Multibody& to_own_multibody(SCM object) {
+  return to_multibody(body_world(object), object, "the multibody");
+}
+SCM from_multibody(SCM world, std::uint32_t number);
 
 // ---- views ----
 bool is_view(SCM object);

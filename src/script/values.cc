@@ -94,6 +94,15 @@ std::string to_symbol_name(SCM value, const char* name) {
   return text_of(scm_symbol_to_string(value));
 }
 
+std::vector<double> to_reals(SCM value, std::size_t count, const char* name, const char* expected) {
+  std::vector<double> numbers(count);
+  if (count == 1 && scm_is_real(value))
+    numbers[0] = scm_to_double(value);
+  else if (!read_reals(value, numbers.data(), count))
+    throw BadValue{name, value, expected};
+  return numbers;
+}
+
 Vec3 to_vec3(SCM value, const char* name) {
   double x[3];
   if (!read_reals(value, x, 3) || !std::isfinite(x[0] + x[1] + x[2]))
@@ -149,6 +158,13 @@ bool is_place(SCM value) {
 
 Place to_place(SCM value) {
   return {text_of(SCM_CAR(value)), scm_to_int(SCM_CADR(value)), scm_to_int(SCM_CADDR(value))};
+}
+
+SCM from_reals(std::span<const double> numbers) {
+  const SCM result = scm_c_make_vector(numbers.size(), SCM_BOOL_F);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    SCM_SIMPLE_VECTOR_SET(result, i, scm_from_double(numbers[i]));
+  return result;
 }
 
 SCM from_vec3(const Vec3& v) {

@@ -10,6 +10,7 @@
 #include <libguile.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ bool to_bool(SCM value);
 std::string to_string(SCM value, const char* name);
 // The name of a symbol.
 std::string to_symbol_name(SCM value, const char* name);
+// `count` real numbers in #(a b ...), a list or an f64vector; of one, the number alone.
+std::vector<double> to_reals(SCM value, std::size_t count, const char* name, const char* expected);
 // Three finite numbers.
 Vec3 to_vec3(SCM value, const char* name);
 // Four finite numbers, not all zero; normalised.
@@ -51,6 +54,7 @@ std::string text_of(SCM value);
 
 // ---- to Scheme ----
 
+SCM from_reals(std::span<const double> numbers);
 SCM from_vec3(const Vec3& v);
 SCM from_quat(const Quat& q);
 SCM from_matrix(const Mat3& m);

@@ -54,9 +54,10 @@ TEST(Multibodies, a_floating_tree_keeps_its_momentum) {
   world.set_gravity(Vec3::Zero());
   const std::uint32_t number = world.add_multibody(car(Vec3(0, 0, 2)));
   world.edit(world.multibody(number).links[0], [](StateView& view) {
-    MultibodyState& joints = view.change_joints();
-    for (std::size_t k = 0; k < joints.u.size(); ++k)
-      joints.u[k] = 0.3 * std::sin(1.0 + static_cast<double>(k));
+    view.change_joints([](MultibodyState& joints) {
+      for (std::size_t k = 0; k < joints.u.size(); ++k)
+        joints.u[k] = 0.3 * std::sin(1.0 + static_cast<double>(k));
+    });
   });
   const Vec3 momentum = world.total_momentum();
   ASSERT_GT(momentum.norm(), 1);
@@ -153,10 +154,11 @@ TEST(Multibodies, servos_hold_and_stiff_ones_cost_little) {
     const BodyInfo& body = world.body(world.multibody(number).links[0]);
     const double torque = body.mass * 9.81 * 0.25;
     world.edit(body.id, [&](StateView& view) {
-      MultibodyState& joints = view.change_joints();
-      const double inertia = body.mass * 0.25 / 3;
-      joints.targets = {-0.3};
-      joints.servos = {{stiffness, 2 * std::sqrt(stiffness * inertia)}};
+      view.change_joints([&](MultibodyState& joints) {
+        const double inertia = body.mass * 0.25 / 3;
+        joints.targets = {-0.3};
+        joints.servos = {{stiffness, 2 * std::sqrt(stiffness * inertia)}};
+      });
     });
     world.advance(3);
     const double q = world.joints(number).q[0];

@@ -62,12 +62,14 @@ inline void add_floor(World& world) {
 }
 
 inline void set_joint(World& world, std::uint32_t multibody, std::size_t coordinate, double q) {
-  world.edit(world.multibody(multibody).links[0],
-             [&](StateView& view) { view.change_joints().q[coordinate] = q; });
+  world.edit(world.multibody(multibody).links[0], [&](StateView& view) {
+    view.change_joints([&](MultibodyState& joints) { joints.q[coordinate] = q; });
+  });
 }
 inline void set_velocity(World& world, std::uint32_t multibody, std::size_t freedom, double u) {
-  world.edit(world.multibody(multibody).links[0],
-             [&](StateView& view) { view.change_joints().u[freedom] = u; });
+  world.edit(world.multibody(multibody).links[0], [&](StateView& view) {
+    view.change_joints([&](MultibodyState& joints) { joints.u[freedom] = u; });
+  });
 }
 
 }  // namespace tw::test
