@@ -1,4 +1,5 @@
-;; Vectors #(x y z) and quaternions #(w x y z).  Lists and f64vectors are accepted, too.
+;; Vectors #(x y z), or of any length for sums, scalar products and what follows from them, and
+;; quaternions #(w x y z).  Lists and f64vectors are accepted, too.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp vectors)
   #:use-module (timewarp errors)
@@ -7,7 +8,8 @@
   #:export (v+ v- v* dot cross norm normalize lerp q* rotate q-conjugate))
 
 ;; VALUE as a plain vector of SIZE reals.
-(define (->vector value size)
+(define* (->vector value size #:optional
+                   (expected (if (= size 3) "a vector #(x y z)" "a quaternion #(w x y z)")))
   (let ((v (cond ((vector? value) value)
                  ((list? value) (list->vector value))
                  ((f64vector? value) (list->vector (f64vector->list value)))
@@ -15,8 +17,7 @@
     (unless (and v (= (vector-length v) size)
                  (let loop ((i 0))
                    (or (= i size) (and (real? (vector-ref v i)) (loop (1+ i))))))
-      (bad-value "the argument" value
-                 (if (= size 3) "a vector #(x y z)" "a quaternion #(w x y z)")))
+      (bad-value "the argument" value expected))
     v))
 
 (define-syntax-rule (with-parts ((x y z) value) body ...)
@@ -29,40 +30,49 @@
          (w (vector-ref q 0)) (x (vector-ref q 1)) (y (vector-ref q 2)) (z (vector-ref q 3)))
     body ...))
 
-(define (add a b)
-  (with-parts ((ax ay az) a)
-    (with-parts ((bx by bz) b)
-      (vector (+ ax bx) (+ ay by) (+ az bz)))))
+(define (reals value)
+  "Return VALUE as a plain vector of reals, of whatever length."
+  (->vector value
+            (cond ((vector? value) (vector-length value))
+                  ((list? value) (length value))
+                  ((f64vector? value) (f64vector-length value))
+                  (else 3))
+            "a vector of numbers"))
 
-(define (subtract a b)
-  (with-parts ((ax ay az) a)
-    (with-parts ((bx by bz) b)
-      (vector (- ax bx) (- ay by) (- az bz)))))
+;; PROCEDURE of the numbers of two vectors, one pair after the other.
+(define (map-pairs procedure a b)
+  (let* ((a (reals a)) (b (reals b)) (size (vector-length a)) (result (make-vector size)))
+    (unless (= size (vector-length b))
+      (bad-value "the argument" b (format #f "a vector of ~a numbers, as the other" size)))
+    (do ((i 0 (1+ i))) ((= i size) result)
+      (vector-set! result i (procedure (vector-ref a i) (vector-ref b i))))))
+
+(define (scaled vector factor)
+  (map-pairs (lambda (x _) (* factor x)) vector vector))
 
 (define (v+ first . rest)
-  "Return the sum of vectors."
-  (let loop ((sum (->vector first 3)) (rest rest))
-    (if (null? rest) sum (loop (add sum (car rest)) (cdr rest)))))
+  "Return the sum of vectors of one length."
+  (let loop ((sum (reals first)) (rest rest))
+    (if (null? rest) sum (loop (map-pairs + sum (car rest)) (cdr rest)))))
 
 (define (v- first . rest)
-  "Return FIRST minus the other vectors; with one argument its negative."
+  "Return FIRST minus the other vectors, all of one length; with one argument its negative."
   (if (null? rest)
-      (with-parts ((x y z) first) (vector (- x) (- y) (- z)))
-      (let loop ((difference (->vector first 3)) (rest rest))
-        (if (null? rest) difference (loop (subtract difference (car rest)) (cdr rest))))))
+      (map-pairs (lambda (x _) (- x)) first first)
+      (let loop ((difference (reals first)) (rest rest))
+        (if (null? rest) difference (loop (map-pairs - difference (car rest)) (cdr rest))))))
 
 (define (v* a b)
   "Return the product of a number and a vector, in either order."
-  (cond ((and (real? a) (not (real? b)))
-         (with-parts ((x y z) b) (vector (* a x) (* a y) (* a z))))
-        ((real? b) (with-parts ((x y z) a) (vector (* x b) (* y b) (* z b))))
+  (cond ((and (real? a) (not (real? b))) (scaled b a))
+        ((real? b) (scaled a b))
         (else (bad-value "the argument" a "a number and a vector; see dot and cross"))))
 
 (define (dot a b)
-  "Return the scalar product of two vectors."
-  (with-parts ((ax ay az) a)
-    (with-parts ((bx by bz) b)
-      (+ (* ax bx) (* ay by) (* az bz)))))
+  "Return the scalar product of two vectors of one length."
+  (let ((products (map-pairs * a b)))
+    (let loop ((i 0) (sum 0))
+      (if (= i (vector-length products)) sum (loop (1+ i) (+ sum (vector-ref products i)))))))
 
 (define (cross a b)
   "Return the vector product of two vectors."
@@ -78,14 +88,13 @@
   "Return the unit vector along A; zero is an error."
   (let ((length (norm a)))
     (when (zero? length) (bad-value "the vector" a "one that is not zero"))
-    (with-parts ((x y z) a)
-      (vector (/ x length) (/ y length) (/ z length)))))
+    (map-pairs (lambda (x _) (/ x length)) a a)))
 
 (define (lerp a b share)
   "Return the point SHARE of the way from A to B (vectors or numbers): A at 0, B at 1."
   (if (and (real? a) (real? b))
       (+ a (* share (- b a)))
-      (add a (v* share (subtract b a)))))
+      (v+ a (v* share (v- b a)))))
 
 (define (q* . quaternions)
   "Return the product of quaternions: the rotation that applies the last one first."
@@ -112,4 +121,4 @@
   (with-quaternion ((w x y z) q)
     (let* ((u (vector x y z))
            (t (cross u v)))
-      (add (add v (v* (* 2 w) t)) (v* 2 (cross u t))))))
+      (v+ v (v* (* 2 w) t) (v* 2 (cross u t))))))

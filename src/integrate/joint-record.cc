@@ -3,6 +3,7 @@
 #include "integrate/joint-record.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -18,6 +19,11 @@ namespace {
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+// Parts of a step that have bounds of their own.
+constexpr int parts = 4;
+// Of a difference of velocities, relative.
+constexpr double rounding = 1e-15;
+
 // The velocities that the rate of a displacement means.
 void velocities_of(const Tree& tree, const double* z, const double* rate, double* u) {
   std::copy_n(rate, tree.nv(), u);
@@ -31,22 +37,6 @@ void velocities_of(const Tree& tree, const double* z, const double* rate, double
   }
 }
 
-// How fast a frame may move and turn, and how fast that may change.
-struct Rates {
-  double turn = 0, turn_change = 0, speed = 0, acceleration = 0;
-
-  // Of a point at this distance from the origin.
-  Rates at(double arm) const {
-    return {turn, turn_change, speed + turn * arm,
-            acceleration + (turn_change + turn * turn) * arm};
-  }
-  // With what the middle of a stretch of this half length shows.
-  void narrow(const Vec3& v, const Vec3& w, double half) {
-    turn = std::min(turn, w.norm() + half * turn_change);
-    speed = std::min(speed, v.norm() + half * acceleration);
-  }
-};
-
 }  // namespace
 
 PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) {
@@ -57,6 +47,45 @@ PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) 
   return {frame.p + arm, (Quat(frame.R) * principal.q).normalized(), twist.v + twist.w.cross(arm),
           twist.w};
 }
+
+// Bounds of a frame over a stretch: |w|, |w'|, |w''|, |v|, |a|, |a'|.
+struct JointRecord::Rates {
+  double turn = 0, turn_change = 0, turn_jerk = 0, speed = 0, acceleration = 0, jerk = 0;
+
+  // Of a point at this distance from the origin.
+  Rates at(double arm) const {
+    return {turn,
+            turn_change,
+            turn_jerk,
+            speed + turn * arm,
+            acceleration + (turn_change + turn * turn) * arm,
+            jerk + (turn_jerk + 3 * turn_change * turn + turn * turn * turn) * arm};
+  }
+  // With velocities at the ends of the stretch: a function is nowhere further from its mean rate
+  // than half the length times the bound of the next.
+  void narrow(const Vec3& v0, const Vec3& w0, const Vec3& v1, const Vec3& w1, double length) {
+    const double half = 0.5 * length;
+    const auto lessen = [&](double& value, double& change, double next, const Vec3& x0,
+                            const Vec3& x1) {
+      const double most = std::max(x0.norm(), x1.norm());
+      change = std::min(change, ((x1 - x0).norm() + rounding * most) / length + half * next);
+      value = std::min(value, most + half * change);
+    };
+    lessen(turn, turn_change, turn_jerk, w0, w1);
+    lessen(speed, acceleration, jerk, v0, v1);
+  }
+};
+
+// From r0 to r1 of a step.
+struct JointRecord::Stretch {
+  int step;
+  double r0, r1, length;  // s
+};
+
+// A multibody at both ends of a stretch.
+struct JointRecord::Ends {
+  const std::vector<NodeMotion>&begin, &end;
+};
 
 struct JointRecord::Placed {
   std::uint64_t record = 0;
@@ -87,6 +116,7 @@ void JointRecord::append(double time, const std::vector<double>& coefficients,
   std::fill(last_u_.begin(), last_u_.end(), 0.0);
   for (int k = 0; k <= path_.degree(); ++k)
     for (int e = 0; e < n_; ++e) last_u_[index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
+  keep_bounds(path_.steps() - 1);
 }
 
 // All links of a multibody are asked for the same times, one after the other: the last answers are
@@ -96,17 +126,34 @@ const JointRecord::Placed& JointRecord::placed(double time, Velocities which) co
   thread_local std::vector<Placed> table(places);
   Placed& p = table[(serial_ * 2 + (which == Velocities::of_path)) % places];
   if (p.record == serial_ && p.time == time && p.which == which) return p;
+  const bool of_path = which == Velocities::of_path && path_.steps() > 0;
+  const int step = of_path ? path_.step_to(time) : path_.step_from(time);
+  fill(step, step < 0 ? 0 : path_.fraction(step, time), of_path, p);
+  p.record = serial_;
+  p.time = time;
+  p.which = which;
+  return p;
+}
+
+// At a fraction of a step, with the rates of the path; until the next call.
+const JointRecord::Placed& JointRecord::place_on_path(int step, double r) const {
+  thread_local Placed places[2];
+  thread_local int next = 0;
+  next = 1 - next;
+  fill(step, r, true, places[next]);
+  return places[next];
+}
+
+// At the fraction r of a step; step -1: at the last node.
+void JointRecord::fill(int step, double r, bool of_path, Placed& p) const {
   const Tree& tree = multibody_->tree;
   p.q.resize(index(tree.nq()));
   p.u.resize(index(n_));
-  const bool of_path = which == Velocities::of_path && path_.steps() > 0;
-  const int step = of_path ? path_.step_to(time) : path_.step_from(time);
   if (step < 0) {
     std::copy_n(node(path_.steps()), tree.nq(), p.q.begin());
     p.u = last_u_;
   } else {
     p.y.resize(index(2 * n_));
-    const double r = path_.fraction(step, time);
     path_.values(step, r, p.y.data());
     displace(tree, {node(step), index(tree.nq())}, {p.y.data(), index(n_)}, p.q);
     if (of_path) {
@@ -123,10 +170,6 @@ const JointRecord::Placed& JointRecord::placed(double time, Velocities which) co
   Surroundings around;
   around.base = multibody_->base;
   place(tree, p.q, p.u, around, *p.k);
-  p.record = serial_;
-  p.time = time;
-  p.which = which;
-  return p;
 }
 
 void JointRecord::joints(double time, std::vector<double>& q, std::vector<double>& u) const {
@@ -149,70 +192,138 @@ Twist JointRecord::rates(int link, double time) const {
   return {point.v, point.w};
 }
 
-void JointRecord::add_step_bounds(int step, int link, double from, double to,
-                                  MotionBounds& bounds) const {
-  const Tree& tree = multibody_->tree;
-  const double begin = std::max(from, path_.time(step)), end = std::min(to, path_.time(step + 1));
-  const double r0 = path_.fraction(step, begin), r1 = path_.fraction(step, end);
-  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
-  const Placed& p = placed(middle, Velocities::of_path);
-  const auto rate = [&](int k, int order) { return path_.bound(step, k, order, r0, r1); };
-  const auto both = [&](int k, int order) {
-    return std::sqrt(rate(k, order) * rate(k, order) + rate(k + 1, order) * rate(k + 1, order) +
-                     rate(k + 2, order) * rate(k + 2, order));
+JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Stretch& stretch,
+                                           const Ends& ends) const {
+  const Node& node = multibody_->tree.node(i);
+  const auto rate = [&](int dof, int order) {
+    return path_.bound(stretch.step, dof, order, stretch.r0, stretch.r1);
   };
-
-  // the way from the base
-  const Link& fixed = tree.link(link);
-  std::vector<int> way;
-  for (int i = fixed.node; i >= first_node; i = tree.node(i).parent) way.push_back(i);
-  Rates rates;
-  for (auto at = way.rbegin(); at != way.rend(); ++at) {
-    const Node& node = tree.node(*at);
-    const NodeMotion& motion = p.k->node(*at);
-    const double first = rate(node.u, 1), second = rate(node.u, 2);
-    double arm = node.X_PF.p.norm();
-    if (node.kind == NodeKind::slider)
-      arm = (motion.r - p.k->node(node.parent).r).norm() + half * first;
-    const double turn = rates.turn;
-    if (node.kind != NodeKind::floating) rates = rates.at(arm);
-    if (node.kind == NodeKind::hinge) {
-      rates.turn += first;
-      rates.turn_change += second + turn * first;
-    } else if (node.kind == NodeKind::slider) {
-      rates.speed += first;
-      rates.acceleration += second + 2 * turn * first;
-    } else {
-      const int at_rotation = node.u + (node.kind == NodeKind::floating ? 3 : 0);
-      const double w = both(at_rotation, 1);
-      rates.turn += w;
-      rates.turn_change += both(at_rotation, 2) + (w + turn) * w;
-      if (node.kind == NodeKind::floating) {
-        rates.speed += both(node.u, 1);
-        rates.acceleration += both(node.u, 2);
-      }
-    }
-    rates.narrow(motion.V.v + motion.V.w.cross(motion.r), motion.V.w, half);
+  const auto all = [&](int dof, int order) {
+    return Vec3(rate(dof, order), rate(dof + 1, order), rate(dof + 2, order)).norm();
+  };
+  // of the rotation vector z of what turns by itself: w = J(z) z', and its rates, |J'| < |z'|
+  const auto turning = [&](int dof) {
+    const double first = all(dof, 1), second = all(dof, 2);
+    return std::array<double, 3>{first, second + first * first,
+                                 all(dof, 3) + 3 * first * second + first * first * first};
+  };
+  const auto narrowed = [&](Rates rates) {
+    const NodeMotion &a = ends.begin[index(i)], &b = ends.end[index(i)];
+    rates.narrow(a.V.v + a.V.w.cross(a.r), a.V.w, b.V.v + b.V.w.cross(b.r), b.V.w, stretch.length);
+    return rates;
+  };
+  if (node.kind == NodeKind::floating) {
+    const auto w = turning(node.u + 3);
+    return narrowed({w[0], w[1], w[2], all(node.u, 1), all(node.u, 2), all(node.u, 3)});
   }
-  const PoseTwist point = link_point(*multibody_, *p.k, link);
-  rates = rates.at((fixed.X_NL * fixed.center_of_mass).norm());
-  rates.narrow(point.v, point.w, half);
+  const double turn = parent.turn, change = parent.turn_change;
+  if (node.kind == NodeKind::slider) {
+    const auto arm = [&](const std::vector<NodeMotion>& nodes) {
+      return (nodes[index(i)].r - nodes[index(node.parent)].r).norm();
+    };
+    const double first = rate(node.u, 1), second = rate(node.u, 2);
+    Rates rates =
+        parent.at(std::max(arm(ends.begin), arm(ends.end)) + 0.5 * stretch.length * first);
+    rates.speed += first;
+    rates.acceleration += second + 2 * turn * first;
+    rates.jerk += rate(node.u, 3) + 3 * turn * second + 3 * (change + turn * turn) * first;
+    return narrowed(rates);
+  }
+  Rates rates = parent.at(node.X_PF.p.norm());
+  const auto w = node.kind == NodeKind::ball
+                     ? turning(node.u)
+                     : std::array<double, 3>{rate(node.u, 1), rate(node.u, 2), rate(node.u, 3)};
+  rates.turn += w[0];
+  rates.turn_change += w[1] + turn * w[0];
+  rates.turn_jerk += w[2] + 2 * turn * w[1] + (change + turn * turn) * w[0];
+  return narrowed(rates);
+}
 
-  const Vec3 reach =
-      half * point.v.cwiseAbs() + Vec3::Constant(0.5 * half * half * rates.acceleration);
-  bounds.path.add(Vec3(point.x - reach));
-  bounds.path.add(Vec3(point.x + reach));
-  bounds.speed = std::max(bounds.speed, rates.speed);
-  bounds.turn = std::max(bounds.turn, rates.turn);
-  bounds.turn_change = std::max(bounds.turn_change, rates.turn_change);
-  for (const double sign : {-1.0, 1.0})
-    bounds.acceleration.add(Vec3(Vec3::Constant(sign * rates.acceleration)));
+// The link moves from a to b.
+MotionBounds JointRecord::link_bounds(const Rates& node, int link, const Stretch& stretch,
+                                      const PoseTwist& a, const PoseTwist& b) const {
+  const Link& fixed = multibody_->tree.link(link);
+  const double length = stretch.length;
+  Rates rates = node.at((fixed.X_NL * fixed.center_of_mass).norm());
+  rates.narrow(a.v, a.w, b.v, b.w, length);
+  MotionBounds bounds;
+  bounds.speed = rates.speed;
+  bounds.turn = rates.turn;
+  bounds.turn_change = rates.turn_change;
+  // the way between is not further from the chord
+  bounds.path.add(a.x);
+  bounds.path.add(b.x);
+  bounds.path.grow(0.125 * length * length * rates.acceleration);
+  // about the mean, or, where that is less, about none
+  const double most = std::max(a.v.norm(), b.v.norm());
+  const double spread = 0.5 * length * rates.jerk + rounding * most / length;
+  const bool about_mean = spread < rates.acceleration;
+  const Vec3 mean = about_mean ? Vec3((b.v - a.v) / length) : Vec3(Vec3::Zero());
+  const Vec3 reach = Vec3::Constant(about_mean ? spread : rates.acceleration);
+  bounds.acceleration.add(Vec3(mean - reach));
+  bounds.acceleration.add(Vec3(mean + reach));
+  return bounds;
+}
+
+void JointRecord::keep_bounds(int step) {
+  const Tree& tree = multibody_->tree;
+  const double length = path_.length(step) / parts;
+  std::vector<NodeMotion> before, after;
+  std::vector<PoseTwist> links_before(multibody_->links.size()), links_after(links_before);
+  std::vector<Rates> rates(index(tree.node_count()));
+  const auto place_at = [&](double r, std::vector<NodeMotion>& nodes,
+                            std::vector<PoseTwist>& links) {
+    const Placed& p = place_on_path(step, r);
+    nodes = p.k->nodes;
+    for (int i = 0; i < tree.link_count(); ++i) links[index(i)] = link_point(*multibody_, *p.k, i);
+  };
+  place_at(0, after, links_after);
+  for (int part = 0; part < parts; ++part) {
+    before.swap(after);
+    links_before.swap(links_after);
+    const double r0 = static_cast<double>(part) / parts, r1 = (part + 1.0) / parts;
+    place_at(r1, after, links_after);
+    const Stretch stretch{step, r0, r1, length};
+    for (int i = first_node; i < tree.node_count(); ++i)
+      rates[index(i)] = node_rates(i, rates[index(tree.node(i).parent)], stretch, {before, after});
+    for (int i = 0; i < tree.link_count(); ++i)
+      kept_bounds_.push_back(link_bounds(rates[index(tree.link(i).node)], i, stretch,
+                                         links_before[index(i)], links_after[index(i)]));
+  }
+}
+
+// Within a step.
+MotionBounds JointRecord::short_bounds(int step, int link, double from, double to) const {
+  const Tree& tree = multibody_->tree;
+  const Stretch stretch{step, path_.fraction(step, from), path_.fraction(step, to), to - from};
+  const Placed& p = place_on_path(step, stretch.r0);
+  const std::vector<NodeMotion> before = p.k->nodes;
+  const PoseTwist begin = link_point(*multibody_, *p.k, link);
+  const Placed& after = place_on_path(step, stretch.r1);
+  // the way from the base
+  std::vector<int> way;
+  for (int i = tree.link(link).node; i >= first_node; i = tree.node(i).parent) way.push_back(i);
+  Rates rates;
+  for (auto at = way.rbegin(); at != way.rend(); ++at)
+    rates = node_rates(*at, rates, stretch, {before, after.k->nodes});
+  return link_bounds(rates, link, stretch, begin, link_point(*multibody_, *after.k, link));
 }
 
 MotionBounds JointRecord::bounds(int link, double from, double to) const {
-  MotionBounds result;
+  // of its part, below which a stretch has bounds of its own
+  constexpr double short_share = 0.125;
   const int last = path_.step_to(to), first = std::min(std::max(path_.step_from(from), 0), last);
-  for (int i = from < to ? first : last; i <= last; ++i) add_step_bounds(i, link, from, to, result);
+  MotionBounds result;
+  if (from < to && first == last && to - from < short_share * path_.length(last) / parts) {
+    result = short_bounds(last, link, from, to);
+  } else {
+    const auto part_of = [&](int step, double time) {
+      return step * parts +
+             std::clamp(static_cast<int>(path_.fraction(step, time) * parts), 0, parts - 1);
+    };
+    const int end = part_of(last, to), begin = from < to ? part_of(first, from) : end;
+    for (int i = begin; i <= end; ++i) result.add(kept_bounds(i, link));
+  }
   // rounding
   const double largest =
       std::max(result.path.lo.cwiseAbs().maxCoeff(), result.path.hi.cwiseAbs().maxCoeff());
@@ -266,6 +377,8 @@ JointRecord JointRecord::stretch(double from) const {
   if (path_.steps() == 0) return copy;
   copy.path_ = path_.stretch(from);
   copy.nodes_.assign(node(first), nodes_.data() + nodes_.size());
+  copy.kept_bounds_.assign(&kept_bounds(first * parts, 0),
+                           kept_bounds_.data() + kept_bounds_.size());
   return copy;
 }
 

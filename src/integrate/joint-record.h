@@ -3,8 +3,10 @@
 // At the nodes of the steps the positions q; within each step the displacement from its start and
 // the velocities u as polynomials.  Links are where the joints put them at every time, so that
 // joints hold to rounding, and what is asked of a link follows from its way to the base:
-// bounds go from link to link with |w'| and |a|, each by the lesser of what the joint before may
-// add and what the middle of the stretch shows.
+// bounds go from link to link with |w'|, |w''|, |a| and |a'|, each by the lesser of what the joint
+// before may add and what the two ends of the stretch show.  Those of a few parts of every step are
+// made with the step, of all links in one pass; what is asked for is put together from them, but
+// for stretches that are short against their part.
 //
 // Frames: links by their principal frames at the centre of mass, in the world.
 //
@@ -53,10 +55,23 @@ class JointRecord {
   enum class Velocities { integrated, of_path };
   struct Placed;
   const Placed& placed(double time, Velocities which) const;
+  const Placed& place_on_path(int step, double r) const;
+  void fill(int step, double r, bool of_path, Placed& p) const;
   double value(const multibody::Axis& axis, int step, double r) const;
   double first_beyond(const multibody::Axis& axis, double side, double limit, int step, double r0,
                       double r1, bool& inside) const;
-  void add_step_bounds(int step, int link, double from, double to, MotionBounds& bounds) const;
+  struct Rates;
+  struct Stretch;
+  struct Ends;
+  Rates node_rates(int node, const Rates& parent, const Stretch& stretch, const Ends& ends) const;
+  MotionBounds link_bounds(const Rates& node, int link, const Stretch& stretch, const PoseTwist& a,
+                           const PoseTwist& b) const;
+  void keep_bounds(int step);
+  MotionBounds short_bounds(int step, int link, double from, double to) const;
+  const MotionBounds& kept_bounds(int part, int link) const {
+    return kept_bounds_[static_cast<std::size_t>(part) * multibody_->links.size() +
+                        static_cast<std::size_t>(link)];
+  }
   const double* node(int i) const {
     return nodes_.data() +
            static_cast<std::size_t>(i) * static_cast<std::size_t>(multibody_->tree.nq());
@@ -65,9 +80,10 @@ class JointRecord {
 
   const Multibody* multibody_;
   int n_;
-  StepPolynomials path_;        // displacements, velocities
-  std::vector<double> nodes_;   // q
-  std::vector<double> last_u_;  // at the last node
+  StepPolynomials path_;                   // displacements, velocities
+  std::vector<double> nodes_;              // q
+  std::vector<double> last_u_;             // at the last node
+  std::vector<MotionBounds> kept_bounds_;  // links over the first part of the first step, ..
   std::uint64_t serial_ = next_serial();
 };
 

@@ -11,6 +11,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -31,6 +32,15 @@ struct MotionBounds {
   double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump
   double valid_until = never;  // s; `never`: as long as the trajectory goes on
 
+  // Both hold then, one after the other.
+  void add(const MotionBounds& other) {
+    path.add(other.path);
+    acceleration.add(other.acceleration);
+    speed = std::max(speed, other.speed);
+    turn = std::max(turn, other.turn);
+    turn_change = std::max(turn_change, other.turn_change);
+    valid_until = std::min(valid_until, other.valid_until);
+  }
   // Only the speeds are bounded.
   bool velocity_may_jump() const { return acceleration.unbounded(); }
 };

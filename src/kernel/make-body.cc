@@ -60,6 +60,8 @@ void resolve_shape(Body& body, const BodyDef& def) {
   body.unbounded = !body.shape_P->bounded();
   body.radius = body.shape_P->radius_about_origin();
   body.least_width = body.shape_P->least_width();
+  TW_REQUIRE(!body.unbounded || !body.dynamic(),
+             body.info.name + " is a half-space that moves freely; expected #:fixed? or #:motion");
   if (body.dynamic()) {
     int axis = 0;
     body.moments.minCoeff(&axis);

@@ -43,6 +43,7 @@
   (if (null? list) 'none (list-ref list (modulo number (length list)))))
 (define (a-kept kind number) (pick (hashq-ref kept kind '()) number))
 (define (a-body number) (pick (world-bodies) number))
+(define (a-multibody number) (pick (world-multibodies) number))
 
 (define other-world (make-world))
 (define other-body
@@ -124,6 +125,16 @@
 (define (a-plain-vector)
   (vector (short (uniform -2 2)) (short (uniform -2 2)) (short (uniform -1 3))))
 
+(define (a-link depth)
+  `(link ',(one-of '(n arm-1 arm-2)) #:joint ,(a-joint) #:shape ,(a-shape)
+         ,@(if (chance 0.3) (list (a-link depth)) '())
+         ,@(if (chance 0.1) (list (a-wild-value)) '())))
+
+(define (a-joint)
+  (one-of-these `(revolute #:axis ,(a-vector)) '(revolute #:axis #(0 1 0) #:limits '(-1 2))
+                '(prismatic #:stiffness 100 #:damping 1) '(spherical #:at #(0 0 0.5)) '(universal)
+                '(weld #:at #(0.5 0 0))))
+
 (define (a-procedure depth)
   (if (zero? depth)
       (one-of '(list car (lambda arguments #f) (lambda (time) 1) (lambda () 1)))
@@ -150,13 +161,26 @@
     ((shape s) (a-shape))
     ((radius length x y z size) (a-length))
     ((points) `(list ,@(map (lambda _ (a-vector)) (iota (+ 4 (draw 8))))))
-    ((position velocity angular-velocity eye target normal axis center-of-mass up direction v
+    ((position velocity angular-velocity eye normal axis center-of-mass up direction v
                gravity)
      (a-vector))
     ((color zenith horizon ground) (one-of '(#(1 0 0) #(0.2 0.5 1) #(0 0 0))))
     ((orientation q) (a-quaternion))
     ((body view contact-body) (if (chance 0.7) `(a-body ,(draw 10)) `(a-kept 'view ,(draw 20))))
     ((follow) `(a-body ,(draw 10)))
+    ((multibody) (if (chance 0.8) `(a-multibody ,(draw 3)) `(a-kept 'view ,(draw 20))))
+    ((joint) (a-joint))
+    ((at point at-a at-b) (a-vector))
+    ((base) (one-of '('fixed 'free (a-body 0))))
+    ((limits) (one-of '('(-1 1) '(0 0.5) '((-1 1) (0 2)) '(1 -1) #(-3 3))))
+    ((target) (one-of-these (a-vector) (short (uniform -2 2)) (a-quaternion) #(0.1 0.2)))
+    ((target-velocity) (one-of-these (short (uniform -2 2)) (a-vector) #(0.1 0.2)))
+    ((max-torque) (one-of '(1 100 1e300 +inf.0 -1)))
+    ((positions velocities accelerations) (one-of '(#(0 0) #(0.3 -0.2) #(0 0 0 1 0 0 0) #(1))))
+    ((tolerance) (one-of '(1e-6 1e-3 0 -1)))
+    ((starts) (one-of '(1 6 0)))
+    ((rest) (one-of-these (short (uniform -1 1)) (a-quaternion)))
+    ((stop-stiffness) (one-of '(1e3 1e5 0 -1)))
     ((targets) (if (chance 0.5) 
                    `(a-body ,(draw 10))
                    `(list (a-body ,(draw 10)) (a-body ,(draw 10)))))
@@ -174,7 +198,7 @@
                       '((0 #(1e300 0 0)) (1 #(0 0 0))))))
     ((max-speed) (one-of '(1 0.5 10 1e-3 #f)))
     ((material) (one-of '('rubber 'steel)))
-    ((name) (if (chance 0.5) ''n (one-of names)))
+    ((name) (one-of-these ''n ''arm-1 ''arm-2 (one-of names)))
     ((slots) ''((n . 0) (list 1 2)))
     ((value) (one-of-these (a-vector) (one-of numbers) ''(1 2)))
     ((restitution friction) (if (chance 0.8) (short (uniform 0 1)) (one-of numbers)))
@@ -229,9 +253,8 @@
               (set! found (cons (list name (arguments-of value)) found))
               (when (procedure-with-setter? value)
                 (set! found (cons (list `(setter ,name)
-                                        (if (eq? name 'slot)
-                                            '((body name value) () #f ())
-                                            '((body value) () #f ())))
+                                        (match (arguments-of value)
+                                          ((required . _) `((,@required value) () #f ()))))
                                   found))))))
         (resolve-interface module)))
      '((timewarp) (timewarp vectors)))
@@ -265,7 +288,10 @@
                                    '())
                                (if (null? keywords)
                                    '()
-                                   (keywords-for name keywords depth wildness)))))
+                                   (keywords-for name keywords depth wildness))
+                               (if (and rest? (memq name '(link add-multibody!)))
+                                   (map (lambda _ (a-link depth)) (iota (1+ (draw 2))))
+                                   '()))))
        (cons name
              (cond ((chance 0.97) arguments)
                    ((and (pair? arguments) (chance 0.5)) (cdr arguments))
@@ -276,12 +302,16 @@
 
 ;; The bodies that an episode begins with: well apart over a ground, so that runs happen.
 (define (a-body-to-add number)
-  (if (zero? number)
-      `(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t #:material 'steel)
-      (match (call-of (assq 'add-body! procedures) 2)
-        ((name . arguments)
-         (cons name (with-position (vector (* 2.2 (modulo number 3)) (* 2.2 (quotient number 3)) 0)
-                      arguments))))))
+  (case number
+    ((0) `(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t #:material 'steel))
+    ((1) `(add-multibody! #:name 'arm #:position #(0 -3 0.5)
+            (link 'arm-1 #:joint ,(a-joint) #:shape (box 0.3 0.2 0.1)
+              (link 'arm-2 #:joint ,(a-joint) #:shape (placed (sphere 0.1) #:position #(0.4 0 0))))))
+    (else
+     (match (call-of (assq 'add-body! procedures) 2)
+       ((name . arguments)
+        (cons name (with-position (vector (* 2.2 (modulo number 3)) (* 2.2 (quotient number 3)) 0)
+                     arguments)))))))
 
 (define (with-position position arguments)
   (match arguments

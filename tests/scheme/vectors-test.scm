@@ -27,7 +27,13 @@
   (test-assert "the conjugate undoes a rotation"
     (close? #(1 2 3) (rotate (q-conjugate quarter) (rotate quarter #(1 2 3))) 1e-15)))
 
-(test-message "a vector of two" "argument is #\\(1 2\\); expected a vector" (v+ #(1 2) #(1 2 3)))
+(test-equal "vectors of any length" '(#(5 7 9 11) 40 5)
+  (list (v- (v* 2 (v+ #(1 2 3 4) #(2 2 2 2))) #(1 1 1 1)) (dot #(1 2 3 4) #(2 3 4 5)) (norm #(3 4))))
+(test-message "vectors of two lengths"
+  "argument is #\\(1 2 3\\); expected a vector of 2 numbers, as the other" (v+ #(1 2) #(1 2 3)))
+(test-message "no vector product of two numbers" "argument is #\\(1 2\\); expected a vector"
+  (cross #(1 2) #(1 2 3)))
+(test-message "no numbers" "argument is #\\(a\\); expected a vector of numbers" (v+ #(a)))
 (test-message "zero has no direction" "expected one that is not zero" (normalize #(0 0 0)))
 (test-message "two vectors are no product" "expected a number and a vector" (v* #(1 2 3) #(1 2 3)))
 
