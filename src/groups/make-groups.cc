@@ -160,6 +160,20 @@ const Group* same_before(const Regrouping& work, const Group& group) {
   return same != work.old.end() ? same->get() : nullptr;
 }
 
+// Until contacts may be other ones; links that touch nothing wait for their joints alone.
+double interval_of(const Regrouping& work, const Group& group) {
+  std::vector<ProcessId> touching;
+  double interval = never;
+  for (std::uint32_t i = 0; i < group.members.size(); ++i) {
+    const Multibody* multibody = work.successor_of(group.members[i])->body->multibody;
+    if (!multibody || !group.pairs_of(i).empty())
+      touching.push_back(group.members[i]);
+    else
+      interval = std::min(interval, joint_check_interval(work.scene(), *multibody));
+  }
+  return std::min(interval, check_interval(work, touching));
+}
+
 // Checks stay on the grid they are on, so that those of neighbours meet; the one that is due stays
 // due, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
@@ -168,11 +182,7 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
   if (!before && group.has_border)
     for (const auto& old : work.old)
       if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
-  const double interval =
-      group.pairs.empty()
-          ? joint_check_interval(work.scene(),
-                                 *work.successor_of(group.members.front())->body->multibody)
-          : check_interval(work, group.members);
+  const double interval = interval_of(work, group);
   group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
   if (before && !finds_contacts(work.cause) && before->next_check >= now)
     group.next_check = std::min(group.next_check, before->next_check);

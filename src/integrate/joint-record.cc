@@ -106,16 +106,18 @@ JointRecord::JointRecord(const Multibody& multibody, double start, const std::ve
       n_(multibody.tree.nv()),
       path_(start, 2 * n_, degree),
       nodes_(q),
-      last_u_(u) {}
+      nodes_u_(u) {}
 
 void JointRecord::append(double time, const std::vector<double>& coefficients,
                          const std::vector<double>& q) {
   path_.append(time, coefficients);
   nodes_.insert(nodes_.end(), q.begin(), q.end());
-  // their sum is the value at the end
-  std::fill(last_u_.begin(), last_u_.end(), 0.0);
+  // the sum of its coefficients is a velocity at the end
+  const std::size_t last = nodes_u_.size();
+  nodes_u_.resize(last + index(n_), 0.0);
   for (int k = 0; k <= path_.degree(); ++k)
-    for (int e = 0; e < n_; ++e) last_u_[index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
+    for (int e = 0; e < n_; ++e)
+      nodes_u_[last + index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
   keep_bounds(path_.steps() - 1);
 }
 
@@ -144,18 +146,17 @@ const JointRecord::Placed& JointRecord::place_on_path(int step, double r) const 
   return places[next];
 }
 
-// At the fraction r of a step; step -1: at the last node.
+// At the fraction r of a step; step -1: at the last node.  At a node what stands there is taken as
+// it is, so that it makes no difference whether there is a next step already.
 void JointRecord::fill(int step, double r, bool of_path, Placed& p) const {
   const Tree& tree = multibody_->tree;
-  p.q.resize(index(tree.nq()));
-  p.u.resize(index(n_));
-  if (step < 0) {
-    std::copy_n(node(path_.steps()), tree.nq(), p.q.begin());
-    p.u = last_u_;
-  } else {
+  const int at = step < 0 ? path_.steps() : step;
+  p.q.assign(node(at), node(at) + tree.nq());
+  p.u.assign(node_u(at), node_u(at) + n_);
+  if (step >= 0 && (r > 0 || of_path)) {
     p.y.resize(index(2 * n_));
     path_.values(step, r, p.y.data());
-    displace(tree, {node(step), index(tree.nq())}, {p.y.data(), index(n_)}, p.q);
+    if (r > 0) displace(tree, {node(step), index(tree.nq())}, {p.y.data(), index(n_)}, p.q);
     if (of_path) {
       p.z = p.y;
       path_.rates(step, r, p.y.data());
@@ -377,6 +378,7 @@ JointRecord JointRecord::stretch(double from) const {
   if (path_.steps() == 0) return copy;
   copy.path_ = path_.stretch(from);
   copy.nodes_.assign(node(first), nodes_.data() + nodes_.size());
+  copy.nodes_u_.assign(node_u(first), nodes_u_.data() + nodes_u_.size());
   copy.kept_bounds_.assign(&kept_bounds(first * parts, 0),
                            kept_bounds_.data() + kept_bounds_.size());
   return copy;

@@ -76,13 +76,16 @@ class JointRecord {
     return nodes_.data() +
            static_cast<std::size_t>(i) * static_cast<std::size_t>(multibody_->tree.nq());
   }
+  const double* node_u(int i) const {
+    return nodes_u_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_);
+  }
   static std::uint64_t next_serial();
 
   const Multibody* multibody_;
   int n_;
   StepPolynomials path_;                   // displacements, velocities
   std::vector<double> nodes_;              // q
-  std::vector<double> last_u_;             // at the last node
+  std::vector<double> nodes_u_;            // u at the nodes
   std::vector<MotionBounds> kept_bounds_;  // links over the first part of the first step, ..
   std::uint64_t serial_ = next_serial();
 };

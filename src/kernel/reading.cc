@@ -3,6 +3,7 @@
 #include "kernel/reading.h"
 
 #include "base/hash.h"
+#include "groups/joints.h"
 #include "kernel/simulation.h"
 #include "timeline/field-words.h"
 #include "timeline/state-fields.h"
@@ -38,6 +39,10 @@ double total_energy(const Simulation& simulation, double when) {
     energy += kinetic_energy(*body, p) - body->mass * simulation.present.settings.gravity.dot(p.x);
     const State& state = *state_at(simulation, body->id(), when);
     if (state.forces) energy += state.forces->energy(when, p);
+  }
+  for (const auto& multibody : simulation.scene.multibodies) {
+    const State& state = *state_at(simulation, multibody->links.front(), when);
+    energy += multibody::spring_energy(multibody->tree, joints_at(state, when)->q);
   }
   // what springs started with was given with the poses: it came from nowhere and counts for nothing
   energy -= simulation.present.counters.placed_energy;

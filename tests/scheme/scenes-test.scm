@@ -62,6 +62,29 @@
   (load-scene-named "gallery/dominoes")
   (test-equal "a hundred dominoes" 100 (count-kind 'dynamic)))
 
+;; ---- cars ----
+
+(in-world ()
+  (load-scene-named "cars")
+  (test-equal "cars: 428 of 524 bodies move, as in the paper" '(428 524)
+    (list (count-kind 'dynamic) (length (world-bodies)))))
+
+(in-world ()
+  (load-scene-named "cars" '((rows . "6") (columns . "6") (cars . "1")))
+  (let ((before (position (find-body "car-0/chassis"))))
+    (run! #:until 3)
+    (let ((after (position (find-body "car-0/chassis"))) (car (find-multibody "car-0")))
+      (test-assert "a car drives on" (< 10 (- (vector-ref after 1) (vector-ref before 1)) 20))
+      (test-assert "in its lane" (close? (vector-ref before 0) (vector-ref after 0) 0.3))
+      (test-assert "on its wheels" (close? 0.46 (vector-ref after 2) 0.01))
+      (test-assert "and past its waypoints" (<= 2 (slot car 'next)))
+      (test-assert "the wheels roll"
+        (close? (norm (velocity car)) (* 0.36 (joint-velocity car 'rear-left)) 0.1)))
+    (test-assert "what it struck swings"
+      (any (lambda (pendulum) (> (abs (- 1 (abs (vector-ref (joint-position pendulum 'bob) 0)))) 1e-3))
+           (filter (lambda (m) (string-prefix? "pendulum" (multibody-name m)))
+                   (world-multibodies))))))
+
 ;; ---- what must be seen in the gallery ----
 
 (define (at body axis) (vector-ref (position (find-body body)) axis))
@@ -127,6 +150,56 @@
   (let ((before (at "stone-12" 2)))
     (run! #:until 1)
     (test-assert "the arch stands" (close? before (at "stone-12" 2) 4e-3))))
+
+(in-world ()
+  (load-scene-named "gallery/pendulum-wave")
+  (run! #:until 20)
+  (test-assert "the wave's pendulums are apart"
+    (let ((angles (map (lambda (m) (joint-position m 'rod)) (world-multibodies))))
+      (> (- (apply max angles) (apply min angles)) 0.5)))
+  (run! #:until 60)
+  (test-assert "and together after a minute"
+    (every (lambda (m) (close? 0.35 (joint-position m 'rod) 1e-4)) (world-multibodies))))
+
+(in-world ()
+  (load-scene-named "gallery/double-pendulum")
+  (let ((energy (total-energy))
+        (spread (lambda () (let ((angles (map (lambda (m) (joint-position m 'lower))
+                                              (world-multibodies))))
+                             (- (apply max angles) (apply min angles))))))
+    (run! #:until 3)
+    (test-assert "double pendulums are one at first" (< (spread) 0.05))
+    (run! #:until 20)
+    (test-assert "and go their own ways" (> (spread) 1))
+    (test-assert "with their energy" (close? energy (total-energy) (* 1e-6 energy)))))
+
+(in-world ()
+  (load-scene-named "gallery/arm-pd" '((boxes . "1")))
+  (run! #:until 2)
+  (call-with-values (lambda ()
+                      (inverse-kinematics (find-multibody "arm") 'hand #:point #(0.18 0 0)
+                                          #:position #(0 0 0) #:starts 1))
+    (lambda (q missing) (test-assert "the arm does not reach its own foot" (not q))))
+  (test-assert "the controller holds the hand in the air" (< 0.7 (at "arm/hand" 2) 1.4))
+  (run! #:until 8)
+  (test-assert "and sweeps the box from the table" (< (at "box-0" 2) 0.2)))
+
+(in-world ()
+  (load-scene-named "gallery/catapult" '((rows . "3")))
+  (run! #:until 0.9)
+  (test-assert "the catapult waits" (close? -0.35 (joint-position (find-multibody "catapult") 'arm) 5e-3))
+  (run! #:until 2.2)
+  (test-assert "and throws" (> (at "stone" 0) 5))
+  (test-assert "up to its stop" (<= (joint-position (find-multibody "catapult") 'arm) 1.4501)))
+
+(in-world ()
+  (load-scene-named "gallery/hung-chain" '((chains . "1") (links . "6")))
+  (let ((end (lambda () (position (find-body "chain-0/link-5")))))
+    (let ((before (end)))
+      (run! #:until 0.3)
+      (test-assert "the chain hangs still" (close? before (end) 1e-9))
+      (run! #:until 1)
+      (test-assert "until it is struck" (> (norm (v- (end) before)) 0.05)))))
 
 (in-world ()
   (load-scene-named "gallery/card-house" '((thrown? . "#f")))
