@@ -164,7 +164,15 @@ MULTIBODY/NAME.  NAME, a symbol or a string, is also the name of its joint.
           first link of a free multibody, which has none
 #:shape   as of add-body!; a link without one touches nothing and is given #:mass, #:inertia and
           #:center-of-mass
-#:density #:mass #:inertia #:center-of-mass #:color #:material #:slots #:visible?  as of add-body!"
+#:density   kg/m^3, positive; 1000
+#:mass      kg, positive: the shape's inertia is scaled to it; volume times density
+#:inertia   kg m^2 about the centre of mass, axes of the link: principal moments #(Ixx Iyy Izz) or a
+            matrix as three rows; the shape's
+#:center-of-mass  m, a point #(x y z) of the link's frame; the shape's centroid
+#:color     #(r g b), sRGB, 0 to 1; chosen for each link
+#:material  a symbol that set-contact-parameters! can name; none
+#:slots     an alist of names (symbols) and values, which callbacks can change; ()
+#:visible?  #f: it is not drawn; #t"
   (call-with-values (lambda () (split-arguments 'link given))
     (lambda (keywords children)
       (check-keywords 'link keywords link-keywords)
