@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/bodies.h"
 
-#include "base/constants.h"
-#include "integrate/standing.h"
-
 #include <algorithm>
 
+#include "base/constants.h"
 #include "base/hash.h"
 #include "collision/separation.h"
 #include "groups/birth-group.h"

@@ -1,7 +1,6 @@
 // From how a body comes into a world to the body and the state it is born in.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/make-body.h"
-#include "integrate/standing.h"
 
 #include <algorithm>
 #include <cmath>

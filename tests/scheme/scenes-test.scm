@@ -193,6 +193,25 @@
   (test-assert "up to its stop" (close? 1.45 (joint-position (find-multibody "catapult") 'arm) 1e-3)))
 
 (in-world ()
+  (load-scene-named "gallery/gripper" '((cubes . "2")))
+  (run! #:until 4)
+  (let ((held (position (find-body "cube-0"))))
+    (test-assert "the gripper holds a cube in the air" (< 0.4 (vector-ref held 2)))
+    (run! #:until 12)
+    (test-assert "and builds a tower"
+      (and (close? #(0.55 0 0.06) (position (find-body "cube-0")) 2e-3)
+           (close? #(0.55 0 0.18) (position (find-body "cube-1")) 2e-3)))))
+
+;; what servos press together is held without creep
+(in-world ()
+  (load-scene-named "gallery/gripper" '((cubes . "1")))
+  (let ((hangs (lambda () (- (at "gantry/palm" 2) (at "cube-0" 2)))))
+    (run! #:until 3.3)
+    (let ((before (hangs)))
+      (run! #:until 4.4)
+      (test-assert "a held cube does not slip" (close? before (hangs) 2e-5)))))
+
+(in-world ()
   (load-scene-named "gallery/hung-chain" '((chains . "1")))
   (let ((end (lambda () (position (find-body "chain-0/link-13")))))
     (let ((before (end)))

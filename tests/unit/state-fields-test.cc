@@ -7,8 +7,6 @@
 #include "groups/group.h"
 #include "kernel/state-image.h"
 
-#include "groups/group.h"
-
 namespace tw::test {
 namespace {
 
