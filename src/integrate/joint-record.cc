@@ -118,7 +118,7 @@ void JointRecord::append(double time, const std::vector<double>& coefficients,
   for (int k = 0; k <= path_.degree(); ++k)
     for (int e = 0; e < n_; ++e)
       nodes_u_[last + index(e)] += coefficients[index(2 * n_ * k + n_ + e)];
-  keep_bounds(path_.steps() - 1);
+  if (multibody_->touches) keep_bounds(path_.steps() - 1);
 }
 
 // All links of a multibody are asked for the same times, one after the other: the last answers are
@@ -196,17 +196,20 @@ Twist JointRecord::rates(int link, double time) const {
 JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Stretch& stretch,
                                            const Ends& ends) const {
   const Node& node = multibody_->tree.node(i);
-  const auto rate = [&](int dof, int order) {
-    return path_.bound(stretch.step, dof, order, stretch.r0, stretch.r1);
+  using Three = std::array<double, 3>;  // of orders 1, 2, 3
+  const auto rate = [&](int dof) {
+    return path_.rate_bounds(stretch.step, dof, stretch.r0, stretch.r1);
   };
-  const auto all = [&](int dof, int order) {
-    return Vec3(rate(dof, order), rate(dof + 1, order), rate(dof + 2, order)).norm();
+  const auto all = [&](int dof) {
+    const Three x = rate(dof), y = rate(dof + 1), z = rate(dof + 2);
+    Three sum{};
+    for (std::size_t k = 0; k < 3; ++k) sum[k] = Vec3(x[k], y[k], z[k]).norm();
+    return sum;
   };
   // of the rotation vector z of what turns by itself: w = J(z) z', and its rates, |J'| < |z'|
   const auto turning = [&](int dof) {
-    const double first = all(dof, 1), second = all(dof, 2);
-    return std::array<double, 3>{first, second + first * first,
-                                 all(dof, 3) + 3 * first * second + first * first * first};
+    const auto [first, second, third] = all(dof);
+    return Three{first, second + first * first, third + 3 * first * second + first * first * first};
   };
   const auto narrowed = [&](Rates rates) {
     const NodeMotion &a = ends.begin[index(i)], &b = ends.end[index(i)];
@@ -215,25 +218,24 @@ JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Str
   };
   if (node.kind == NodeKind::floating) {
     const auto w = turning(node.u + 3);
-    return narrowed({w[0], w[1], w[2], all(node.u, 1), all(node.u, 2), all(node.u, 3)});
+    const auto v = all(node.u);
+    return narrowed({w[0], w[1], w[2], v[0], v[1], v[2]});
   }
   const double turn = parent.turn, change = parent.turn_change;
   if (node.kind == NodeKind::slider) {
     const auto arm = [&](const std::vector<NodeMotion>& nodes) {
       return (nodes[index(i)].r - nodes[index(node.parent)].r).norm();
     };
-    const double first = rate(node.u, 1), second = rate(node.u, 2);
+    const auto [first, second, third] = rate(node.u);
     Rates rates =
         parent.at(std::max(arm(ends.begin), arm(ends.end)) + 0.5 * stretch.length * first);
     rates.speed += first;
     rates.acceleration += second + 2 * turn * first;
-    rates.jerk += rate(node.u, 3) + 3 * turn * second + 3 * (change + turn * turn) * first;
+    rates.jerk += third + 3 * turn * second + 3 * (change + turn * turn) * first;
     return narrowed(rates);
   }
   Rates rates = parent.at(node.X_PF.p.norm());
-  const auto w = node.kind == NodeKind::ball
-                     ? turning(node.u)
-                     : std::array<double, 3>{rate(node.u, 1), rate(node.u, 2), rate(node.u, 3)};
+  const auto w = node.kind == NodeKind::ball ? turning(node.u) : rate(node.u);
   rates.turn += w[0];
   rates.turn_change += w[1] + turn * w[0];
   rates.turn_jerk += w[2] + 2 * turn * w[1] + (change + turn * turn) * w[0];
@@ -317,6 +319,9 @@ MotionBounds JointRecord::bounds(int link, double from, double to) const {
   MotionBounds result;
   if (from < to && first == last && to - from < short_share * path_.length(last) / parts) {
     result = short_bounds(last, link, from, to);
+  } else if (kept_bounds_.empty()) {
+    for (int i = first; i <= last; ++i)
+      result.add(short_bounds(i, link, path_.time(i), path_.time(i + 1)));
   } else {
     const auto part_of = [&](int step, double time) {
       return step * parts +
@@ -349,7 +354,8 @@ double JointRecord::first_beyond(const Axis& axis, double side, double limit, in
   const double tolerance = answer::stop_tolerance * (1 + std::abs(limit));
   const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) + tolerance; };
   const double middle = 0.5 * (r0 + r1), here = gap(middle);
-  const double reach = 0.5 * (r1 - r0) * path_.length(step) * path_.bound(step, axis.u, 1, r0, r1);
+  const double reach =
+      0.5 * (r1 - r0) * path_.length(step) * path_.rate_bounds(step, axis.u, r0, r1)[0];
   if (here > reach) return inside = true, never;
   if (!inside && here < -reach) return never;
   if (r1 - r0 > shortest) {
@@ -379,8 +385,9 @@ JointRecord JointRecord::stretch(double from) const {
   copy.path_ = path_.stretch(from);
   copy.nodes_.assign(node(first), nodes_.data() + nodes_.size());
   copy.nodes_u_.assign(node_u(first), nodes_u_.data() + nodes_u_.size());
-  copy.kept_bounds_.assign(&kept_bounds(first * parts, 0),
-                           kept_bounds_.data() + kept_bounds_.size());
+  if (!kept_bounds_.empty())
+    copy.kept_bounds_.assign(&kept_bounds(first * parts, 0),
+                             kept_bounds_.data() + kept_bounds_.size());
   return copy;
 }
 

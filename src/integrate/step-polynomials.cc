@@ -46,21 +46,32 @@ void StepPolynomials::rates(int i, double r, double* dy) const {
   }
 }
 
-double StepPolynomials::bound(int i, int number, int order, double r0, double r1) const {
-  // derivatives by r at the middle, the highest first: that one is constant
+std::array<double, 3> StepPolynomials::rate_bounds(int i, int number, double r0, double r1) const {
+  // Taylor coefficients about the middle, by Horner's shifts
+  constexpr int most = 12;
+  TW_ASSERT(degree_ < most, "polynomials are of a low degree");
   const double middle = 0.5 * (r0 + r1), half = 0.5 * (r1 - r0);
   const double* c = step(i) + number;
-  double most = 0;
-  for (int d = degree_; d >= order; --d) {
-    double value = 0;
-    for (int k = degree_; k >= d; --k) {
+  std::array<double, most> a;
+  for (int k = 0; k <= degree_; ++k) a[static_cast<std::size_t>(k)] = c[k * count_];
+  for (int d = 0; d < degree_; ++d)
+    for (int k = degree_ - 1; k >= d; --k)
+      a[static_cast<std::size_t>(k)] += middle * a[static_cast<std::size_t>(k + 1)];
+  // |p^(o)| <= sum of k!/(k - o)! |a_k| half^(k - o)
+  std::array<double, 3> bounds{};
+  const double per_time = 1 / length(i);
+  double scale = 1;
+  for (int order = 1; order <= 3; ++order) {
+    double sum = 0;
+    for (int k = degree_; k >= order; --k) {
       double factor = 1;
-      for (int j = 0; j < d; ++j) factor *= k - j;
-      value = value * middle + factor * c[k * count_];
+      for (int j = 0; j < order; ++j) factor *= k - j;
+      sum = sum * half + factor * std::abs(a[static_cast<std::size_t>(k)]);
     }
-    most = std::abs(value) + half * most;
+    scale *= per_time;
+    bounds[static_cast<std::size_t>(order - 1)] = scale * sum;
   }
-  return most / std::pow(length(i), order);
+  return bounds;
 }
 
 StepPolynomials StepPolynomials::stretch(double from) const {

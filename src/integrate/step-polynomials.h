@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace tw {
@@ -37,9 +38,9 @@ class StepPolynomials {
   // All numbers at a fraction of a step, and their derivatives by time.
   void values(int step, double r, double* y) const;
   void rates(int step, double r, double* dy) const;
-  // A bound on the magnitude of the `order`-th derivative by time of a number over [r0, r1]: at the
-  // middle, and how far the higher derivatives may take it from there.
-  double bound(int step, int number, int order, double r0, double r1) const;
+  // Bounds on the magnitudes of the first three derivatives by time of a number over [r0, r1]: at
+  // the middle, and how far the higher derivatives may take them from there.
+  std::array<double, 3> rate_bounds(int step, int number, double r0, double r1) const;
 
   // A copy from the step that holds `from` on.
   StepPolynomials stretch(double from) const;

@@ -79,6 +79,7 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
     body.multibody = multibody.get();
     body.link = i;
     multibody->principal.push_back(body.X_BP);
+    multibody->touches = multibody->touches || body.shape_P;
     for (const int link : neighbours_of(multibody->tree, static_cast<int>(i)))
       body.neighbours.push_back(multibody->links[static_cast<std::size_t>(link)]);
     if (def.base == no_body || !hangs_on_base(multibody->tree, static_cast<int>(i))) continue;

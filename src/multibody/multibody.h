@@ -39,6 +39,7 @@ struct Multibody {
   Frame base;                   // where it stands, in the world
   std::vector<BodyId> links;    // ascending, one a link of the tree
   std::vector<Pose> principal;  // of each: the principal frame in the link's
+  bool touches = false;         // a link has a shape
 };
 
 // How far a link reaches, m: its shape, what lies between its joint and its parent's, or, where

@@ -15,7 +15,7 @@ using namespace multibody;
 // A multibody of random links, each with its principal frame at its centre of mass.
 Multibody random_multibody(Random& random, int links) {
   Tree tree(random_links(random, links, false));
-  Multibody multibody{0, "tree", {}, tree, {}, {}, {}};
+  Multibody multibody{0, "tree", {}, tree, {}, {}, {}, true};
   for (int i = 0; i < links; ++i) {
     multibody.links.push_back(static_cast<BodyId>(i));
     multibody.principal.push_back({tree.link(i).center_of_mass, random_attitude(random)});
