@@ -143,5 +143,16 @@
 (test-equal "of an unbound name" "2:22" (place-of "(define s (sphere (* radius 2)))"))
 (test-equal "of set! of an unbound name" "2:1" (place-of "(set! radius 2)"))
 
+;; a frame in one of the program's own files is not taken for the user's place; forms.scm stands for
+;; the user's forms, primitives.scm has no procedures that could be on the stack
+(use-modules (ice-9 ftw))
+(let ((folder (string-append (dirname (current-filename)) "/../../scheme/timewarp")))
+  (for-each
+   (lambda (name)
+     (test-assert (string-append "one of the program's own files: " name)
+       (member name (map basename (@@ (timewarp errors) own-files)))))
+   (lset-difference string=? (scandir folder (lambda (name) (string-suffix? ".scm" name)))
+                    '("forms.scm" "primitives.scm"))))
+
 (clean-up)
 (test-end "loading")
