@@ -307,6 +307,8 @@
     ((1) `(add-multibody! #:name 'arm #:position #(0 -3 0.5)
             (link 'arm-1 #:joint ,(a-joint) #:shape (box 0.3 0.2 0.1)
               (link 'arm-2 #:joint ,(a-joint) #:shape (placed (sphere 0.1) #:position #(0.4 0 0))))))
+    ;; strikes the ground within 0.01 s of any run
+    ((2) '(add-body! #:shape (sphere 0.2) #:position #(4.4 0 -0.75) #:velocity #(0 0 -5)))
     (else
      (match (call-of (assq 'add-body! procedures) 2)
        ((name . arguments)
