@@ -233,9 +233,11 @@ touch the base's body.  A multibody stands for its first link where a body is ex
              (world (current-world))
              (multibody (%add-multibody! world name (or base 'fixed) position orientation flat
                                          (caller-place))))
-        (world-set! world 'link-names
-                    (acons multibody (map car flat) (world-ref world 'link-names '())))
+        (set! (given-names multibody) (map car flat))
         multibody))))
+
+;; Of each multibody, the names of its links as they were given.
+(define given-names (make-object-property))
 
 (define (multibody? object)
   "Return #t if OBJECT is a multibody."
@@ -282,8 +284,7 @@ touch the base's body.  A multibody stands for its first link where a body is ex
 (define (moving-joints multibody)
   (let* ((multibody (%multibody multibody))
          (joints (%multibody-joints multibody))
-         (given (or (assq-ref (world-ref (current-world) 'link-names '()) multibody)
-                    (map car joints))))
+         (given (given-names multibody)))
     (filter-map (lambda (name joint)
                   (and (not (eq? (cadr joint) 'weld)) (cons name (cdr joint))))
                 given joints)))

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,6 +70,8 @@ struct Body {
   double plane_offset = 0;
   bool is_fixed_plane = false;
 
+  // Radius of gyration about its longest axis of them, m; of dynamic bodies.
+  double gyration() const { return std::sqrt(moments.maxCoeff() / mass); }
   bool dynamic() const { return info.kind == BodyKind::dynamic; }
   bool fixed() const { return info.kind == BodyKind::fixed; }
   bool kinematic() const { return info.kind == BodyKind::kinematic; }

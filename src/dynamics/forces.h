@@ -45,8 +45,6 @@ class ForceLaw {
   virtual bool hangs_on(BodyId /*other*/) const { return false; }
   // Of its parameters: the same in every run.
   virtual std::uint64_t hash() const = 0;
-
-  bool changes_with_time() const { return longest_unlooked() < never; }
 };
 
 using ForceLawPtr = std::shared_ptr<const ForceLaw>;

@@ -98,11 +98,7 @@ void GroupSystem::change_packs(const std::vector<int>& packs, GroupScratch& s) c
 void GroupSystem::change_forced(int member, GroupScratch& s) const {
   const Member& m = member_[index(member)];
   if (!m.forces) return;
-  const BodyChange& change = s.changes[index(member)];
-  Vec6 pose, twist;
-  pose << vec(change.x), vec(change.th);
-  twist << vec(change.v), vec(change.w);
-  const Vec6 wrench = m.forced.by_pose * pose + m.forced.by_twist * twist;
+  const Vec6 wrench = forced_change(m, s.changes[index(member)]);
   vec(s.wrenches[index(member)].f) += wrench.head<3>();
   vec(s.wrenches[index(member)].t) += wrench.tail<3>();
 }
@@ -202,7 +198,6 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
 }
 
 bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
-  const double inverse = 1 / sigma_;
   std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
   std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
 
@@ -210,30 +205,18 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
     if (m.is_link) continue;
-    const double* r = stage + 12 * i;
-    BodyChange& change = s.changes[index(i)];
-    vec(change.x) = inverse * vec(r);
-    vec(change.th) = m.A * vec(r + 3);
-    vec(change.v).setZero();
-    vec(change.w) = m.W * vec(change.th);
+    eliminate_body(m, stage + 12 * i, s.changes[index(i)]);
   }
-  thread_local std::vector<double> none;
+  thread_local std::vector<double> work;
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     double* r = stage + tree_rows_[t];
-    none.assign(index(trees_[t]->freedoms()), 0.0);
+    work.assign(index(trees_[t]->freedoms()), 0.0);
     trees_[t]->eliminate(r);
-    trees_[t]->spread(r, none.data(), s.changes.data());
+    trees_[t]->spread(r, work.data(), s.changes.data());
   }
 
   // right side
-  for (int p = 0; p < packs(); ++p) {
-    const ContactPack& pack = packs_.packs[index(p)];
-    const PackLinear& linear = s.linear[index(p)];
-    PackChange change;
-    change_pack(pack, linear, s.changes.data(), linear.Ra * load(stage + 12 * (members_ + p)),
-                false, change);
-    scatter_change(pack, linear, change, s.wrenches.data());
-  }
+  scatter_stretches(s, stage);
   for (int i = 0; i < members_; ++i) change_forced(i, s);
   double* right = s.right_side.data();
   for (int i = 0; i < members_; ++i) {
@@ -255,38 +238,19 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
     if (m.is_link) continue;
-    double* k = stage + 12 * i;
-    BodyChange& change = s.changes[index(i)];
-    const Vec3 kv = vec(right + m.unknown), kL = vec(right + m.unknown + 3);
-    vec(change.x) += inverse * kv;
-    vec(change.th) += m.P * kL;
-    vec(change.v) = kv;
-    vec(change.w) += m.V * kL;
-    vec(k) = vec(change.x);
-    vec(k + 3) = vec(change.th);
-    vec(k + 6) = kv;
-    vec(k + 9) = kL;
+    take_body(m, right + m.unknown, s.changes[index(i)], stage + 12 * i);
   }
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     TreeInGroup& tree = *trees_[t];
     const std::size_t n = index(tree.freedoms());
     double *kq = stage + tree_rows_[t], *ku = kq + n;
     std::copy_n(right + tree_unknowns_[t], n, ku);
-    none.assign(ku, ku + n);
-    tree.eliminate(none.data());
-    for (std::size_t e = 0; e < n; ++e) kq[e] += none[e];
+    work.assign(ku, ku + n);
+    tree.eliminate(work.data());
+    for (std::size_t e = 0; e < n; ++e) kq[e] += work[e];
     tree.spread(kq, ku, s.changes.data());
   }
-  for (int p = 0; p < packs(); ++p) {
-    const ContactPack& pack = packs_.packs[index(p)];
-    if (pack.law != FrictionLaw::anchored) continue;
-    const PackLinear& linear = s.linear[index(p)];
-    double* k = stage + 12 * (members_ + p);
-    const LaneVec side = linear.Ra * load(k);
-    PackChange change;
-    change_pack(pack, linear, s.changes.data(), side, false, change);
-    store(transposed_times(linear.Ra, solve_stretch(linear, side, change.friction)), k);
-  }
+  solve_stretches(s, stage);
   return true;
 }
 

@@ -222,13 +222,8 @@ void DrivenArc::add_step_bounds(const DenseStep& step, double from, double to,
 }
 
 MotionBounds DrivenArc::bounds(double from, double to) const {
+  if (!std::isfinite(from) || !std::isfinite(to)) return MotionBounds::unknown();
   MotionBounds bounds;
-  if (!std::isfinite(from) || !std::isfinite(to)) {
-    // of all times nothing is known
-    bounds.path = bounds.acceleration = Aabb::everywhere();
-    bounds.speed = bounds.turn = never;
-    return bounds;
-  }
   step_at(to);
   const double reached = solution_.reached();
   if (!(from < reached)) {

@@ -178,24 +178,38 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
   return matrix_.factor();
 }
 
-bool GroupSystem::solve(GroupScratch& s, double* stage) {
-  if (coupled_) return solve_coupled(s, stage);
-  const double inverse = 1 / sigma_;
-  std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
-  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+// What the right side of a body's positions says of its changes.
+void GroupSystem::eliminate_body(const Member& m, const double* r, BodyChange& change) const {
+  vec(change.x) = (1 / sigma_) * vec(r);
+  vec(change.th) = m.A * vec(r + 3);
+  vec(change.v).setZero();
+  vec(change.w) = m.W * vec(change.th);
+}
 
-  // positions of the eliminated part
-  for (int i = 0; i < members_; ++i) {
-    const Member& m = member_[index(i)];
-    const double* r = stage + 12 * i;
-    BodyChange& change = s.changes[index(i)];
-    vec(change.x) = inverse * vec(r);
-    vec(change.th) = m.A * vec(r + 3);
-    vec(change.v).setZero();
-    vec(change.w) = m.W * vec(change.th);
-  }
+// What velocity and momentum were solved for, into the changes and the stage.
+void GroupSystem::take_body(const Member& m, const double* solved, BodyChange& change,
+                            double* k) const {
+  const Vec3 kv = vec(solved), kL = vec(solved + 3);
+  vec(change.x) += (1 / sigma_) * kv;
+  vec(change.th) += m.P * kL;
+  vec(change.v) = kv;
+  vec(change.w) += m.V * kL;
+  vec(k) = vec(change.x);
+  vec(k + 3) = vec(change.th);
+  vec(k + 6) = kv;
+  vec(k + 9) = kL;
+}
 
-  // right side
+// Of the force and the torque of what else acts on it.
+Vec6 GroupSystem::forced_change(const Member& m, const BodyChange& change) const {
+  Vec6 pose, twist;
+  pose << vec(change.x), vec(change.th);
+  twist << vec(change.v), vec(change.w);
+  return m.forced.by_pose * pose + m.forced.by_twist * twist;
+}
+
+// The wrenches of all contacts by the changes of the slots and the right sides of the stretches.
+void GroupSystem::scatter_stretches(GroupScratch& s, const double* stage) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
@@ -204,36 +218,10 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
                 false, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
-  double* right = s.right_side.data();
-  for (int i = 0; i < members_; ++i) {
-    const double* r = stage + 12 * i;
-    vec(right + 6 * i) = member_[index(i)].mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
-    vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
-    const Member& m = member_[index(i)];
-    if (!m.forces) continue;
-    const BodyChange& change = s.changes[index(i)];
-    Vec6 pose, twist;
-    pose << vec(change.x), vec(change.th);
-    twist << vec(change.v), vec(change.w);
-    Eigen::Map<Vec6>(right + 6 * i) += m.forced.by_pose * pose + m.forced.by_twist * twist;
-  }
-  if (!matrix_.solve(right)) return false;
+}
 
-  // all unknowns
-  for (int i = 0; i < members_; ++i) {
-    const Member& m = member_[index(i)];
-    double* k = stage + 12 * i;
-    BodyChange& change = s.changes[index(i)];
-    const Vec3 kv = vec(right + 6 * i), kL = vec(right + 6 * i + 3);
-    vec(change.x) += inverse * kv;
-    vec(change.th) += m.P * kL;
-    vec(change.v) = kv;
-    vec(change.w) += m.V * kL;
-    vec(k) = vec(change.x);
-    vec(k + 3) = vec(change.th);
-    vec(k + 6) = kv;
-    vec(k + 9) = kL;
-  }
+// The stretches of anchored friction, once all changes of the slots are known.
+void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     if (pack.law != FrictionLaw::anchored) continue;
@@ -244,6 +232,33 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
     change_pack(pack, linear, s.changes.data(), side, false, change);
     store(transposed_times(linear.Ra, solve_stretch(linear, side, change.friction)), k);
   }
+}
+
+bool GroupSystem::solve(GroupScratch& s, double* stage) {
+  if (coupled_) return solve_coupled(s, stage);
+  std::fill(s.changes.begin() + members_, s.changes.begin() + packs_.slots, BodyChange{});
+  std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
+
+  // positions of the eliminated part
+  for (int i = 0; i < members_; ++i)
+    eliminate_body(member_[index(i)], stage + 12 * i, s.changes[index(i)]);
+
+  // right side
+  scatter_stretches(s, stage);
+  double* right = s.right_side.data();
+  for (int i = 0; i < members_; ++i) {
+    const Member& m = member_[index(i)];
+    const double* r = stage + 12 * i;
+    vec(right + 6 * i) = m.mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
+    vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
+    if (m.forces) Eigen::Map<Vec6>(right + 6 * i) += forced_change(m, s.changes[index(i)]);
+  }
+  if (!matrix_.solve(right)) return false;
+
+  // all unknowns
+  for (int i = 0; i < members_; ++i)
+    take_body(member_[index(i)], right + 6 * i, s.changes[index(i)], stage + 12 * i);
+  solve_stretches(s, stage);
   return true;
 }
 

@@ -111,6 +111,13 @@ class GroupSystem {
   // Outside bodies that move; the others are where set_outside put them.
   void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
   LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
+  // Parts of a stage (group-stage.cc).
+  void eliminate_body(const Member& member, const double* right, BodyChange& change) const;
+  void take_body(const Member& member, const double* solved, BodyChange& change,
+                 double* stage) const;
+  Vec6 forced_change(const Member& member, const BodyChange& change) const;
+  void scatter_stretches(GroupScratch& scratch, const double* stage) const;
+  void solve_stretches(GroupScratch& scratch, double* stage) const;
 
   // ---- with multibodies (coupled-stage.cc) ----
   void make_coupled();

@@ -55,13 +55,8 @@ double SampledMotion::step_end(double time) const {
 }
 
 MotionBounds SampledMotion::bounds(double from, double to) const {
+  if (!std::isfinite(from) || !std::isfinite(to)) return MotionBounds::unknown();
   MotionBounds bounds;
-  if (!std::isfinite(from) || !std::isfinite(to)) {
-    // of all times nothing is known
-    bounds.path = bounds.acceleration = Aabb::everywhere();
-    bounds.speed = bounds.turn = never;
-    return bounds;
-  }
   const MotionPiece& first = span_at(from).piece_at(from);
   first.add_speeds(from, std::max(from, to), bounds);
   first.add_changes(from, std::max(from, to), bounds);

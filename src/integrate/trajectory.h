@@ -32,6 +32,13 @@ struct MotionBounds {
   double turn_change = 0;      // |w'|, rad/s^2; nothing where the velocity may jump
   double valid_until = never;  // s; `never`: as long as the trajectory goes on
 
+  // Of all times nothing is known.
+  static MotionBounds unknown() {
+    MotionBounds bounds;
+    bounds.path = bounds.acceleration = Aabb::everywhere();
+    bounds.speed = bounds.turn = never;
+    return bounds;
+  }
   // Both hold then, one after the other.
   void add(const MotionBounds& other) {
     path.add(other.path);

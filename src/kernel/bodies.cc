@@ -40,7 +40,17 @@ std::optional<BodyId> Bodies::find(const std::string& name) const {
 // ---- coming ----
 
 BodyId Bodies::add(const BodyDef& def) {
-  return add(def, static_cast<BodyId>(sim_.scene.bodies.size()));
+  sim_.require_between_runs("a body was added");
+  const BodyId id = static_cast<BodyId>(sim_.scene.bodies.size());
+  enter(make(def, id), def, id);
+  return id;
+}
+
+std::unique_ptr<Body> Bodies::make(const BodyDef& def, BodyId id) const {
+  const std::string name = def.name.empty() ? "body-" + std::to_string(id) : def.name;
+  TW_REQUIRE(!names_.contains(name),
+             "name " + name + " is taken; expected a name no other body has");
+  return make_body(def, id, name);
 }
 
 // Where the base is in the world.
@@ -64,16 +74,20 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   }
   const std::uint32_t number = static_cast<std::uint32_t>(scene.multibodies.size());
   std::shared_ptr<Multibody> multibody = make_multibody(def, number);
-  for (const LinkDef& link : def.links)
-    TW_REQUIRE(!names_.contains(multibody->name + "/" + link.name),
-               "name " + multibody->name + "/" + link.name +
-                   " is taken; expected a multibody with a name that no other has");
+  for (const auto& other : scene.multibodies)
+    TW_REQUIRE(other->name != multibody->name,
+               "name " + multibody->name + " is taken; expected a name no other multibody has");
   const MultibodyStatePtr joints = joints_at_birth(*multibody, def);
   const BodyId first = static_cast<BodyId>(scene.bodies.size());
-  const std::vector<BodyDef> bodies = link_bodies(*multibody, def, *joints);
-  // errors come before there are some of them
-  for (const BodyDef& body : bodies) make_body(body, first, body.name);
-  for (const BodyDef& body : bodies) multibody->links.push_back(add(body, first));
+  const std::vector<BodyDef> defs = link_bodies(*multibody, def, *joints);
+  // errors come before any link is there
+  std::vector<std::unique_ptr<Body>> bodies;
+  for (const BodyDef& link : defs)
+    bodies.push_back(make(link, first + static_cast<BodyId>(bodies.size())));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    multibody->links.push_back(bodies[i]->id());
+    enter(std::move(bodies[i]), defs[i], first);
+  }
   for (std::uint32_t i = 0; i < multibody->links.size(); ++i) {
     Body& body = *scene.bodies[multibody->links[i]];
     body.multibody = multibody.get();
@@ -97,15 +111,9 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   return number;
 }
 
-BodyId Bodies::add(const BodyDef& def, BodyId born_as) {
-  sim_.require_between_runs("a body was added");
+void Bodies::enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_as) {
   Scene& scene = sim_.scene;
-  const BodyId id = static_cast<BodyId>(scene.bodies.size());
-  const std::string name = def.name.empty() ? "body-" + std::to_string(id) : def.name;
-  TW_REQUIRE(!names_.contains(name),
-             "name " + name + " is taken; expected a name no other body has");
-  std::unique_ptr<Body> body = make_body(def, id, name);
-
+  const BodyId id = body->id();
   Present& present = sim_.present;
   if (present.begun) discontinuities_.restart_future();
   body->process = sim_.graph.add_process();
@@ -122,14 +130,13 @@ BodyId Bodies::add(const BodyDef& def, BodyId born_as) {
 
   scene.first_bodies.push_back(id);
   sim_.present.newborn.push_back(id);
-  names_[name] = id;
+  names_[body->info.name] = id;
   pairs_.make_room_for(id);
   claims_.make_room_for(id);
   if (body->unbounded) sim_.unbounded.push_back(id);
   if (body->kinematic()) sim_.kinematic.push_back(id);
   scene.contacts.add_body(*body);
   scene.bodies.push_back(std::move(body));
-  return id;
 }
 
 bool Bodies::any_newborn() const { return !sim_.present.newborn.empty(); }

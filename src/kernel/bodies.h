@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -41,8 +42,10 @@ class Bodies {
 
  private:
   Pose base_of(const MultibodyDef& def) const;
+  // The body with that id as it is defined; errors where it cannot be.
+  std::unique_ptr<Body> make(const BodyDef& def, BodyId id) const;
   // `born_as`: whose id its birth has.
-  BodyId add(const BodyDef& def, BodyId born_as);
+  void enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_as);
   void require_no_overlap(const Body& a, const Body& b) const;
   void bury(Body& body, const BodyState& last);
 

@@ -36,12 +36,15 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   const Key key = edit_key(concerned);
   std::vector<Successor> successors{make_successor(sim_.before(key), body.process, false)};
   successors[0].role = Role::record;
+  const Vec3 x_before = successors[0].point.x;
+  const Quat q_before = successors[0].point.q;
   SuccessorView view(successors[0], key, true, sim_.present.settings.gravity);
   change(view);
   groups_.regroup_edited(key, successors);
   discontinuities_.enter(key, successors);
-  if (!successors[0].placed) return {};
-  if (body.multibody) return body.multibody->links;
+  if (body.multibody) return successors[0].placed ? body.multibody->links : std::vector<BodyId>{};
+  const PoseTwist& now = successors[0].point;
+  if (now.x == x_before && now.q.coeffs() == q_before.coeffs()) return {};
   return {id};
 }
 

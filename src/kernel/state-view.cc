@@ -41,9 +41,12 @@ void SuccessorView::change_joints(const std::function<void(MultibodyState&)>& ch
   if (changed == *successor_.joints) return;
   check_joints(*successor_.body->multibody, *successor_.joints, may_place_, changed);
   start_arc();
-  successor_.placed = successor_.placed || changed.q != successor_.joints->q;
-  successor_.joints_changed = true;
+  const bool placed = changed.q != successor_.joints->q;
+  const bool moved = placed || changed.u != successor_.joints->u;
+  successor_.placed = successor_.placed || placed;
+  successor_.joints_changed = successor_.joints_changed || moved;
   *successor_.joints = std::move(changed);
+  if (!moved) return;
   successor_.point = PlacedJoints(*successor_.body->multibody, *successor_.joints)
                          .link(static_cast<int>(successor_.body->link));
   state_ = body_state(*successor_.body, successor_.point);

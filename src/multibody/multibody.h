@@ -46,7 +46,7 @@ struct Multibody {
 // there is neither, its radius of gyration.
 inline double extent_of_link(const Body& body) {
   const Vec3& offset = body.multibody->tree.link(static_cast<int>(body.link)).placement.p;
-  return std::max({body.radius, offset.norm(), std::sqrt(body.moments.maxCoeff() / body.mass)});
+  return std::max({body.radius, offset.norm(), body.gyration()});
 }
 
 }  // namespace tw

@@ -40,7 +40,7 @@ void let_move(const Scene& scene, const Body& body, StateData& data) {
   start.mass = body.mass;
   start.moments = body.moments;
   // without a shape as far as its mass reaches
-  start.size = body.shape_P ? body.radius : std::sqrt(body.moments.maxCoeff() / body.mass);
+  start.size = body.shape_P ? body.radius : body.gyration();
   start.gravity = scene.gravity_scale();
   start.accuracy = scene.options.accuracy;
   start.x = data.x;

@@ -26,7 +26,7 @@ struct Successor {
   // Of a link: its multibody's joints then, shared by all successors that are its links; becomes
   // data.joints where new arcs start.
   std::shared_ptr<MultibodyState> joints;
-  bool joints_changed = false;  // by an edit or a callback, through this one
+  bool joints_changed = false;  // where they are or how fast: by an edit or a callback
 
   ProcessId process() const { return body->process; }
   bool enters() const { return role != Role::no_state; }

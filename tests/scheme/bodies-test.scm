@@ -221,5 +221,23 @@
     (test-assert "what lay on it falls" (close? (vector-ref (position high) 2) 0.5 1e-3))
     (add-callback! high (lambda (time view) (remove-body! high) #f) #:start 3.5)
     (test-message "not in callbacks" "remove-body! was used inside a callback" (run! #:until 4))))
+;; What is placed elsewhere must not overlap anything; what stays where it is may be pressed in.
+(in-world ()
+  (let* ((floor (ground))
+         (soft (add-body! #:name "soft" #:shape (box 1 1 1) #:density 1000 #:position #(0 0 0.6))))
+    (set-contact-parameters! soft #t #:stiffness 2e4)
+    (run! #:until 3)
+    (test-assert "it is pressed in" (< (vector-ref (position soft) 2) 0.4))
+    (test-message "an overlap elsewhere is an error" "ground and soft overlap"
+      (set! (position soft) (vector 0.1 0 (vector-ref (position soft) 2))))))
+(in-world ()
+  (let* ((floor (ground))
+         (soft (add-body! #:name "soft" #:shape (box 1 1 1) #:density 1000 #:position #(0 0 0.6))))
+    (set-contact-parameters! soft #t #:stiffness 2e4)
+    (run! #:until 3)
+    (let ((before (position soft)))
+      (set! (position soft) before)
+      (run-for! 0.1)
+      (test-assert "a position that is set to what it is" (close? before (position soft) 1e-3)))))
 
 (test-end "bodies")

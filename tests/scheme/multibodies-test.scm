@@ -276,7 +276,7 @@
     (test-message "a link taken away" "cannot be removed; it is a link of arm"
       (remove-body! (link-body arm 'upper)))
     (test-message "no position to reach" "got no #:position" (inverse-kinematics arm 'hand))
-    (test-message "a name that is taken" "arm/upper is taken" (add-arm!))
+    (test-message "a name that is taken" "name arm is taken" (add-arm!))
     (test-message "twice the same link" "twin"
       (let ((twin (link 'twin #:joint (revolute) #:shape (rod-shape 1))))
         (add-multibody! twin twin)))
