@@ -4,7 +4,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
-  #:export (add-drag! add-spring! add-force!))
+  #:export (add-drag! add-spring! attach! detach! attached? add-force!))
 
 (define-keyword-procedure (add-drag! body #:key linear quadratic)
   "Slow BODY, a dynamic body, from now on, by the force -(linear + quadratic |v|) v at its centre of
@@ -16,10 +16,11 @@ mass, beside what acts on it already.
   (%add-drag! (current-world) body linear quadratic))
 
 (define-keyword-procedure (add-spring! a b #:key at-a at-b stiffness damping rest)
-  "Hold A and B together by a spring from now on, two bodies of which one is dynamic and the other
-fixed or kinematic.  It pulls along the line between two points, by stiffness times what it is longer
+  "Hold A and B together by a spring from now on, two bodies of which one at least is dynamic; links
+of multibodies, too.  It pulls along the line between two points, by stiffness times what it is longer
 than its rest length, and by damping times the speed at which it gets longer; it pushes where it is
-shorter.  A spring of rest length 0 pulls, and damps, in all directions alike.
+shorter.  A spring of rest length 0 pulls, and damps, in all directions alike.  The two may still
+collide.
 
 #:at-a       #(x y z), body frame of A; #(0 0 0)
 #:at-b       the same of B; #(0 0 0)
@@ -27,6 +28,30 @@ shorter.  A spring of rest length 0 pulls, and damps, in all directions alike.
 #:damping    N s/m, 0 or more; 0
 #:rest       m, 0 or more: its length without a force; as long as it is now"
   (%add-spring! (current-world) a b at-a at-b stiffness damping rest))
+
+(define-keyword-procedure (attach! a b #:key at stiffness damping)
+  "Hold A and B from now on as they are against each other: two bodies of which one at least is
+dynamic, links of multibodies, too, also of the same one, which closes a loop.  In callbacks A and B
+are views of two targets.
+
+A hold is a spring that resists all that would move the two against each other, and turns of the one
+against the other; it is integrated implicitly and may be as stiff as one likes.  The two may still
+collide (see disable-collisions!).
+
+#:at         #(x y z), body frame of A: where it holds; the centre of mass of B, or of A where B is
+             fixed or moves by keyframes
+#:stiffness  N/m, 0 or more; by default the weight of the lighter moves it by 2.5e-5 of the size of
+             the lesser of the two.  Against turning it is as stiff as makes both swing alike
+#:damping    N s/m, 0 or more; by default 0.7 of what is critical"
+  (%attach! (current-world) a b at stiffness damping))
+
+(define (detach! a b)
+  "Let go of A and B, which attach! holds.  In callbacks both are views of targets."
+  (%detach! (current-world) a b))
+
+(define (attached? a b)
+  "Return #t if attach! holds A and B together."
+  (%attached? (current-world) a b))
 
 (define (add-force! body procedure)
   "Let PROCEDURE act on BODY, a dynamic body, from now on.  It is called with the time and a view of

@@ -61,6 +61,8 @@ inline constexpr double stop_tolerance = 1e-12;
 inline constexpr double stiff_ratio = 8;
 // Of its steps, share of the accuracy asked for: their errors add up (multibodies-bench).
 inline constexpr double joint_step_share = 0.05;
+// Of a step of bodies that springs alone tie together: ten swings of two err by about the accuracy.
+inline constexpr double spring_step_share = 0.1;
 // Looser steps than this are made by a method of order 5.
 inline constexpr double loose_steps = 1e-5;
 // Coulomb friction of a joint is smooth below about this speed, rad/s or m/s.
@@ -134,6 +136,10 @@ inline constexpr double most_driven_turn = 2, longest_driven_step = 1024;
 // Looser accuracies than this don't loosen the steps of groups: they took as many, and a cube that
 // slides down a slope was 20 % off at 1e-2.
 inline constexpr double loosest_steps = 1e-4;
+
+// A hold gives way by this share of the size of the lesser of the two where it carries the weight
+// of the lighter, and is damped by this share of critical.
+inline constexpr double hold_sag = 2.5e-5, hold_damping = 0.7;
 
 // ---- groups ----
 // Boxes of members reach this share of their size farther: a check finds in them whom a member may

@@ -72,6 +72,8 @@ struct Body {
 
   // Radius of gyration about its longest axis of them, m; of dynamic bodies.
   double gyration() const { return std::sqrt(moments.maxCoeff() / mass); }
+  // How far it reaches about its centre, m; without a shape as far as its mass does.
+  double extent() const { return shape_P ? radius : gyration(); }
   bool dynamic() const { return info.kind == BodyKind::dynamic; }
   bool fixed() const { return info.kind == BodyKind::fixed; }
   bool kinematic() const { return info.kind == BodyKind::kinematic; }

@@ -65,27 +65,83 @@ std::uint64_t ActingForces::hash() const {
   Hasher h;
   for (int i = 0; i < 3; ++i) h.add(torque_[i]);
   for (const ForceLawPtr& law : laws_) h.add(law->hash());
+  for (const BondPtr& bond : bonds_) h.add(bond->hash());
   return h.value();
 }
 
+// A copy to be changed, and given back as what states share.
+class ForceChange {
+ public:
+  explicit ForceChange(const ForcesPtr& forces) {
+    if (forces) changed_ = *forces;
+  }
+  Vec3& torque() { return changed_.torque_; }
+  std::vector<ForceLawPtr>& laws() { return changed_.laws_; }
+  std::vector<BondPtr>& bonds() { return changed_.bonds_; }
+  template <class Goes>
+  void erase_bonds(Goes&& goes) {
+    std::erase_if(laws(),
+                  [&](const ForceLawPtr& law) { return law->bond() && goes(*law->bond()); });
+    std::erase_if(bonds(), [&](const BondPtr& bond) { return goes(*bond); });
+  }
+  ForcesPtr done() {
+    if (!changed_.act_alone() && changed_.bonds_.empty()) return nullptr;
+    return std::make_shared<ActingForces>(std::move(changed_));
+  }
+
+ private:
+  ActingForces changed_;
+};
+
 ForcesPtr with_torque(const ForcesPtr& forces, const Vec3& torque) {
-  const std::vector<ForceLawPtr> laws = forces ? forces->laws() : std::vector<ForceLawPtr>{};
-  if (laws.empty() && torque.isZero(0)) return nullptr;
-  return std::make_shared<ActingForces>(torque, laws);
+  ForceChange change(forces);
+  change.torque() = torque;
+  return change.done();
 }
 
 ForcesPtr with_law(const ForcesPtr& forces, ForceLawPtr law) {
-  std::vector<ForceLawPtr> laws = forces ? forces->laws() : std::vector<ForceLawPtr>{};
-  laws.push_back(std::move(law));
-  return std::make_shared<ActingForces>(forces ? forces->torque() : Vec3(Vec3::Zero()),
-                                        std::move(laws));
+  ForceChange change(forces);
+  change.laws().push_back(std::move(law));
+  return change.done();
+}
+
+ForcesPtr with_bond(const ForcesPtr& forces, BondPtr bond) {
+  ForceChange change(forces);
+  change.bonds().push_back(std::move(bond));
+  return change.done();
+}
+
+namespace {
+
+template <class Test>
+bool any_bond(const ForcesPtr& forces, Test&& test) {
+  if (!forces) return false;
+  for (const ForceLawPtr& law : forces->laws())
+    if (law->bond() && test(*law->bond())) return true;
+  return std::any_of(forces->bonds().begin(), forces->bonds().end(),
+                     [&](const BondPtr& bond) { return test(*bond); });
+}
+
+}  // namespace
+
+bool hangs_on(const ForcesPtr& forces, BodyId other) {
+  return any_bond(forces, [&](const Bond& bond) { return bond.joins(other); });
+}
+
+bool holds(const ForcesPtr& forces, BodyId other) {
+  return any_bond(forces, [&](const Bond& bond) { return bond.holds && bond.joins(other); });
 }
 
 ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other) {
-  std::vector<ForceLawPtr> laws = forces->laws();
-  std::erase_if(laws, [&](const ForceLawPtr& law) { return law->hangs_on(other); });
-  if (laws.empty()) return with_torque(nullptr, forces->torque());
-  return std::make_shared<ActingForces>(forces->torque(), std::move(laws));
+  ForceChange change(forces);
+  change.erase_bonds([&](const Bond& bond) { return bond.joins(other); });
+  return change.done();
+}
+
+ForcesPtr without_holds_on(const ForcesPtr& forces, BodyId other) {
+  ForceChange change(forces);
+  change.erase_bonds([&](const Bond& bond) { return bond.holds && bond.joins(other); });
+  return change.done();
 }
 
 void add_differences(const ForceLaw& law, double time, const PoseTwist& body, double length,
@@ -114,67 +170,6 @@ void add_differences(const ForceLaw& law, double time, const PoseTwist& body, do
 
 ForceLawPtr make_drag(double linear, double quadratic) {
   return std::make_shared<Drag>(linear, quadratic);
-}
-
-Vec3 SpringLaw::force(const Vec3& d, const Vec3& dv) const {
-  if (rest == 0) return stiffness * d + damping * dv;
-  const double l = d.norm();
-  if (l == 0) return Vec3::Zero();
-  const Vec3 u = d / l;
-  return (stiffness * (l - rest) + damping * u.dot(dv)) * u;
-}
-
-// f = t u, t = k (l - rest) + c u.dv;  du = Q dd, Q = (1 - u u^T)/l;  dt = k u.dd + c dv.(Q dd) +
-// c u.d(dv)
-void SpringLaw::derivative(const Vec3& d, const Vec3& dv, Mat3& by_d, Mat3& by_dv) const {
-  by_d.setZero();
-  by_dv.setZero();
-  if (rest == 0) {
-    by_d.diagonal().setConstant(stiffness);
-    by_dv.diagonal().setConstant(damping);
-    return;
-  }
-  const double l = d.norm();
-  if (l == 0) return;
-  const Vec3 u = d / l;
-  const double tension = stiffness * (l - rest) + damping * u.dot(dv);
-  const Mat3 Q = (Mat3::Identity() - u * u.transpose()) / l;
-  by_d = u * (stiffness * u + damping * (Q * dv)).transpose() + tension * Q;
-  by_dv = damping * u * u.transpose();
-}
-
-double SpringLaw::energy(const Vec3& d) const {
-  const double stretch = d.norm() - rest;
-  return 0.5 * stiffness * stretch * stretch;
-}
-
-std::uint64_t SpringLaw::hash() const {
-  Hasher h;
-  h.add(stiffness);
-  h.add(damping);
-  h.add(rest);
-  return h.value();
-}
-
-void add_force_at(const Vec3& r, const Vec3& f, Wrench& sum) {
-  sum.force += f;
-  sum.torque += r.cross(f);
-}
-
-// dd = -(dx - [r] dth), d(dv) = -(dv - [r] dw - [w][r] dth), dT = [f][r] dth + [r] df
-void add_derivative_at(const Vec3& r, const Vec3& w, const Vec3& f, const Mat3& by_d,
-                       const Mat3& by_dv, WrenchDerivative& sum) {
-  const Mat3 arm = cross_matrix(r);
-  const Mat3 by_x = -by_d, by_th = by_d * arm + by_dv * cross_matrix(w) * arm;
-  const Mat3 by_v = -by_dv, by_w = by_dv * arm;
-  sum.by_pose.topLeftCorner<3, 3>() += by_x;
-  sum.by_pose.topRightCorner<3, 3>() += by_th;
-  sum.by_pose.bottomLeftCorner<3, 3>() += arm * by_x;
-  sum.by_pose.bottomRightCorner<3, 3>() += arm * by_th + cross_matrix(f) * arm;
-  sum.by_twist.topLeftCorner<3, 3>() += by_v;
-  sum.by_twist.topRightCorner<3, 3>() += by_w;
-  sum.by_twist.bottomLeftCorner<3, 3>() += arm * by_v;
-  sum.by_twist.bottomRightCorner<3, 3>() += arm * by_w;
 }
 
 }  // namespace tw

@@ -3,8 +3,7 @@
 // Weight and the constant applied force are not among them: they alone leave the body's flight in
 // closed form.
 //
-// Frames: all vectors in the world frame; torques about the centre of mass; rotations and their
-// changes as short rotation vectors.
+// Frames: dynamics/wrench.h.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -14,22 +13,12 @@
 #include <vector>
 
 #include "base/never.h"
+#include "dynamics/bond.h"
 #include "dynamics/ids.h"
 #include "dynamics/pose-twist.h"
+#include "dynamics/wrench.h"
 
 namespace tw {
-
-struct Wrench {
-  Vec3 force = Vec3::Zero();   // N
-  Vec3 torque = Vec3::Zero();  // N m
-};
-
-// Of force (rows 0 to 2) and torque (3 to 5) by position and rotation, and by velocity and angular
-// velocity.
-struct WrenchDerivative {
-  Mat6 by_pose = Mat6::Zero();
-  Mat6 by_twist = Mat6::Zero();
-};
 
 class ForceLaw {
  public:
@@ -41,8 +30,8 @@ class ForceLaw {
   virtual double energy(double /*time*/, const PoseTwist& /*body*/) const { return 0; }
   // How long it may go on without a look at it, s: where it changes with time by itself.
   virtual double longest_unlooked() const { return never; }
-  // Whether another body holds the other end.
-  virtual bool hangs_on(BodyId /*other*/) const { return false; }
+  // Of a spring or hold to what is not dynamic; else null.
+  virtual const Bond* bond() const { return nullptr; }
   // Of its parameters: the same in every run.
   virtual std::uint64_t hash() const = 0;
 };
@@ -52,11 +41,16 @@ using ForceLawPtr = std::shared_ptr<const ForceLaw>;
 // What acts on a body beside weight and applied force; immutable, shared by states.
 class ActingForces {
  public:
+  ActingForces() = default;
   ActingForces(const Vec3& torque, std::vector<ForceLawPtr> laws)
       : torque_(torque), laws_(std::move(laws)) {}
 
   const Vec3& torque() const { return torque_; }  // applied, constant
   const std::vector<ForceLawPtr>& laws() const { return laws_; }
+  // To other dynamic bodies: known to both, and no part of the sums below.
+  const std::vector<BondPtr>& bonds() const { return bonds_; }
+  // Whether a torque or a law acts.
+  bool act_alone() const { return !laws_.empty() || !torque_.isZero(0); }
   Wrench wrench(double time, const PoseTwist& body) const;
   WrenchDerivative derivative(double time, const PoseTwist& body) const;
   double energy(double time, const PoseTwist& body) const;
@@ -64,16 +58,29 @@ class ActingForces {
   std::uint64_t hash() const;
 
  private:
-  Vec3 torque_;
+  friend class ForceChange;
+  Vec3 torque_ = Vec3::Zero();
   std::vector<ForceLawPtr> laws_;
+  std::vector<BondPtr> bonds_;
 };
 
 using ForcesPtr = std::shared_ptr<const ActingForces>;
 
-// The same with another torque, or another law; null where nothing is left.
+// The same with another torque, another law or bond; null where nothing is left.
 ForcesPtr with_torque(const ForcesPtr& forces, const Vec3& torque);
 ForcesPtr with_law(const ForcesPtr& forces, ForceLawPtr law);
+ForcesPtr with_bond(const ForcesPtr& forces, BondPtr bond);
+// Whether a spring or a hold goes to the other body.
+bool hangs_on(const ForcesPtr& forces, BodyId other);
+bool holds(const ForcesPtr& forces, BodyId other);
+// Without springs and holds to it, or without its holds alone.
 ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other);
+ForcesPtr without_holds_on(const ForcesPtr& forces, BodyId other);
+
+inline const std::vector<BondPtr>& bonds_of(const ForcesPtr& forces) {
+  static const std::vector<BondPtr> none;
+  return forces ? forces->bonds() : none;
+}
 
 // The derivative of a law that knows none of its own, by central differences over a small share of
 // the length and of the speed, both > 0.
@@ -82,26 +89,5 @@ void add_differences(const ForceLaw& law, double time, const PoseTwist& body, do
 
 // Drag at the centre of mass: -(linear + quadratic |v|) v, N s/m and N s^2/m^2, not negative.
 ForceLawPtr make_drag(double linear, double quadratic);
-
-// A spring between two points: along u from one to the other, at distance l,
-//   stiffness (l - rest) + damping u.dv;
-// with rest = 0, where u has no direction at l = 0, stiffness d + damping dv as vectors.
-struct SpringLaw {
-  double stiffness = 0;  // N/m
-  double damping = 0;    // N s/m
-  double rest = 0;       // m
-
-  // On the near point; d, dv: the far point's place and velocity against it.
-  Vec3 force(const Vec3& d, const Vec3& dv) const;
-  void derivative(const Vec3& d, const Vec3& dv, Mat3& by_d, Mat3& by_dv) const;
-  double energy(const Vec3& d) const;
-  std::uint64_t hash() const;
-};
-
-// Adds what a force f at the arm r from the centre of mass does, and its derivative: f depends on
-// the far point's place and velocity against the near one by the two matrices.
-void add_force_at(const Vec3& r, const Vec3& f, Wrench& sum);
-void add_derivative_at(const Vec3& r, const Vec3& w, const Vec3& f, const Mat3& by_d,
-                       const Mat3& by_dv, WrenchDerivative& sum);
 
 }  // namespace tw

@@ -43,7 +43,7 @@ std::vector<ProcessId> Before::remaining(const Group& group) const {
 
 std::vector<ProcessId> Before::hanging_together(ProcessId process) const {
   std::vector<ProcessId> all{process};
-  add_joined(scene_, all);
+  add_joined(*this, all);
   std::vector<ProcessId> next = all;
   while (!next.empty()) {
     std::vector<ProcessId> found;
@@ -51,7 +51,7 @@ std::vector<ProcessId> Before::hanging_together(ProcessId process) const {
       const ProcessId theirs = scene_.process_of(other);
       if (!holds(all, theirs)) insert(found, theirs);
     });
-    add_joined(scene_, found);
+    add_joined(*this, found);
     std::erase_if(found, [&](ProcessId other) { return holds(all, other); });
     for (const ProcessId other : found) insert(all, other);
     next = std::move(found);

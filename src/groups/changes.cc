@@ -10,9 +10,10 @@
 namespace tw {
 namespace {
 
-// How many pieces the successors make by these pairs; what keeps its arc is one.
-template <class Pairs>
-std::size_t count_pieces(const Regrouping& work, const Pairs& pairs) {
+// How many pieces the successors make by these pairs, and by the holds of a body as `forces_of` has
+// them; what keeps its arc is one.
+template <class Pairs, class ForcesOf>
+std::size_t count_pieces(const Regrouping& work, const Pairs& pairs, ForcesOf&& forces_of) {
   const std::size_t rest = work.successors.size();
   Components components(rest + 1);
   const auto place = [&](BodyId id) {
@@ -25,6 +26,11 @@ std::size_t count_pieces(const Regrouping& work, const Pairs& pairs) {
     const BodyId a = first_of(pair.id), b = second_of(pair.id);
     if (!scene.body(a).dynamic() || !scene.body(b).dynamic()) continue;
     joints += components.join(place(a), place(b));
+  }
+  for (const Successor& successor : work.successors) {
+    if (!work.changes(&successor)) continue;
+    for (const BondPtr& bond : bonds_of(forces_of(successor)))
+      joints += components.join(place(bond->a), place(bond->b));
   }
   return rest + 1 - joints;
 }
@@ -49,8 +55,13 @@ Collision fission_of(const Regrouping& work, const PairBefore& old) {
 }  // namespace
 
 void count_fissions(Regrouping& work, const std::vector<bool>& held) {
-  const std::size_t pieces_before = count_pieces(work, work.pairs_before);
-  const std::size_t pieces = count_pieces(work, work.pairs);
+  const std::size_t pieces_before =
+      count_pieces(work, work.pairs_before, [&](const Successor& successor) -> const ForcesPtr& {
+        return work.before.state(successor.process()).forces;
+      });
+  const std::size_t pieces = count_pieces(
+      work, work.pairs,
+      [](const Successor& successor) -> const ForcesPtr& { return successor.data.forces; });
   std::size_t parted = pieces > pieces_before ? pieces - pieces_before : 0;
   for (std::size_t i = 0; i < work.successors.size(); ++i) {
     const Successor& successor = work.successors[i];

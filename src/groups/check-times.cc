@@ -50,6 +50,10 @@ double joint_check_interval(const Scene& scene, const Multibody& multibody) {
   return on_lattice(answer::check_unit, std::sqrt(size / scene.gravity_scale()));
 }
 
+double bond_check_interval(const Scene& scene, const Body& body) {
+  return on_lattice(answer::check_unit, std::sqrt(body.extent() / scene.gravity_scale()));
+}
+
 double next_check_time(double birth, double now, double interval) {
   TW_ASSERT(interval > 0, "checks are apart");
   double k = std::max(0.0, std::floor((now - birth) / interval));

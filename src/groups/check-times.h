@@ -22,6 +22,8 @@ double finest_check(const Scene& scene, const Body& body);
 // The time between two checks of a multibody that touches nothing, s: its arc is integrated anew
 // and its stops are looked at no oftener than it would fall through its own size.
 double joint_check_interval(const Scene& scene, const Multibody& multibody);
+// The same of a body on springs or holds.
+double bond_check_interval(const Scene& scene, const Body& body);
 
 // The first check after `now` of a group born at `birth`.
 double next_check_time(double birth, double now, double interval);

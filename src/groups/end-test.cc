@@ -9,6 +9,7 @@
 #include "base/constants.h"
 #include "collision/seams/seams.h"
 #include "groups/check-times.h"
+#include "groups/components.h"
 #include "integrate/joint-record.h"
 #include "math/root.h"
 
@@ -179,16 +180,28 @@ double stop_time(const GroupArc& arc, int number) {
   return first;
 }
 
-// A multibody's links end together.
 void end_at_stops(Group& group, std::vector<double>& ends) {
   const std::vector<GroupTree>& trees = group.arc->start().trees;
   for (std::size_t t = 0; t < trees.size(); ++t) {
-    const double end = stop_time(*group.arc, static_cast<int>(t));
-    for (const int member : trees[t].members) {
-      double& theirs = ends[static_cast<std::size_t>(member)];
-      theirs = std::min(theirs, end);
-    }
+    double& first = ends[static_cast<std::size_t>(trees[t].members.front())];
+    first = std::min(first, stop_time(*group.arc, static_cast<int>(t)));
   }
+}
+
+// What is joined ends together: links of one multibody, and both ends of a spring or a hold.
+void end_together(const GroupStart& start, std::vector<double>& ends) {
+  if (start.trees.empty() && start.bonds.empty()) return;
+  Components together(ends.size());
+  const auto place = [](int member) { return static_cast<std::size_t>(member); };
+  for (const GroupTree& tree : start.trees)
+    for (const int member : tree.members) together.join(place(tree.members.front()), place(member));
+  for (const GroupBond& bond : start.bonds) together.join(place(bond.a), place(bond.b));
+  // roots come first
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    double& first = ends[together.root(i)];
+    first = std::min(first, ends[i]);
+  }
+  for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = ends[together.root(i)];
 }
 
 }  // namespace
@@ -235,13 +248,7 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
       double& end = ends[static_cast<std::size_t>(member)];
       end = std::min(end, early.time);
     }
-  // what a contact ends of one link it ends of all
-  for (const GroupTree& tree : group.arc->start().trees) {
-    double first = never;
-    for (const int member : tree.members)
-      first = std::min(first, ends[static_cast<std::size_t>(member)]);
-    for (const int member : tree.members) ends[static_cast<std::size_t>(member)] = first;
-  }
+  end_together(group.arc->start(), ends);
   group.arc->lower_ends(std::move(ends));
 }
 

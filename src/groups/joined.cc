@@ -2,25 +2,39 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/joined.h"
 
-#include "groups/before.h"
 #include "multibody/multibody.h"
 
 namespace tw {
 
-const Multibody* multibody_of(const Scene& scene, ProcessId process) {
-  return scene.body_of(process).multibody;
+void add_joined(const Before& before, std::vector<ProcessId>& processes) {
+  const Scene& scene = before.scene();
+  std::vector<ProcessId> next;
+  const auto joins = [&](ProcessId process) {
+    return scene.body_of(process).multibody || !bonds_of(before.state(process).forces).empty();
+  };
+  for (const ProcessId process : processes)
+    if (joins(process)) next.push_back(process);
+  const auto add = [&](BodyId id) {
+    const ProcessId process = scene.process_of(id);
+    if (holds(processes, process)) return;
+    insert(processes, process);
+    next.push_back(process);
+  };
+  // links come in rows
+  const Multibody* last = nullptr;
+  while (!next.empty()) {
+    const ProcessId process = next.back();
+    next.pop_back();
+    const Body& body = scene.body_of(process);
+    if (body.multibody && body.multibody != last)
+      for (const BodyId link : body.multibody->links) add(link);
+    if (body.multibody) last = body.multibody;
+    for (const BondPtr& bond : bonds_of(before.state(process).forces)) add(bond->other(body.id()));
+  }
 }
 
-void add_joined(const Scene& scene, std::vector<ProcessId>& processes) {
-  if (scene.multibodies.empty()) return;
-  const std::vector<ProcessId> given = processes;
-  const Multibody* last = nullptr;
-  for (const ProcessId process : given) {
-    const Multibody* multibody = multibody_of(scene, process);
-    if (!multibody || multibody == last) continue;
-    for (const BodyId link : multibody->links) insert(processes, scene.process_of(link));
-    last = multibody;
-  }
+bool is_joined(const Successor& successor) {
+  return successor.body->multibody || !bonds_of(successor.data.forces).empty();
 }
 
 }  // namespace tw

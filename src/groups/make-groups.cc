@@ -9,6 +9,7 @@
 #include "groups/changes.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
+#include "groups/joined.h"
 #include "groups/joints.h"
 #include "groups/placed-loads.h"
 #include "groups/rest.h"
@@ -59,14 +60,11 @@ TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
                              theirs.next_check);
 }
 
-// Members of the arc, and the tolerances of its steps.
-void start_members(const Regrouping& work, const Group& group, GroupStart& start) {
-  StartOfMembers members(work.scene(), start);
+void start_members(const Regrouping& work, const Group& group, StartOfMembers& members) {
   for (const ProcessId member : group.members) {
     const Successor& successor = *work.successor_of(member);
     members.add(*successor.body, successor.point, successor.data, successor.joints);
   }
-  members.set_tolerances();
 }
 
 // The law of a contact that stands becomes another one: its offset and its stretch go along so that
@@ -83,13 +81,28 @@ void change_law(NewContact& c, const ContactConstants& law) {
   if (law.kt > 0) contact.stretch *= was.kt / law.kt;
 }
 
-// Members, outside bodies and contacts as the integrator wants them.
+// Springs and holds among the members, each once.
+void start_bonds(const Regrouping& work, const Group& group, GroupStart& start) {
+  const auto member = [&](BodyId id) { return group.member_of(work.scene().process_of(id)); };
+  for (const ProcessId process : group.members) {
+    const Successor& successor = *work.successor_of(process);
+    for (const BondPtr& bond : bonds_of(successor.data.forces)) {
+      if (bond->a != successor.body->id()) continue;
+      start.bonds.push_back({member(bond->a), member(bond->b), bond});
+      TW_ASSERT(start.bonds.back().b >= 0, "a bond goes out of its group");
+    }
+  }
+}
+
+// Members, outside bodies, contacts and bonds as the integrator wants them.
 void start_arc(Regrouping& work, Group& group) {
   GroupStart start;
   start.time = work.now();
   start.end = group.next_check;
   start.first_step = group.first_step;
-  start_members(work, group, start);
+  StartOfMembers members(work.scene(), start);
+  start_members(work, group, members);
+  start_bonds(work, group, start);
 
   // >= 0: a member, else the complement of an outside body's number
   const auto index_of = [&](BodyId id) {
@@ -123,6 +136,7 @@ void start_arc(Regrouping& work, Group& group) {
   // also what is in contact without a point is looked at along the arc (end-test.h)
   for (const ContactPair& pair : group.pairs)
     for (const BodyId id : {pair.a(), pair.b()}) index_of(id);
+  members.set_tolerances();
   const auto has_struck = [&](std::size_t i) {
     return group.contains(work.successors[i].process());
   };
@@ -160,16 +174,18 @@ const Group* same_before(const Regrouping& work, const Group& group) {
   return same != work.old.end() ? same->get() : nullptr;
 }
 
-// Until contacts may be other ones; links that touch nothing wait for their joints alone.
+// Until contacts may be other ones; what is joined and touches nothing waits for that alone.
 double interval_of(const Regrouping& work, const Group& group) {
   std::vector<ProcessId> touching;
   double interval = never;
   for (std::uint32_t i = 0; i < group.members.size(); ++i) {
-    const Multibody* multibody = work.successor_of(group.members[i])->body->multibody;
-    if (!multibody || !group.pairs_of(i).empty())
+    const Body& body = *work.successor_of(group.members[i])->body;
+    if (!group.pairs_of(i).empty())
       touching.push_back(group.members[i]);
     else
-      interval = std::min(interval, joint_check_interval(work.scene(), *multibody));
+      interval =
+          std::min(interval, body.multibody ? joint_check_interval(work.scene(), *body.multibody)
+                                            : bond_check_interval(work.scene(), body));
   }
   return std::min(interval, check_interval(work, touching));
 }
@@ -216,7 +232,7 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
 }
 
 // The successors with new arcs that hang together by contact pairs, those that rest apart from the
-// others.
+// others, or that are joined.
 Components parts_of(const Regrouping& work) {
   Components parts(work.successors.size());
   for (const ContactPair& pair : work.pairs) {
@@ -226,10 +242,7 @@ Components parts_of(const Regrouping& work) {
         work.rests[i] == work.rests[j])
       parts.join(i, j);
   }
-  for (std::size_t i = 0; i < work.successors.size(); ++i)
-    if (const Multibody* multibody = work.successors[i].body->multibody;
-        multibody && work.changes(&work.successors[i]))
-      parts.join(i, work.place_of(work.successor_of(multibody->links.front())));
+  visit_joined(work, [&](std::size_t i, std::size_t j) { parts.join(i, j); });
   return parts;
 }
 
@@ -250,7 +263,7 @@ void make_groups(Regrouping& work) {
         held[work.place_of(member)] = true;
   // what is joined never parts; links do not rest, and keep those awake that touch them
   for (std::size_t i = 0; i < count; ++i)
-    if (work.successors[i].body->multibody && work.changes(&work.successors[i])) held[i] = true;
+    if (is_joined(work.successors[i]) && work.changes(&work.successors[i])) held[i] = true;
   for (std::size_t i = 0; i < count; ++i)
     if (held[i] && !work.successors[i].body->multibody)
       work.stillness[i] = stillness_of(work, work.successors[i]);

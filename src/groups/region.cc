@@ -79,13 +79,13 @@ void add_neighbours(Region& region, const Before& before) {
 // Small groups whole, and the border.  What this depends on stands in states of the region and its
 // border: so nothing here may ask how many have left a large group.
 void complete(Region& region, const Before& before, bool whole) {
-  add_joined(before.scene(), region.inside);
+  add_joined(before, region.inside);
   Groups groups;
   for (const ProcessId process : region.inside) add_once(groups, before.state(process).group);
   for (const auto& group : groups)
     if (whole || group->members.size() < answer::least_divided)
       for (const ProcessId process : before.remaining(*group)) insert(region.inside, process);
-  add_joined(before.scene(), region.inside);
+  add_joined(before, region.inside);
 
   region.border.clear();
   before.visit_contacts(region.inside, [&](const Group&, const ContactPair&, BodyId other) {

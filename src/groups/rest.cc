@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "groups/joined.h"
 
 namespace tw {
 namespace {
@@ -97,6 +98,13 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
     for (const BodyId id : {pair.a(), pair.b()})
       if (is_restless(work, id)) wake(pair.other(id));
   }
+
+  // what is tied together rests together
+  Components tied(count);
+  visit_joined(work, [&](std::size_t i, std::size_t j) { tied.join(i, j); });
+  for (std::size_t i = 0; i < count; ++i)
+    if (work.changes(&work.successors[i]) && !rests[i]) rests[tied.root(i)] = false;
+  for (std::size_t i = 0; i < count; ++i) rests[i] = rests[i] && rests[tied.root(i)];
 
   std::vector<Share> shares(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -11,9 +11,10 @@ namespace tw {
 
 void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateData& d,
                          const MultibodyStatePtr& joints) {
-  const double extent = body.multibody ? extent_of_link(body) : body.radius;
+  const double extent = body.multibody ? extent_of_link(body) : body.extent();
   start_.members.push_back({body.mass, body.moments, body.shape_P ? body.radius : extent, d.x, d.q,
-                            d.v, d.L, body.mass * d.acceleration, Vec3::Zero(), d.forces});
+                            d.v, d.L, body.mass * d.acceleration, Vec3::Zero(),
+                            d.forces && d.forces->act_alone() ? d.forces : nullptr});
   if (body.multibody) add_link(body, d, joints);
   if (body.shape_P) size_ = std::min(size_, body.least_width);
   reach_ += extent;
@@ -42,6 +43,17 @@ void StartOfMembers::set_tolerances() {
   if (size_ == never) size_ = reach_;
   const double accuracy = scene_.options.accuracy, gravity = scene_.gravity_scale();
   const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
+  // springs alone are followed as closely as single bodies are; a contact or a hold gives way by
+  // more
+  const bool springs_alone = !start_.bonds.empty() && start_.contacts.empty() &&
+                             std::none_of(start_.bonds.begin(), start_.bonds.end(),
+                                          [](const GroupBond& tied) { return tied.bond->holds; });
+  if (springs_alone) {
+    const double share = answer::spring_step_share * accuracy;
+    start_.position_tolerance = share * size_;
+    start_.velocity_tolerance = share * std::sqrt(gravity * size_);
+    return;
+  }
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
   start_.joint_tolerance = answer::joint_step_share * accuracy;
   start_.joint_size = size_;

@@ -15,7 +15,7 @@ class StartOfMembers {
   // The next member, as its data have it; `joints`: of its multibody, where it is a link.
   void add(const Body& body, const PoseTwist& point, const StateData& data,
            const MultibodyStatePtr& joints);
-  // After all.
+  // After all, contacts and bonds, too.
   void set_tolerances();
 
  private:

@@ -19,12 +19,31 @@ namespace {
 void insert_all(std::vector<int>& row, const std::vector<int>& more) {
   row.insert(row.end(), more.begin(), more.end());
 }
-void tidy(std::vector<int>& row) {
+void tidy_row(std::vector<int>& row) {
   std::sort(row.begin(), row.end());
   row.erase(std::unique(row.begin(), row.end()), row.end());
 }
 
 }  // namespace
+
+void GroupSystem::Couplings::add(const Couplings& more) {
+  insert_all(packs, more.packs);
+  insert_all(bonds, more.bonds);
+}
+void GroupSystem::Couplings::tidy() {
+  tidy_row(packs);
+  tidy_row(bonds);
+}
+
+template <class Visit>
+void GroupSystem::each_slot(const Couplings& couplings, Visit&& visit) const {
+  for (const int p : couplings.packs)
+    for (int i = 0; i < packs_.packs[index(p)].count; ++i)
+      for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]}) visit(slot);
+  for (const int number : couplings.bonds)
+    for (const int slot : {bonds_[index(number)].given.a, bonds_[index(number)].given.b})
+      visit(slot);
+}
 
 void GroupSystem::make_coupled() {
   int count = 0;
@@ -38,17 +57,20 @@ void GroupSystem::make_coupled() {
     count += tree->freedoms();
   }
 
-  // whom each pack moves
-  packs_of_slot_.assign(index(packs_.slots), {});
+  // whom each contact and each bond moves
+  couplings_of_slot_.assign(index(packs_.slots), {});
   for (int p = 0; p < packs(); ++p)
     for (int i = 0; i < packs_.packs[index(p)].count; ++i)
       for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
-        packs_of_slot_[index(slot)].push_back(p);
-  for (std::vector<int>& row : packs_of_slot_) tidy(row);
+        couplings_of_slot_[index(slot)].packs.push_back(p);
+  for (int i = 0; i < static_cast<int>(bonds_.size()); ++i)
+    for (const int slot : {bonds_[index(i)].given.a, bonds_[index(i)].given.b})
+      couplings_of_slot_[index(slot)].bonds.push_back(i);
+  for (Couplings& row : couplings_of_slot_) row.tidy();
   for (const auto& tree : trees_) {
-    std::vector<int>& all = packs_of_tree_.emplace_back();
-    for (const int member : tree->start().members) insert_all(all, packs_of_slot_[index(member)]);
-    tidy(all);
+    Couplings& all = couplings_of_tree_.emplace_back();
+    for (const int member : tree->start().members) all.add(couplings_of_slot_[index(member)]);
+    all.tidy();
   }
 
   // the unknowns of each slot, and the rows that each column may reach
@@ -63,35 +85,33 @@ void GroupSystem::make_coupled() {
   for (std::size_t t = 0; t < trees_.size(); ++t)
     for (const int member : trees_[t]->start().members)
       unknowns[index(member)] = run(tree_unknowns_[t], trees_[t]->freedoms());
-  const auto reached = [&](std::vector<int> own, const std::vector<int>& through) {
-    for (const int p : through)
-      for (int i = 0; i < packs_.packs[index(p)].count; ++i)
-        for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
-          insert_all(own, unknowns[index(slot)]);
-    tidy(own);
+  const auto reached = [&](std::vector<int> own, const Couplings& through) {
+    each_slot(through, [&](int slot) { insert_all(own, unknowns[index(slot)]); });
+    tidy_row(own);
     return own;
   };
   std::vector<std::vector<int>> rows_of(index(count));
   for (int i = 0; i < members_; ++i)
     if (!member_[index(i)].is_link)
       for (const int k : unknowns[index(i)])
-        rows_of[index(k)] = reached(unknowns[index(i)], packs_of_slot_[index(i)]);
+        rows_of[index(k)] = reached(unknowns[index(i)], couplings_of_slot_[index(i)]);
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const std::vector<int> own = run(tree_unknowns_[t], trees_[t]->freedoms());
-    for (const int k : own) rows_of[index(k)] = reached(own, packs_of_tree_[t]);
+    for (const int k : own) rows_of[index(k)] = reached(own, couplings_of_tree_[t]);
   }
   coupled_ = std::make_unique<CoupledMatrix>(std::move(rows_of));
 }
 
-void GroupSystem::change_packs(const std::vector<int>& packs, GroupScratch& s) const {
+void GroupSystem::change_couplings(const Couplings& couplings, GroupScratch& s) const {
   const LaneVec none = {lanes(0), lanes(0), lanes(0)};
-  for (const int p : packs) {
+  for (const int p : couplings.packs) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
     PackChange change;
     change_pack(pack, linear, s.changes.data(), none, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
+  for (const int number : couplings.bonds) change_bond(number, s);
 }
 
 // What else acts on a member, by the changes in the scratch.
@@ -103,17 +123,11 @@ void GroupSystem::change_forced(int member, GroupScratch& s) const {
   vec(s.wrenches[index(member)].t) += wrench.tail<3>();
 }
 
-void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
+void GroupSystem::gather_column(const Couplings& couplings, GroupScratch& s,
                                 std::span<const int> moved_members, double* column) const {
-  // the bodies that these packs may move, in and out of the scratch
-  const auto each_slot = [&](auto&& visit) {
-    for (const int p : packs)
-      for (int i = 0; i < packs_.packs[index(p)].count; ++i)
-        for (const int slot : {packs_.packs[index(p)].a[i], packs_.packs[index(p)].b[i]})
-          visit(slot);
-  };
-  each_slot([&](int slot) { s.wrenches[index(slot)] = BodyWrench{}; });
-  change_packs(packs, s);
+  // the bodies that these may move, in and out of the scratch
+  each_slot(couplings, [&](int slot) { s.wrenches[index(slot)] = BodyWrench{}; });
+  change_couplings(couplings, s);
   for (const int member : moved_members) change_forced(member, s);
   const auto take = [&](int slot) {
     if (slot >= members_) return;
@@ -124,7 +138,7 @@ void GroupSystem::gather_column(const std::vector<int>& packs, GroupScratch& s,
     vec(column + m.unknown + 3) -= vec(wrench.t);
     wrench = BodyWrench{};
   };
-  each_slot(take);
+  each_slot(couplings, take);
   for (const int member : moved_members) take(member);
   thread_local std::vector<double> row;
   for (std::size_t t = 0; t < trees_.size(); ++t) {
@@ -170,7 +184,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
         vec(change.w) = m.V.col(c - 3);
       }
       column[index(m.unknown + c)] = (c < 3 ? m.mass : 1.0) * sigma_;
-      gather_column(packs_of_slot_[index(i)], s, {&i, 1}, column.data());
+      gather_column(couplings_of_slot_[index(i)], s, {&i, 1}, column.data());
       coupled_->set_column(m.unknown + c, column.data());
     }
     change = BodyChange{};
@@ -186,7 +200,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
       kq = unit;
       tree.eliminate(kq.data());
       tree.spread(kq.data(), unit.data(), s.changes.data());
-      gather_column(packs_of_tree_[t], s, tree.start().members, column.data());
+      gather_column(couplings_of_tree_[t], s, tree.start().members, column.data());
       for (std::size_t i = 0; i < n; ++i)
         column[index(tree_unknowns_[t]) + i] += tree.matrix()[n * k + i];
       coupled_->set_column(number, column.data());
@@ -217,6 +231,7 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
 
   // right side
   scatter_stretches(s, stage);
+  for (int i = 0; i < static_cast<int>(bonds_.size()); ++i) change_bond(i, s);
   for (int i = 0; i < members_; ++i) change_forced(i, s);
   double* right = s.right_side.data();
   for (int i = 0; i < members_; ++i) {

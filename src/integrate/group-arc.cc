@@ -345,13 +345,16 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
                          double to) const {
   const Data& d = *data_;
   const GroupMember& body = d.start.members[static_cast<std::size_t>(member)];
-  const bool is_link = body.tree >= 0;
+  // what joints, springs and forces by time did is not known
+  const auto on_bond = [&](const GroupBond& bond) { return bond.a == member || bond.b == member; };
+  const bool is_free = body.tree < 0 && !body.forces &&
+                       std::none_of(d.start.bonds.begin(), d.start.bonds.end(), on_bond);
   double work = 0;
   const double end = d.at(to);
   for (double start = d.at(from); start < end;) {
     const double stop = std::min(end, step_end(start)), h = stop - start;
     Vec3 v0, v1, L, impulse = Vec3::Zero(), carrying = Vec3::Zero();
-    if (!is_link) {
+    if (is_free) {
       d.record.velocities(member, start, v0, L);
       d.record.velocities(member, stop, v1, L);
     }
@@ -367,8 +370,7 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
         carrying += 0.5 * h * f.normal * f.other_velocity;
       }
     }
-    // what the joints of a link did is not known
-    if (is_link) {
+    if (!is_free) {
       start = stop;
       continue;
     }

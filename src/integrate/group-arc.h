@@ -100,6 +100,12 @@ struct GroupContact {
   Vec3 stretch = Vec3::Zero();  // at the start, a's frame, tangential
 };
 
+// A spring or hold between two members.
+struct GroupBond {
+  int a = 0, b = 0;
+  BondPtr bond;
+};
+
 struct GroupStart {
   double time = 0;  // s
   double end = 0;   // the arc goes no further, s
@@ -107,6 +113,7 @@ struct GroupStart {
   std::vector<GroupTree> trees;
   std::vector<TrajectoryPtr> outside;  // of bodies that the arc meets and does not move
   std::vector<GroupContact> contacts;
+  std::vector<GroupBond> bonds;
   double first_step = 0;             // to be tried first, s; 0: chosen
   double position_tolerance = 1e-6;  // m, of one step (RMS over members)
   double velocity_tolerance = 1e-5;  // m/s

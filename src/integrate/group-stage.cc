@@ -28,6 +28,11 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
     m.J = R * m.inverse_moments.asDiagonal() * R.transpose();
     m.W = m.J * cross_matrix(vec(y + 12 * i + 9)) - cross_matrix(m.w);
   }
+  for (HeldPair& pair : bonds_) {
+    const auto& [a, b, bond] = pair.given;
+    pair.derivative =
+        bond->derivative(point_of(a, y, s.bodies[index(a)]), point_of(b, y, s.bodies[index(b)]));
+  }
 }
 
 void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
@@ -129,6 +134,13 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
       for (const int body : {pack.a[i], pack.b[i]})
         if (body < members_) total[body] += slope[i];
   }
+  for (const HeldPair& pair : bonds_)
+    for (const int body : {pair.given.a, pair.given.b}) {
+      const Bond& bond = *pair.given.bond;
+      const Member& m = member_[index(body)];
+      const double turning = bond.turn.stiffness * m.mass * m.inverse_moments.maxCoeff();
+      total[body] += std::max(bond.spring.stiffness, bond.holds ? turning : 0.0);
+    }
   double largest = 0;
   for (int i = 0; i < members_; ++i)
     largest = std::max(largest, total[i] * member_[index(i)].inverse_mass);
@@ -159,6 +171,7 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     own.rightCols<3>() -=
         m.forced.by_pose.rightCols<3>() * m.P + m.forced.by_twist.rightCols<3>() * m.V;
   }
+  add_bond_blocks(sigma);
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
@@ -176,6 +189,41 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     }
   }
   return matrix_.factor();
+}
+
+// d(x) = kv/s, d(theta) = P kL, dw = V kL, of both ends
+void GroupSystem::add_bond_blocks(double sigma) {
+  for (const HeldPair& pair : bonds_) {
+    const int body[2] = {pair.given.a, pair.given.b};
+    for (const int Y : {0, 1})
+      for (const int X : {0, 1}) {
+        const WrenchDerivative& by = pair.derivative.of[Y][X];
+        const Member& m = member_[index(body[X])];
+        Eigen::Map<Mat6> block(matrix_.at(matrix_.offset(body[Y], body[X])));
+        block.leftCols<3>() -= by.by_pose.leftCols<3>() / sigma + by.by_twist.leftCols<3>();
+        block.rightCols<3>() -= by.by_pose.rightCols<3>() * m.P + by.by_twist.rightCols<3>() * m.V;
+      }
+  }
+}
+
+// The wrenches of a spring or hold by the changes of its two bodies.
+void GroupSystem::change_bond(int number, GroupScratch& s) const {
+  const HeldPair& pair = bonds_[index(number)];
+  const int body[2] = {pair.given.a, pair.given.b};
+  for (const int Y : {0, 1}) {
+    Vec6 sum = Vec6::Zero();
+    for (const int X : {0, 1}) {
+      const BodyChange& change = s.changes[index(body[X])];
+      Vec6 pose, twist;
+      pose << vec(change.x), vec(change.th);
+      twist << vec(change.v), vec(change.w);
+      const WrenchDerivative& by = pair.derivative.of[Y][X];
+      sum += by.by_pose * pose + by.by_twist * twist;
+    }
+    BodyWrench& wrench = s.wrenches[index(body[Y])];
+    vec(wrench.f) += sum.head<3>();
+    vec(wrench.t) += sum.tail<3>();
+  }
 }
 
 // What the right side of a body's positions says of its changes.
@@ -245,6 +293,7 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
 
   // right side
   scatter_stretches(s, stage);
+  for (int i = 0; i < static_cast<int>(bonds_.size()); ++i) change_bond(i, s);
   double* right = s.right_side.data();
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];

@@ -15,7 +15,7 @@ namespace tw {
 GroupStepper::GroupStepper(const GroupStart& start)
     : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {
   const bool alone = start.joint_tolerance > 0 && start.trees.size() == 1 &&
-                     start.contacts.empty() &&
+                     start.contacts.empty() && start.bonds.empty() &&
                      std::none_of(start.members.begin(), start.members.end(),
                                   [](const GroupMember& m) { return m.forces != nullptr; }) &&
                      start.members.size() == start.trees.front().members.size();

@@ -18,6 +18,7 @@ std::vector<std::pair<int, int>> member_pairs(const GroupStart& start) {
   std::vector<std::pair<int, int>> pairs;
   for (const GroupContact& c : start.contacts)
     if (c.a >= 0 && c.b >= 0 && c.a != c.b) pairs.emplace_back(c.a, c.b);
+  for (const GroupBond& bond : start.bonds) pairs.emplace_back(bond.a, bond.b);
   return pairs;
 }
 
@@ -43,6 +44,7 @@ GroupSystem::GroupSystem(const GroupStart& start)
     member.is_link = m.tree >= 0;
     member_.push_back(member);
   }
+  for (const GroupBond& bond : start.bonds) bonds_.push_back({bond, {}});
   size_ = 12 * (start.members.size() + packs_.packs.size());
   for (const GroupTree& tree : start.trees) {
     trees_.push_back(std::make_unique<TreeInGroup>(tree));
@@ -159,6 +161,17 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
       on_b = on_b + state.torque;
     }
     scatter(pack, state.f, on_a, on_b, s.wrenches.data());
+  }
+
+  // springs and holds
+  for (const HeldPair& pair : bonds_) {
+    const auto& [a, b, bond] = pair.given;
+    const Bond::Wrenches pull =
+        bond->wrenches(point_of(a, y, s.bodies[index(a)]), point_of(b, y, s.bodies[index(b)]));
+    vec(s.wrenches[index(a)].f) += pull.a.force;
+    vec(s.wrenches[index(a)].t) += pull.a.torque;
+    vec(s.wrenches[index(b)].f) += pull.b.force;
+    vec(s.wrenches[index(b)].t) += pull.b.torque;
   }
 
   // forces

@@ -102,6 +102,11 @@ class GroupSystem {
     PoseTwist point;
   };
 
+  struct HeldPair {
+    GroupBond given;
+    Bond::Derivative derivative;  // at the step's start
+  };
+
   // of one lane, or (-1) of the sum of the lanes
   void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
   template <bool with_derivative>
@@ -116,18 +121,29 @@ class GroupSystem {
   void take_body(const Member& member, const double* solved, BodyChange& change,
                  double* stage) const;
   Vec6 forced_change(const Member& member, const BodyChange& change) const;
+  void change_bond(int bond, GroupScratch& scratch) const;
+  void add_bond_blocks(double sigma);
   void scatter_stretches(GroupScratch& scratch, const double* stage) const;
   void solve_stretches(GroupScratch& scratch, double* stage) const;
 
   // ---- with multibodies (coupled-stage.cc) ----
+  // Contacts and bonds, ascending.
+  struct Couplings {
+    std::vector<int> packs, bonds;
+    void add(const Couplings& more);
+    void tidy();
+  };
   void make_coupled();
   void set_body_stage(Member& member, double sigma) const;
   bool factor_coupled(GroupScratch& scratch);
   bool solve_coupled(GroupScratch& scratch, double* stage);
-  // The wrenches that the changes of these packs' slots make, into the scratch.
-  void change_packs(const std::vector<int>& packs, GroupScratch& scratch) const;
+  // Calls visit(slot) for each body of these, perhaps more than once.
+  template <class Visit>
+  void each_slot(const Couplings& couplings, Visit&& visit) const;
+  // The wrenches that the changes of their slots make, into the scratch.
+  void change_couplings(const Couplings& couplings, GroupScratch& scratch) const;
   // One column: the changes of its bodies are in the scratch; minus their wrenches into `column`.
-  void gather_column(const std::vector<int>& packs, GroupScratch& scratch,
+  void gather_column(const Couplings& couplings, GroupScratch& scratch,
                      std::span<const int> moved_members, double* column) const;
   void change_forced(int member, GroupScratch& scratch) const;
 
@@ -139,15 +155,15 @@ class GroupSystem {
   bool forces_change_ = false;     // of some member, with time by themselves
   std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;
+  std::vector<HeldPair> bonds_;
   ContactPacks packs_;
   std::vector<LaneVec> sides_;
   BodyMatrix matrix_;
   double sigma_ = 0;
   std::vector<std::unique_ptr<TreeInGroup>> trees_;
   std::vector<std::size_t> tree_rows_;
-  std::vector<int> tree_unknowns_;               // the first of each
-  std::vector<std::vector<int>> packs_of_slot_;  // ascending
-  std::vector<std::vector<int>> packs_of_tree_;
+  std::vector<int> tree_unknowns_;  // the first of each
+  std::vector<Couplings> couplings_of_slot_, couplings_of_tree_;
   std::unique_ptr<CoupledMatrix> coupled_;  // where there are multibodies
 };
 

@@ -47,8 +47,7 @@ Progress CallbackEvents::process(std::uint32_t number) {
   }
   std::vector<SuccessorView> views;
   views.reserve(successors.size());
-  for (Successor& successor : successors)
-    views.emplace_back(successor, key, false, sim_.present.settings.gravity);
+  for (Successor& successor : successors) views.emplace_back(sim_.scene, successor, key, false);
   std::vector<StateView*> pointers;
   for (SuccessorView& view : views) pointers.push_back(&view);
 

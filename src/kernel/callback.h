@@ -22,6 +22,8 @@
 
 namespace tw {
 
+struct HoldDef;
+
 // What a callback is handed for each target: reads at the event's time, writes into the state that
 // follows.  Lives only during the call.
 class StateView {
@@ -51,6 +53,15 @@ class StateView {
   virtual void change_joints(const std::function<void(MultibodyState&)>& /*change*/) {
     throw UserError("this view has no joints to change");
   }
+  // Holds it and the other, of the same call, together as they are; lets go of each other again;
+  // whether they are held.  Errors: as of make_hold (kernel/bonds.h).
+  virtual void attach(StateView& /*other*/, const HoldDef& /*hold*/) {
+    throw UserError("this view cannot be attached to anything");
+  }
+  virtual void detach(StateView& /*other*/) {
+    throw UserError("this view cannot be detached from anything");
+  }
+  virtual bool attached(const StateView& /*other*/) const { return false; }
   // Edits only (World::edit), never in callbacks.
   virtual void set_pose(const Vec3& position, const Quat& orientation) = 0;
   // Uniform in [0, 1), from the generator that lives in the state.

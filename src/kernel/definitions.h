@@ -65,6 +65,14 @@ struct SpringDef {
   std::optional<double> rest;  // m; absent: as long as it is now
 };
 
+// How two bodies are held as they are against each other.
+struct HoldDef {
+  std::optional<Vec3> at;  // where, in the body frame of the first; absent: at the centre of
+                           // mass of the second, or of the first where that is not dynamic
+  std::optional<double> stiffness;  // N/m; absent: it gives way by answer::hold_sag
+  std::optional<double> damping;    // N s/m; absent: answer::hold_damping
+};
+
 // Of a procedure of the user: force and torque, N and N m, world frame, on the body as it is seen;
 // pure.  Errors: UserError.
 class ForceProcedure {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "groups/joints.h"
 #include "groups/region.h"
 #include "groups/regroup.h"
 #include "kernel/discontinuities.h"
@@ -38,7 +39,7 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   successors[0].role = Role::record;
   const Vec3 x_before = successors[0].point.x;
   const Quat q_before = successors[0].point.q;
-  SuccessorView view(successors[0], key, true, sim_.present.settings.gravity);
+  SuccessorView view(sim_.scene, successors[0], key, true);
   change(view);
   groups_.regroup_edited(key, successors);
   discontinuities_.enter(key, successors);
@@ -46,6 +47,28 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   const PoseTwist& now = successors[0].point;
   if (now.x == x_before && now.q.coeffs() == q_before.coeffs()) return {};
   return {id};
+}
+
+void Editing::edit_pair(BodyId a, BodyId b,
+                        const std::function<void(SuccessorView&, SuccessorView&)>& change) {
+  sim_.require_between_runs("two bodies were changed");
+  const Before standing = sim_.before(sim_.present.key());
+  std::vector<ProcessId> concerned;
+  std::vector<ProcessId> both;
+  for (const BodyId id : {a, b}) insert(both, sim_.process_of(id));
+  const Region region = region_of(standing, both, true);
+  concerned = region.inside;
+  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
+  const Key key = edit_key(concerned);
+  std::vector<Successor> successors;
+  for (const BodyId id : {a, b})
+    successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));
+  share_joints(successors);
+  SuccessorView view_a(sim_.scene, successors[0], key, false);
+  SuccessorView view_b(sim_.scene, successors[1], key, false);
+  change(view_a, view_b);
+  groups_.regroup_edited(key, successors);
+  discontinuities_.enter(key, successors);
 }
 
 void Editing::set_gravity(const Vec3& gravity) {
@@ -101,15 +124,6 @@ void Editing::renew_groups() {
       },
       [](Successor&) {});
 }
-
-namespace {
-
-bool hangs_on(const ForcesPtr& forces, BodyId id) {
-  return forces && std::any_of(forces->laws().begin(), forces->laws().end(),
-                               [&](const ForceLawPtr& law) { return law->hangs_on(id); });
-}
-
-}  // namespace
 
 void Editing::let_go_of(BodyId id) {
   edit_together(

@@ -15,6 +15,7 @@ namespace tw {
 
 class Discontinuities;
 class GroupEvents;
+class SuccessorView;
 struct Simulation;
 
 class Editing {
@@ -25,6 +26,9 @@ class Editing {
   // `change` gets a view of the body.  Those that were placed elsewhere: it, or the links of its
   // multibody.
   std::vector<BodyId> edit(BodyId id, const std::function<void(StateView&)>& change);
+  // The same of two at once, which stay where they are.
+  void edit_pair(BodyId a, BodyId b,
+                 const std::function<void(SuccessorView&, SuccessorView&)>& change);
   void set_gravity(const Vec3& gravity);
   // All groups take what was set since, and wake.
   void renew_groups();

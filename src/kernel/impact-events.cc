@@ -38,8 +38,8 @@ void ImpactEvents::run_callbacks(const Collision& collision, Successor& a, Succe
     // the sides in the order given; where both match either way, the body added first comes first
     const bool straight =
         side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
-    SuccessorView view_a(a, collision.key, false, sim_.present.settings.gravity);
-    SuccessorView view_b(b, collision.key, false, sim_.present.settings.gravity);
+    SuccessorView view_a(sim_.scene, a, collision.key, false);
+    SuccessorView view_b(sim_.scene, b, collision.key, false);
     ++counters_.callbacks_run;
     if (straight)
       def.callback->run(collision, false, view_a, view_b);

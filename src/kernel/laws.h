@@ -10,9 +10,11 @@ namespace tw {
 
 class Kernel;
 
+// UserError where a constant of a force is negative or not finite.
+void require_constant(double value, const std::string& what, const char* unit);
+
 // As of World (world.h); all are edits at the present time.
 void add_drag(Kernel& kernel, BodyId id, double linear, double quadratic);
-void add_spring(Kernel& kernel, const SpringDef& def);
 void add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure);
 
 }  // namespace tw

@@ -39,6 +39,8 @@ double total_energy(const Simulation& simulation, double when) {
     energy += kinetic_energy(*body, p) - body->mass * simulation.present.settings.gravity.dot(p.x);
     const State& state = *state_at(simulation, body->id(), when);
     if (state.forces) energy += state.forces->energy(when, p);
+    for (const BondPtr& bond : bonds_of(state.forces))
+      if (bond->a == body->id()) energy += bond->energy(p, point_at(simulation, bond->b, when));
   }
   for (const auto& multibody : simulation.scene.multibodies) {
     const State& state = *state_at(simulation, multibody->links.front(), when);

@@ -8,6 +8,8 @@
 #include "base/limits.h"
 #include "base/random.h"
 #include "groups/joints.h"
+#include "integrate/anchored-bond.h"
+#include "kernel/bonds.h"
 #include "kernel/joint-changes.h"
 
 namespace tw {
@@ -95,7 +97,7 @@ void SuccessorView::set_applied_force(const Vec3& force) {
   if (force == successor_.data.force) return;
   start_arc();
   successor_.data.force = force;
-  successor_.data.acceleration = gravity_ + force / successor_.body->mass;
+  successor_.data.acceleration = scene_.options.gravity + force / successor_.body->mass;
 }
 
 Vec3 SuccessorView::applied_torque() const {
@@ -124,6 +126,48 @@ void SuccessorView::add_force(ForceLawPtr law) {
   require_dynamic("a force on it, that");
   start_arc();
   successor_.data.forces = with_law(successor_.data.forces, std::move(law));
+}
+
+void SuccessorView::tie(SuccessorView& other, const Bond& bond) {
+  const Body &mine = *successor_.body, &theirs = *other.successor_.body;
+  const bool both = mine.dynamic() && theirs.dynamic();
+  const BondPtr shared = both ? std::make_shared<Bond>(bond) : nullptr;
+  for (SuccessorView* view : {this, &other}) {
+    if (!view->successor_.body->dynamic()) continue;
+    view->start_arc();
+    ForcesPtr& forces = view->successor_.data.forces;
+    if (both) {
+      forces = with_bond(forces, shared);
+      continue;
+    }
+    const Body& anchor = mine.dynamic() ? theirs : mine;
+    forces = with_law(forces, make_anchored_bond(bond, anchor.motion, anchor.fixed()));
+  }
+}
+
+void SuccessorView::attach(StateView& view, const HoldDef& hold) {
+  auto& other = static_cast<SuccessorView&>(view);
+  tie(other, make_hold(scene_, successor_, other.successor_, hold));
+}
+
+void SuccessorView::detach(StateView& view) {
+  auto& other = static_cast<SuccessorView&>(view);
+  TW_REQUIRE(attached(other), successor_.body->info.name + " and " +
+                                  other.successor_.body->info.name +
+                                  " are not held together; expected two that attach! holds");
+  for (SuccessorView* one : {this, &other}) {
+    if (!one->successor_.body->dynamic()) continue;
+    one->start_arc();
+    ForcesPtr& forces = one->successor_.data.forces;
+    forces = without_holds_on(forces, one == this ? other.body() : body());
+  }
+}
+
+bool SuccessorView::attached(const StateView& other) const {
+  return holds(successor_.body->dynamic()
+                   ? successor_.data.forces
+                   : static_cast<const SuccessorView&>(other).successor_.data.forces,
+               successor_.body->dynamic() ? other.body() : body());
 }
 
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }

@@ -18,11 +18,11 @@ void require_near(const Vec3& position, const std::string& name);
 // Reads the successor's point, writes the successor.
 class SuccessorView : public StateView {
  public:
-  SuccessorView(Successor& successor, const Key& key, bool may_place, const Vec3& gravity)
-      : successor_(successor),
+  SuccessorView(const Scene& scene, Successor& successor, const Key& key, bool may_place)
+      : scene_(scene),
+        successor_(successor),
         key_(key),
         may_place_(may_place),
-        gravity_(gravity),
         state_(body_state(*successor.body, successor.point)) {}
 
   BodyId body() const override { return successor_.body->id(); }
@@ -40,6 +40,11 @@ class SuccessorView : public StateView {
   void set_applied_torque(const Vec3& torque) override;
   void add_force(ForceLawPtr law) override;
   void set_slots(SlotsPtr slots) override;
+  void attach(StateView& other, const HoldDef& hold) override;
+  void detach(StateView& other) override;
+  bool attached(const StateView& other) const override;
+  // Ties the two from here on.
+  void tie(SuccessorView& other, const Bond& bond);
   void set_pose(const Vec3& position, const Quat& orientation) override;
   double draw_random() override;
 
@@ -48,10 +53,10 @@ class SuccessorView : public StateView {
   void require_no_link(const char* what) const;
   void start_arc();
 
+  const Scene& scene_;
   Successor& successor_;
   Key key_;
   bool may_place_;
-  Vec3 gravity_;
   BodyState state_;
 };
 

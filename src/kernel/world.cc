@@ -6,6 +6,7 @@
 
 #include "base/limits.h"
 #include "groups/joints.h"
+#include "kernel/bonds.h"
 #include "kernel/kernel.h"
 #include "kernel/laws.h"
 #include "kernel/reading.h"
@@ -146,6 +147,9 @@ void World::add_drag(BodyId id, double linear, double quadratic) {
   tw::add_drag(*kernel_, id, linear, quadratic);
 }
 void World::add_spring(const SpringDef& def) { tw::add_spring(*kernel_, def); }
+void World::attach(BodyId a, BodyId b, const HoldDef& def) { tw::attach(*kernel_, a, b, def); }
+void World::detach(BodyId a, BodyId b) { tw::detach(*kernel_, a, b); }
+bool World::attached(BodyId a, BodyId b) const { return tw::attached(*kernel_, a, b); }
 void World::add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure) {
   tw::add_force(*kernel_, id, std::move(procedure));
 }

@@ -91,9 +91,14 @@ class World {
   // ---- forces, from time() on, beside those that act already ----
   // -(linear + quadratic |v|) v at the centre of mass, N s/m and N s^2/m^2.
   void add_drag(BodyId id, double linear, double quadratic);
-  // Errors: between two dynamic bodies, which is not there yet.
   void add_spring(const SpringDef& def);
   void add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure);
+
+  // Holds the two as they are; lets go of them; whether they are held.  Errors: as of make_hold
+  // (kernel/bonds.h); what is not held cannot be detached.
+  void attach(BodyId a, BodyId b, const HoldDef& def = {});
+  void detach(BodyId a, BodyId b);
+  bool attached(BodyId a, BodyId b) const;
 
   // ---- callbacks and observers ----
   // Number of the callback, counted from 0 in order of registration.

@@ -124,6 +124,57 @@ TW_PRIMITIVE(add_spring, "%add-spring!",
   return SCM_UNSPECIFIED;
 }
 
+namespace {
+
+// The two as views in a callback, or as bodies of the world outside; calls the one or the other.
+template <class OfViews, class OfBodies>
+void with_both(SCM world, SCM a, SCM b, const char* what, OfViews&& of_views,
+               OfBodies&& of_bodies) {
+  if (is_view(a) || is_view(b)) {
+    for (const SCM object : {a, b})
+      if (!is_view(object))
+        throw BadValue{"one of the two", object,
+                       "a view, as the other one is: make it a target of "
+                       "the callback"};
+    StateView &view_a = to_view(a), &view_b = to_view(b);
+    return of_views(view_a, view_b);
+  }
+  require_outside_callbacks(what);
+  const BodyId id_a = to_body(world, a, "the first body");
+  of_bodies(to_world(world), id_a, to_body(world, b, "the second body"));
+}
+
+}  // namespace
+
+TW_PRIMITIVE(attach, "%attach!", (SCM world, SCM a, SCM b, SCM at, SCM stiffness, SCM damping),
+             "Hold two bodies as they are.") {
+  HoldDef hold;
+  if (scm_is_true(at)) hold.at = to_vec3(at, "at");
+  hold.stiffness = optional_real(stiffness, "stiffness");
+  hold.damping = optional_real(damping, "damping");
+  with_both(
+      world, a, b, "attach!",
+      [&](StateView& view_a, StateView& view_b) { view_a.attach(view_b, hold); },
+      [&](World& w, BodyId id_a, BodyId id_b) { w.attach(id_a, id_b, hold); });
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(detach, "%detach!", (SCM world, SCM a, SCM b), "Let go of a held pair.") {
+  with_both(
+      world, a, b, "detach!", [](StateView& view_a, StateView& view_b) { view_a.detach(view_b); },
+      [](World& w, BodyId id_a, BodyId id_b) { w.detach(id_a, id_b); });
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(attached, "%attached?", (SCM world, SCM a, SCM b), "Whether two are held together.") {
+  bool held = false;
+  with_both(
+      world, a, b, "attached?",
+      [&](StateView& view_a, StateView& view_b) { held = view_a.attached(view_b); },
+      [&](World& w, BodyId id_a, BodyId id_b) { held = w.attached(id_a, id_b); });
+  return scm_from_bool(held);
+}
+
 TW_PRIMITIVE(add_force, "%add-force!", (SCM world, SCM body, SCM procedure, SCM place),
              "Let a procedure act on a body.") {
   require_outside_callbacks("add-force!");

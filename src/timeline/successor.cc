@@ -39,8 +39,7 @@ void let_move(const Scene& scene, const Body& body, StateData& data) {
   start.time = data.arc_time;
   start.mass = body.mass;
   start.moments = body.moments;
-  // without a shape as far as its mass reaches
-  start.size = body.shape_P ? body.radius : body.gyration();
+  start.size = body.extent();
   start.gravity = scene.gravity_scale();
   start.accuracy = scene.options.accuracy;
   start.x = data.x;

@@ -11,25 +11,20 @@
 #include <vector>
 
 #include "base/cpu-clock.h"
-#include "integrate/anchored-spring.h"
 #include "integrate/driven-arc.h"
-#include "integrate/standing.h"
+#include "support/anchored-spring.h"
 
 namespace tw {
 namespace {
 
 constexpr double duration = 10;
 
-SpringAnchor at(const Vec3& place) {
-  return {0, make_standing({place, Quat::Identity()}), true, Vec3::Zero()};
-}
-
 DrivenStart oscillator() {
   DrivenStart start;
   start.size = 0.5;
   start.gravity = 9.81;
   start.v = {0.6, 0, 0};
-  start.forces = with_law(nullptr, make_anchored_spring({7, 0.5, 2}, Vec3::Zero(), at({-2, 0, 0})));
+  start.forces = with_law(nullptr, test::spring_to({-2, 0, 0}, Vec3::Zero(), {7, 0.5, 2}));
   return start;
 }
 
@@ -46,9 +41,8 @@ DrivenStart tumbling() {
   DrivenStart start = oscillator();
   start.moments = {0.05, 0.1, 0.12};
   start.L = {0.2, 0.3, 0.1};
-  start.forces =
-      with_law(with_law(nullptr, make_anchored_spring({20, 0, 0}, {0.4, 0.1, 0}, at({3, 0, 0}))),
-               make_anchored_spring({20, 0, 0}, {-0.4, 0, 0.1}, at({-3, 0, 0})));
+  start.forces = with_law(with_law(nullptr, test::spring_to({3, 0, 0}, {0.4, 0.1, 0}, {20, 0, 0})),
+                          test::spring_to({-3, 0, 0}, {-0.4, 0, 0.1}, {20, 0, 0}));
   return start;
 }
 

@@ -8,27 +8,23 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "integrate/anchored-spring.h"
 #include "integrate/keyframes.h"
 #include "integrate/standing.h"
+#include "support/anchored-spring.h"
 
 namespace tw {
 namespace {
 
-SpringAnchor swinging_anchor() {
-  return {3, make_keyframes({{0, {0, 0, 2}, {}}, {1, {1, 0, 2}, {}}, {2, {0, 1, 2}, {}}}, true),
-          false, Vec3(0.1, 0, 0)};
-}
-
-SpringAnchor standing_anchor() {
-  return {2, make_standing({{0, 1, 0}, Quat::Identity()}), true, {}};
+TrajectoryPtr swinging_anchor() {
+  return make_keyframes({{0, {0, 0, 2}, {}}, {1, {1, 0, 2}, {}}, {2, {0, 1, 2}, {}}}, true);
 }
 
 ForcesPtr all_forces() {
   ForcesPtr forces = with_torque(nullptr, {0.02, 0, -0.03});
   forces = with_law(forces, make_drag(0.2, 0.1));
-  forces = with_law(forces, make_anchored_spring({30, 0.5, 0.8}, {0.2, 0, 0.1}, swinging_anchor()));
-  return with_law(forces, make_anchored_spring({12, 0.1, 0}, {0, -0.2, 0}, standing_anchor()));
+  forces = with_law(forces,
+                    test::spring_to(swinging_anchor(), {0.1, 0, 0}, {0.2, 0, 0.1}, {30, 0.5, 0.8}));
+  return with_law(forces, test::spring_to({0, 1, 0}, {0, -0.2, 0}, {12, 0.1, 0}));
 }
 
 // A tumbling brick on springs in the wind.
@@ -149,8 +145,9 @@ TEST(Forces, derivatives_are_those_of_the_laws) {
     return Vec3(x, y, random.real(-most, most));
   };
   const ForceLawPtr laws[] = {
-      make_drag(0.7, 0.4), make_anchored_spring({30, 2, 0.8}, {0.2, 0.1, 0.1}, swinging_anchor()),
-      make_anchored_spring({12, 3, 0}, {0, -0.2, 0.3}, standing_anchor())};
+      make_drag(0.7, 0.4),
+      test::spring_to(swinging_anchor(), {0.1, 0, 0}, {0.2, 0.1, 0.1}, {30, 2, 0.8}),
+      test::spring_to({0, 1, 0}, {0, -0.2, 0.3}, {12, 3, 0})};
   for (int i = 0; i < 60; ++i) {
     PoseTwist body;
     body.x = draw(2);

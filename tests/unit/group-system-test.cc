@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "integrate/anchored-spring.h"
 #include "integrate/group-system.h"
 #include "integrate/standing.h"
+#include "support/anchored-spring.h"
 
 namespace tw {
 namespace {
@@ -71,9 +71,8 @@ GroupMember random_member(Draw& draw) {
   if (draw.in(0, 1) < 0.5) {
     m.forces = with_law(with_torque(nullptr, draw.vec(0.1)), make_drag(0.3, 0.2));
     const Vec3 arm = draw.vec(0.3);
-    m.forces = with_law(m.forces,
-                        make_anchored_spring({20, 2, 0.4}, arm,
-                                             {9, std::make_shared<Slide>(), false, draw.vec(0.5)}));
+    m.forces = with_law(
+        m.forces, test::spring_to(std::make_shared<Slide>(), draw.vec(0.5), arm, {20, 2, 0.4}));
   }
   return m;
 }
@@ -156,6 +155,16 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     }
     if (c.feature == ContactFeature::plane) c.stretch -= n * n.dot(c.stretch);
     start.contacts.push_back(c);
+  }
+  // a spring, and a hold between two that are in contact, too
+  for (const auto& [a, b] : {std::pair{3, 1}, std::pair{2, 0}}) {
+    Bond bond;
+    bond.arm_a = draw.vec(0.3);
+    bond.arm_b = draw.vec(0.3);
+    bond.spring = {40, 3, a == 3 ? 0.5 : 0};
+    bond.holds = a == 2;
+    if (bond.holds) bond.turn = {6, 0.5, draw.turn()};
+    start.bonds.push_back({a, b, std::make_shared<Bond>(bond)});
   }
   return start;
 }

@@ -1,0 +1,154 @@
+// Springs and holds between two bodies.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "kernel/bonds.h"
+
+#include <cmath>
+
+#include "base/constants.h"
+#include "base/limits.h"
+#include "kernel/kernel.h"
+#include "kernel/laws.h"
+#include "kernel/reading.h"
+#include "kernel/state-view.h"
+#include "multibody/multibody.h"
+
+namespace tw {
+namespace {
+
+void require_point(const Vec3& point, const std::string& what) {
+  TW_REQUIRE(is_finite(point) && point.cwiseAbs().maxCoeff() <= greatest_length,
+             what + " is #(" + show(point.x()) + " " + show(point.y()) + " " + show(point.z()) +
+                 "); expected coordinates of at most " + show(greatest_length) + " m");
+}
+
+// `what`: the spring or hold, for errors.
+void require_two(const Body& a, const Body& b, const std::string& what) {
+  TW_REQUIRE(a.id() != b.id(), what + " has both ends on one body; expected two bodies");
+  for (const Body* body : {&a, &b})
+    TW_REQUIRE(!body->info.removed,
+               body->info.name + " was removed; expected a body that is there");
+  TW_REQUIRE(a.dynamic() || b.dynamic(),
+             what + " moves neither of them; expected one of them to be dynamic");
+}
+
+std::string between(const Body& a, const Body& b) {
+  return "between " + a.info.name + " and " + b.info.name;
+}
+
+// Where a point of the body frame is in that of its motion.
+Vec3 arm_of(const Body& body, const Vec3& at) {
+  return body.dynamic() ? Vec3(body.X_PB.q * at + body.X_PB.p) : at;
+}
+
+// What a hold at `point` swings on one side.
+struct HeldSide {
+  double mass = never, inertia = never;
+
+  HeldSide(const Body& body, const PoseTwist& at, const Vec3& point) {
+    if (!body.dynamic()) return;
+    mass = body.multibody ? body.multibody->tree.mass() : body.mass;
+    // the means about all axes
+    const double own = body.moments.sum() / 3 + 2.0 / 3 * body.mass * (point - at.x).squaredNorm();
+    inertia = own * (mass / body.mass);
+  }
+};
+
+double size_of(const Body& body) {
+  if (!body.dynamic()) return never;
+  return body.multibody ? extent_of_link(body) : body.extent();
+}
+
+}  // namespace
+
+Bond make_hold(const Scene& scene, const Successor& first, const Successor& second,
+               const HoldDef& def) {
+  const std::string what = "the hold " + between(*first.body, *second.body);
+  require_two(*first.body, *second.body, what);
+  const Successor& mover = first.body->dynamic() ? first : second;
+  const Body& other = first.body->dynamic() ? *second.body : *first.body;
+  TW_REQUIRE(!holds(mover.data.forces, other.id()),
+             first.body->info.name + " and " + second.body->info.name +
+                 " are held together already; expected detach! before");
+
+  // what is not dynamic comes first
+  const bool swapped = !second.body->dynamic();
+  const Successor &a = swapped ? second : first, &b = swapped ? first : second;
+  Vec3 point = b.point.x;
+  if (def.at) {
+    require_point(*def.at, "at of " + what);
+    point = first.point.frame() * arm_of(*first.body, *def.at);
+  }
+  const HeldSide side_a(*a.body, a.point, point), side_b(*b.body, b.point, point);
+  const double mass = std::min(side_a.mass, side_b.mass);
+  const double inertia = std::min(side_a.inertia, side_b.inertia);
+  const double size = std::min(size_of(*a.body), size_of(*b.body));
+
+  Bond bond;
+  bond.a = a.body->id();
+  bond.b = b.body->id();
+  bond.arm_a = a.point.q.conjugate() * (point - a.point.x);
+  bond.arm_b = b.point.q.conjugate() * (point - b.point.x);
+  bond.spring.stiffness =
+      def.stiffness.value_or(mass * scene.gravity_scale() / (answer::hold_sag * size));
+  require_constant(bond.spring.stiffness, "stiffness of " + what, "N/m");
+  bond.spring.damping =
+      def.damping.value_or(2 * answer::hold_damping * std::sqrt(bond.spring.stiffness * mass));
+  require_constant(bond.spring.damping, "damping of " + what, "N s/m");
+  bond.holds = true;
+  bond.turn.stiffness = bond.spring.stiffness * inertia / mass;
+  bond.turn.damping = bond.spring.damping * inertia / mass;
+  bond.turn.relative = (a.point.q.conjugate() * b.point.q).normalized();
+  return bond;
+}
+
+void add_spring(Kernel& kernel, const SpringDef& def) {
+  const Simulation& simulation = kernel.simulation;
+  const Body &given_a = simulation.body(def.a), &given_b = simulation.body(def.b);
+  const std::string spring = "the spring " + between(given_a, given_b);
+  require_two(given_a, given_b, spring);
+  require_constant(def.stiffness, "stiffness of " + spring, "N/m");
+  require_constant(def.damping, "damping of " + spring, "N s/m");
+  require_point(def.at_a, "at-a of " + spring);
+  require_point(def.at_b, "at-b of " + spring);
+
+  // what is not dynamic comes first
+  const bool swapped = !given_b.dynamic();
+  const Body &a = swapped ? given_b : given_a, &b = swapped ? given_a : given_b;
+  Bond bond;
+  bond.a = a.id();
+  bond.b = b.id();
+  bond.arm_a = arm_of(a, swapped ? def.at_b : def.at_a);
+  bond.arm_b = arm_of(b, swapped ? def.at_a : def.at_b);
+  const double now = simulation.present.time;
+  const auto end = [&](const Body& body, const Vec3& arm) {
+    const PoseTwist at =
+        body.dynamic() ? point_at(simulation, body.id(), now) : body.motion->at(now);
+    return Vec3(at.x + at.q * arm);
+  };
+  const double length = (end(b, bond.arm_b) - end(a, bond.arm_a)).norm();
+  bond.spring = {def.stiffness, def.damping, def.rest.value_or(length)};
+  TW_REQUIRE(bond.spring.rest >= 0 && bond.spring.rest <= greatest_length,
+             "rest of " + spring + " is " + show(bond.spring.rest) +
+                 "; expected a length from 0 to " + show(greatest_length) + " m");
+  kernel.editing.edit_pair(a.id(), b.id(), [&](SuccessorView& view_a, SuccessorView& view_b) {
+    view_a.tie(view_b, bond);
+  });
+}
+
+void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def) {
+  kernel.editing.edit_pair(
+      a, b, [&](SuccessorView& view_a, SuccessorView& view_b) { view_a.attach(view_b, def); });
+}
+
+void detach(Kernel& kernel, BodyId a, BodyId b) {
+  kernel.editing.edit_pair(
+      a, b, [](SuccessorView& view_a, SuccessorView& view_b) { view_a.detach(view_b); });
+}
+
+bool attached(const Kernel& kernel, BodyId a, BodyId b) {
+  const bool first = kernel.simulation.body(a).dynamic();
+  const State& state = *state_at(kernel.simulation, first ? a : b, kernel.simulation.present.time);
+  return holds(state.forces, first ? b : a);
+}
+
+}  // namespace tw

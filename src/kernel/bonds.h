@@ -1,0 +1,28 @@
+// Springs and holds between two bodies: what is checked, and the bond that follows.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "kernel/definitions.h"
+#include "timeline/successor.h"
+
+namespace tw {
+
+class Kernel;
+
+// As of World (world.h); edits at the present time.
+void add_spring(Kernel& kernel, const SpringDef& def);
+void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def);
+void detach(Kernel& kernel, BodyId a, BodyId b);
+bool attached(const Kernel& kernel, BodyId a, BodyId b);
+
+// The hold between two successors as they are.
+//
+// Its stiffness carries the weight of the lighter with a sag of answer::hold_sag of the lesser
+// size: a frequency w, w^2 = g/(sag size), at which masses and moments of inertia about the point
+// where it holds swing alike; a link has the mass of all its multibody.
+//
+// Errors: UserError where the two are one, are held already, or neither is dynamic; constants that
+// are negative or not finite.
+Bond make_hold(const Scene& scene, const Successor& a, const Successor& b, const HoldDef& def);
+
+}  // namespace tw
