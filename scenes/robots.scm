@@ -12,71 +12,79 @@
 
 (define pi (acos -1))
 (define side 0.14)                         ; m, of a box
+(define density 180)
+(define box-mass (* density side side side))
 (define tick (/ 1.0 rate))
-(define shoulder 0.75)                     ; m, height of the arm's first joint that pitches
+
 
 (set-contact-parameters! #t #t #:restitution 0.25 #:friction 0.5)
 (set-contact-parameters! 'chute #t #:restitution 0.25 #:friction 0.22)
 
 (define floor-body (add-body! #:name "ground" #:shape (half-space #(0 0 1) 0) #:fixed? #t))
 
-;; ---- a bay: pedestal, trough, chute, back, walls; the arm looks along x ----
+;; ---- a bay: pedestal, trough, chute, back, walls; the arms stand in a ring and look outwards ----
 
 (define slope (* pi 0.21))
-(define trough-near 0.5) (define trough-far 1.05)
-(define trough-top 0.25)
-(define chute-length 2.4)
+(define trough-near 0.45) (define trough-far 1.0)
+(define trough-top 0.25) (define rim-top 0.56)
+(define chute-length 2.2)
 (define wide 1.3)
-(define steel #(0.42 0.45 0.5))
+(define ring 3.9)                          ; m, radius on which the arms stand
 
-(define (in-bay x y point) (vector (+ x (vector-ref point 0)) (+ y (vector-ref point 1)) (vector-ref point 2)))
+;; a frame of a bay: where its pedestal stands, and how it is turned
+(define (bay-turn number) (rotation #(0 0 1) (+ (* 2 pi (/ number 20)) (* 0.5 pi))))
+(define (in-bay number point)
+  (rotate (bay-turn number) (v+ (vector ring 0 0) point)))
 
-(define (add-bay! number x y)
-  (define (add-part! name shape point color . more)
-    (apply add-body! #:name (format #f "~a-~a" name number) #:fixed? #t #:shape shape #:color color
-           #:material 'chute #:position (in-bay x y point) more))
+(define (add-bay! number)
+  (define* (add-part! name shape point color #:optional (turn #(1 0 0 0)))
+    (add-body! #:name (format #f "~a-~a" name number) #:fixed? #t #:shape shape #:color color
+               #:material 'chute #:position (in-bay number point)
+               #:orientation (q* (bay-turn number) turn)))
   (let* ((middle (* 0.5 (+ trough-near trough-far)))
          (end (+ trough-far (* chute-length (cos slope))))
          (top (+ trough-top (* chute-length (sin slope))))
-         (pedestal (add-part! "pedestal" (cylinder 0.17 0.6) #(0 0 0.3) #(0.2 0.21 0.24))))
+         (wood #(0.78 0.66 0.5)) (rim #(0.55 0.4 0.27))
+         (tilt (rotation #(0 1 0) (- slope)))
+         (pedestal (add-part! "pedestal" (cylinder 0.17 0.76) #(0 0 0.38) #(0.2 0.21 0.24))))
     (add-part! "trough" (box (- trough-far trough-near) wide trough-top)
-               (vector middle 0 (* 0.5 trough-top)) #(0.5 0.42 0.33))
-    (add-part! "lip" (box 0.04 wide (+ trough-top 0.1))
-               (vector (- trough-near 0.02) 0 (* 0.5 (+ trough-top 0.1))) #(0.3 0.26 0.22))
+               (vector middle 0 (* 0.5 trough-top)) wood)
+    (add-part! "lip" (box 0.04 wide rim-top)
+               (vector (- trough-near 0.02) 0 (* 0.5 rim-top)) rim)
     (add-part! "chute" (box chute-length wide 0.06)
                (v+ (vector trough-far 0 trough-top)
-                   (rotate (rotation #(0 1 0) (- slope)) (vector (* 0.5 chute-length) 0 -0.03)))
-               #(0.62 0.54 0.42) #:orientation (rotation #(0 1 0) (- slope)))
-    (add-part! "back" (box 0.05 wide 1.3) (vector (+ end 0.02) 0 (+ top 0.6)) #(0.85 0.72 0.3))
+                   (rotate tilt (vector (* 0.5 chute-length) 0 -0.03)))
+               #(0.93 0.86 0.7) tilt)
+    (add-part! "back" (box 0.05 wide 1.2) (vector (+ end 0.02) 0 (+ top 0.5)) #(0.9 0.62 0.2))
     (for-each (lambda (name sign)
                 (add-part! (string-append name "-low")
-                           (box (- trough-far trough-near) 0.04 (+ trough-top 0.16))
-                           (vector middle (* sign (+ 0.02 (* 0.5 wide))) (* 0.5 (+ trough-top 0.16)))
-                           #(0.3 0.26 0.22))
+                           (box (- trough-far trough-near) 0.04 rim-top)
+                           (vector middle (* sign (+ 0.02 (* 0.5 wide))) (* 0.5 rim-top))
+                           rim)
                 (add-part! name
                            (convex
                             (append-map
                              (lambda (across)
                                (list (vector trough-far across 0) (vector end across 0)
-                                     (vector trough-far across (+ trough-top 0.16))
+                                     (vector trough-far across rim-top)
                                      (vector (+ trough-far 0.5) across (+ trough-top 0.9))
                                      (vector end across (+ top 0.9))))
                              (list (* sign 0.5 wide) (* sign (+ (* 0.5 wide) 0.04)))))
-                           #(0 0 0) #(0.36 0.33 0.3)))
+                           #(0 0 0) #(0.82 0.74 0.6)))
               '("left" "right") '(1 -1))
     pedestal))
 
 ;; ---- an arm of eight links: seven turning joints and a sprung suction pad ----
 
+(define steel #(0.42 0.45 0.5))
 (define (beam length width)
   (placed (box length width width) #:position (vector (* 0.5 length) 0 0)))
 
-(define upper 0.62) (define fore 0.52) (define hand 0.12) (define pad-length 0.06)
+(define upper 0.66) (define fore 0.56) (define hand 0.12) (define pad-length 0.06)
 
 (define (add-arm! number pedestal color)
-  (let* ((name (lambda (what) (format #f "~a" what)))
-         (arm
-          (add-multibody! #:name (format #f "arm-~a" number) #:base pedestal #:position #(0 0 0.3)
+  (let ((arm
+          (add-multibody! #:name (format #f "arm-~a" number) #:base pedestal #:position #(0 0 0.38)
             (link 'turret #:joint (revolute #:axis #(0 0 1) #:damping 0.5)
                   #:shape (placed (cylinder 0.15 0.1) #:position #(0 0 0.05)) #:color steel
               (link 'upper #:joint (revolute #:axis #(0 1 0) #:at #(0 0 0.15) #:limits '(-2.8 1.2))
@@ -118,18 +126,31 @@
             (/ (+ u0 (* s2 (+ (* 3 a) (* s (+ (* 4 b) (* s 5 c)))))) T)
             (/ (* s (+ (* 6 a) (* s (+ (* 12 b) (* s 20 c))))) (* T T)))))
 
-(define ready #(0 -1.5 0 1.9 0 1.2 0 0))
-(define wound #(0 -2.5 0 2.3 0 0.9 0 0))
-(define release #(0 -1.35 0 0.6 0 0.1 0 0))
-(define swing #(0 5.0 0 -5.0 0 -4.0 0 0))        ; rad/s at the release
+(define ready #(0 -1.6 0 2.0 0 1.1 0 0))
+(define wound #(0 -1.75 0 2.3 0 0.8 0 0))
+(define release #(0 -0.6 0 1.1 0 -0.15 0 0))
+(define swing #(0 0.5 0 -5.5 0 -5.5 0 0))          ; rad/s at the release: a throw from below
 (define still #(0 0 0 0 0 0 0 0))
 (define pitch-down (rotation #(0 1 0) (/ pi 2)))
 
 (define stiffness (* 20 20))
 (define damping (* 2 20))
 
-;; joint torques that follow the phase's polynomial at the middle of the tick
-(define (follow! view phase time)
+;; adds the torques that a held box takes for the joints' accelerations: J^T m (a + g), a = J qdd at
+;; the middle of the box
+(define (carry! torques view box accelerations)
+  (let* ((J (jacobian view 'pad)) (arm (v- (position box) (position view)))
+         (column (lambda (i)
+                   (v+ (vector (array-ref J 0 i) (array-ref J 1 i) (array-ref J 2 i))
+                       (cross (vector (array-ref J 3 i) (array-ref J 4 i) (array-ref J 5 i)) arm))))
+         (columns (map column (iota (vector-length torques))))
+         (force (v* box-mass (fold (lambda (c a sum) (v+ sum (v* a c))) #(0 0 9.81)
+                                   columns (vector->list accelerations)))))
+    (for-each (lambda (c i) (vector-set! torques i (+ (vector-ref torques i) (dot c force))))
+              columns (iota (vector-length torques)))))
+
+;; joint torques that follow the phase's polynomial at the middle of the tick; `held`: a box, or #f
+(define (follow! view phase time held)
   (match phase
     ((_ start length from from-speed to speed)
      (let* ((s (max 0 (min 1 (/ (- (+ time (* 0.5 tick)) start) length))))
@@ -146,6 +167,7 @@
                                         (* stiffness (- p q*))))))))
        (vector-set! wanted (1- n) 0)
        (let ((torques (inverse-dynamics view ahead qd wanted)))
+         (when held (carry! torques view held wanted))
          (vector-set! torques (1- n) 0)
          (set! (joint-torques view) torques))))))
 
@@ -159,11 +181,13 @@
 
 (define (flat v) (vector (vector-ref v 0) (vector-ref v 1) 0))
 
-(define (controller base)
+(define (controller base turn)
+  ;; with the pad on a point from above
   (define (angles view point)
-    (let* ((way (v- point base)) (yaw (atan (vector-ref way 1) (vector-ref way 0))))
+    (let* ((way (rotate (q-conjugate turn) (v- point base)))
+           (yaw (atan (vector-ref way 1) (vector-ref way 0))))
       (inverse-kinematics view 'pad #:position point #:point (vector pad-length 0 0)
-                          #:orientation (q* (rotation #(0 0 1) yaw) pitch-down)
+                          #:orientation (q* turn (rotation #(0 0 1) yaw) pitch-down)
                           #:start (let ((start (vector-copy ready))) (vector-set! start 0 yaw) start)
                           #:starts 3)))
   (define (above box height) (v+ (position box) (vector 0 0 (+ (* 0.5 side) height))))
@@ -175,7 +199,7 @@
       (set! (slot view 'phase)
             (list name time length (joint-positions view) (joint-velocities view) to speed)))
     (define (box) (list-ref views (slot view 'box)))
-    (define (wait!) (phase! 'wait 0.3 ready still))
+    (define (wait! length) (phase! 'wait length ready still))
     (define (done? phase) (>= (+ time (* 0.5 tick)) (+ (cadr phase) (caddr phase))))
     (define (look!)
       ;; the highest of those that lie still
@@ -185,23 +209,23 @@
              (to (and best (angles view (above (list-ref views best) 0.12)))))
         (cond (to (set! (slot view 'box) best)
                   (phase! 'reach 0.6 to still))
-              (else (wait!)))))
+              (else (wait! 0.3)))))
     (let ((phase (slot view 'phase)))
       (cond
-       ((not phase) (wait!))
+       ((not phase) (wait! (* tick (1+ (round (* rate 2.4 (random-real! view)))))))
        ((done? phase)
         (case (car phase)
           ((wait) (look!))
           ((reach)
            (let ((to (angles view (above (box) -0.005))))
-             (if (and to (calm? (box))) (phase! 'lower 0.3 to still) (wait!))))
+             (if (and to (calm? (box))) (phase! 'lower 0.3 to still) (wait! 0.3))))
           ((lower)
            (let ((tip (v+ (position view) (rotate (orientation view) (vector pad-length 0 0)))))
              (cond ((< (norm (v- tip (above (box) 0))) 0.04)
                     (attach! view (box))
                     (set! (slot view 'picked) (1+ (slot view 'picked)))
                     (phase! 'lift 0.4 (towards view ready) still))
-                   (else (wait!)))))
+                   (else (wait! 0.3)))))
           ((lift) (phase! 'wind 0.4 wound still))
           ((wind) (phase! 'swing 0.3 release swing))
           ((swing)
@@ -209,37 +233,46 @@
            (set! (slot view 'thrown) (1+ (slot view 'thrown)))
            (phase! 'back 0.5 ready still))
           (else (look!)))))
-      (follow! view (slot view 'phase) time))))
+      (let ((phase (slot view 'phase)))
+        (follow! view phase time (and (memq (car phase) '(lift wind swing)) (box)))))))
 
 (define (argmax score items)
   (fold (lambda (item best) (if (> (score item) (score best)) item best)) (car items) (cdr items)))
 
 ;; ---- all of them ----
 
-(define bays-in-row 5)
-(define bay-x 4.6) (define bay-y 1.9)
-
 (define (add-robot! number)
-  (let* ((row (quotient number bays-in-row)) (column (modulo number bays-in-row))
-         (x (* bay-x row)) (y (* bay-y (- column 2)))
-         (hue (/ number (max 1 (1- robots))))
-         (color (vector (+ 0.95 (* -0.6 hue)) (+ 0.35 (* 0.35 hue)) (+ 0.1 (* 0.75 hue))))
-         (arm (add-arm! number (add-bay! number x y) color))
+  (let* ((hue (/ number 20))
+         (color (vector (+ 0.55 (* 0.4 (cos (* 2 pi hue)))) (+ 0.42 (* 0.25 (cos (* 2 pi (- hue 0.35)))))
+                        (+ 0.4 (* 0.38 (cos (* 2 pi (- hue 0.65)))))))
+         (arm (add-arm! number (add-bay! number) color))
          (crew (map (lambda (k)
                       (add-body! #:name (format #f "box-~a-~a" number k) #:shape (box side side side)
-                                 #:density 180
-                                 #:position (vector (+ x 0.78) (+ y (* 0.28 (- k (* 0.5 (1- boxes)))))
-                                                    (+ trough-top (* 0.5 side)))
+                                 #:density density #:orientation (bay-turn number)
+                                 #:position
+                                 (in-bay number (vector 0.74 (* 0.28 (- k (* 0.5 (1- boxes))))
+                                                        (+ trough-top (* 0.5 side))))
                                  #:color (vector (+ 0.9 (* -0.2 k)) (+ 0.3 (* 0.15 k)) 0.25)))
                     (iota boxes))))
+    ;; what grips a box does not push it
     (for-each (lambda (name)
                 (for-each (lambda (b) (disable-collisions! (link-body arm name) b)) crew))
               '(wrist hand pad))
     (set! (joint-positions arm) ready)
-    (add-callback! (cons (link-body arm 'pad) crew) (controller (vector x y 0)) #:period tick
-                   #:start (* tick (/ number robots)))
+    (add-callback! (cons (link-body arm 'pad) crew)
+                   (controller (in-bay number #(0 0 0)) (bay-turn number))
+                   #:period tick #:start (* tick (/ number robots)))
     arm))
 
 (define arms (map add-robot! (iota robots)))
 
-(camera #:eye #(-2.5 -9 6) #:target #(7 0 0.8) #:fov 0.8)
+;; marks on the ground within the ring
+(for-each (lambda (k)
+            (let ((angle (* 2 pi (/ k 9))))
+              (add-body! #:name (format #f "mark-~a" k) #:fixed? #t #:shape (cylinder 0.12 0.06)
+                         #:color #(0.35 0.5 0.62)
+                         #:position (vector (* 2.2 (cos angle)) (* 2.2 (sin angle)) 0.03))))
+          (iota 9))
+
+(camera #:eye #(0 -2.6 4.4) #:target #(0 4.4 0.7) #:fov 0.85)
+(light #:direction #(0.35 0.75 -1))

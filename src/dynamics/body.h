@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/never.h"
 #include "dynamics/contact-parameters.h"
 #include "dynamics/ids.h"
 #include "dynamics/rigid-body.h"
@@ -69,6 +70,9 @@ struct Body {
   Vec3 plane_normal = Vec3::Zero();  // a fixed half-space, world
   double plane_offset = 0;
   bool is_fixed_plane = false;
+
+  // Of the callbacks that are handed its states again and again the least, s; never: none is.
+  double callback_period = never;
 
   // Radius of gyration about its longest axis of them, m; of dynamic bodies.
   double gyration() const { return std::sqrt(moments.maxCoeff() / mass); }

@@ -54,6 +54,8 @@ double bond_check_interval(const Scene& scene, const Body& body) {
   return on_lattice(answer::check_unit, std::sqrt(body.extent() / scene.gravity_scale()));
 }
 
+double call_check_grid(double period) { return on_lattice(answer::check_unit, period / 4); }
+
 double next_check_time(double birth, double now, double interval) {
   TW_ASSERT(interval > 0, "checks are apart");
   double k = std::max(0.0, std::floor((now - birth) / interval));

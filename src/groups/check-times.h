@@ -24,6 +24,8 @@ double finest_check(const Scene& scene, const Body& body);
 double joint_check_interval(const Scene& scene, const Multibody& multibody);
 // The same of a body on springs or holds.
 double bond_check_interval(const Scene& scene, const Body& body);
+// The grid on which checks after calls of that period lie, s: a fraction of it.
+double call_check_grid(double period);
 
 // The first check after `now` of a group born at `birth`.
 double next_check_time(double birth, double now, double interval);

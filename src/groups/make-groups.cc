@@ -190,8 +190,19 @@ double interval_of(const Regrouping& work, const Group& group) {
   return std::min(interval, check_interval(work, touching));
 }
 
+// Soon after the next call of a callback that is handed a member again and again, and is likely to
+// give it another arc: `never` where there is none.  For groups that touch nothing, whose checks
+// wait for nobody.
+double after_next_call(const Regrouping& work, const Group& group) {
+  double period = never;
+  for (const ProcessId member : group.members)
+    period = std::min(period, work.successor_of(member)->body->callback_period);
+  if (!(period < never)) return never;
+  return next_check_time(group.birth, work.now() + period, call_check_grid(period));
+}
+
 // Checks stay on the grid they are on, so that those of neighbours meet; the one that is due stays
-// due, unless this is it.
+// due where there is something to look at, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
   const double now = work.now();
   group.birth = before ? before->birth : now;
@@ -200,8 +211,18 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
       if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
   const double interval = interval_of(work, group);
   group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
-  if (before && !finds_contacts(work.cause) && before->next_check >= now)
+  if (group.pairs.empty())
+    group.next_check = std::min(group.next_check, after_next_call(work, group));
+  else if (before && !finds_contacts(work.cause) && before->next_check >= now)
     group.next_check = std::min(group.next_check, before->next_check);
+}
+
+// The step to be tried first: that which the arc before would have gone on with, if the same bodies
+// go on much as they did.
+double first_step_of(const Regrouping& work, const Group* before) {
+  if (!before || (!finds_contacts(work.cause) && work.cause != Cause::callback)) return 0;
+  // an arc that began at this very instant need not have been integrated
+  return before->arc->start().time < work.now() ? before->arc->next_step() : before->first_step;
 }
 
 void lay_to_rest(const Regrouping& work, Group& group) {
@@ -220,7 +241,7 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   for (const ProcessId member : members)
     group->placed_at = std::max(group->placed_at, placed_at(work.before.state(member)));
 
-  if (before && finds_contacts(work.cause)) group->first_step = before->arc->next_step();
+  group->first_step = first_step_of(work, before);
   const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };
   if (work.rests[place_of(members.front())])
     lay_to_rest(work, *group);

@@ -85,6 +85,28 @@
            (filter (lambda (m) (string-prefix? "pendulum" (multibody-name m)))
                    (world-multibodies))))))
 
+;; ---- robots ----
+
+(in-world ()
+  (load-scene-named "robots")
+  (test-equal "robots: 240 of 430 bodies move, as in the paper" '(240 430)
+    (list (count-kind 'dynamic) (length (world-bodies)))))
+
+(in-world ()
+  (load-scene-named "robots" '((robots . "2")))
+  (let ((pads (map find-body '("arm-0/pad" "arm-1/pad")))
+        (crew (filter (lambda (b) (string-prefix? "box-" (body-name b))) (world-bodies)))
+        (height (lambda (b) (vector-ref (position b) 2))))
+    (define (highest) (apply max (map height crew)))
+    (let ((top (let watch ((time 0.1) (top 0))
+                 (run! #:until time)
+                 (if (< time 8) (watch (+ time 0.1) (max top (highest))) top))))
+      (test-assert "boxes fly high" (< 1.9 top 2.7)))
+    (test-assert "each arm throws what it picks"
+      (every (lambda (pad) (<= 1 (slot pad 'thrown) (slot pad 'picked) (1+ (slot pad 'thrown))))
+             pads))
+    (test-assert "and they slide back" (every (lambda (b) (< 0.25 (height b))) crew))))
+
 ;; ---- what must be seen in the gallery ----
 
 (define (at body axis) (vector-ref (position (find-body body)) axis))
