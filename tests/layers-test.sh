@@ -3,7 +3,7 @@
 # Above the binding nobody knows Guile; outside the drawing nobody knows OpenGL.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 cd "${TW_SRCDIR:-.}" || exit 99
-layers='base math geometry collision dynamics multibody integrate timeline detect groups kernel record render script'
+layers='base math geometry collision dynamics multibody integrate timeline detect groups kernel import record render script'
 failures=0
 
 complain() {

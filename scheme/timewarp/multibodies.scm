@@ -10,7 +10,7 @@
   #:use-module (srfi srfi-1)
   #:use-module (srfi srfi-9)
   #:use-module (srfi srfi-9 gnu)
-  #:export (add-multibody! multibody? multibody-name multibody-links body-multibody link-body
+  #:export (add-multibody! load-urdf multibody? multibody-name multibody-links body-multibody link-body
             find-multibody world-multibodies
             link? joint? revolute prismatic universal spherical weld
             joint-names joint-limits joint-position joint-velocity joint-torque joint-servo
@@ -235,6 +235,29 @@ touch the base's body.  A multibody stands for its first link where a body is ex
                                          (caller-place))))
         (set! (given-names multibody) (map car flat))
         multibody))))
+
+(define-keyword-procedure (load-urdf file #:key name base position orientation)
+  "Add the robot that the URDF file FILE describes to the current world, and return it, a multibody.
+FILE is looked for in the current folder, then beside the file that the call stands in.
+
+Its links are called as in the file, by symbols, and so are their joints.  A link without a mass that
+is fixed to another becomes a part of that, one that is fixed to a base that stands a fixed body.  What
+<collision> says touches and is drawn, a mesh as its convex hull; a link that has <visual> alone is
+drawn and touches nothing.  Damping, friction and limits of joints are taken; <limit>'s effort and
+velocity are not (see servo's #:max-torque).  What cannot be expressed is an error with file and line:
+floating and planar joints, <mimic>, moving links without mass.
+
+#:name      of the multibody; that of the robot
+#:base      what the first link stands on: 'fixed, the world; a fixed body; 'free, nothing; 'fixed
+#:position  m, of the first link's frame, in that of the base's body if there is one; #(0 0 0)
+#:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
+  (let* ((place (caller-place))
+         (beside (and place (string? file) (not (absolute-file-name? file))
+                      (in-vicinity (dirname (car place)) file)))
+         (found (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file))
+         (made (%load-urdf (current-world) found name (or base 'fixed) position orientation place)))
+    (set! (given-names (car made)) (cdr made))
+    (car made)))
 
 ;; Of each multibody, the names of its links as they were given.
 (define given-names (make-object-property))

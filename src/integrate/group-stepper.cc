@@ -54,7 +54,8 @@ GroupScratch& GroupStepper::scratch() const {
   fit(shared.changes, slots);
   fit(shared.wrenches, slots);
   fit(shared.linear, static_cast<std::size_t>(system_.packs()));
-  fit(shared.right_side, system_.unknowns());
+  // a multibody may have more links than freedoms
+  fit(shared.right_side, std::max(system_.unknowns(), static_cast<std::size_t>(system_.members())));
   for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
     fit(*v, system_.size());
   for (std::vector<double>& v : shared.stage) fit(v, system_.size());

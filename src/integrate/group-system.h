@@ -31,7 +31,7 @@ struct GroupScratch {
   std::vector<BodyChange> changes;     // by slot
   std::vector<BodyWrench> wrenches;    // by slot
   std::vector<PackLinear> linear;      // by pack
-  std::vector<double> right_side;      // 6 a member
+  std::vector<double> right_side;      // the unknowns; at least one a member
   std::vector<double> state, slope, time_slope, trial, stage[6];
 };
 

@@ -16,6 +16,7 @@ void define_shapes();
 void define_bodies();
 void define_states();
 void define_multibodies();
+void define_urdf();
 void define_joints();
 void define_contact();
 void define_callbacks();
@@ -41,6 +42,7 @@ extern "C" void tw_init_guile() {
   tw::define_bodies();
   tw::define_states();
   tw::define_multibodies();
+  tw::define_urdf();
   tw::define_joints();
   tw::define_contact();
   tw::define_callbacks();

@@ -311,4 +311,23 @@
         (string-match "position of joint upper of arm was set inside a callback" message)))))
 
 (clean-up)
+;; more links than freedoms: what is welded together swings as one
+(in-world ()
+  (let* ((count 40)
+         (rod (lambda (length) (placed (box length 0.05 0.05)
+                                       #:position (vector (/ length 2) 0 0))))
+         (pendulum
+          (lambda (name y links)
+            (let ((length (/ 2.0 links)))
+              (add-multibody! #:name name #:position (vector 0 y 0)
+                (let weld-on ((i 1))
+                  (apply link (format #f "~a" i) #:shape (rod length) #:density 100
+                         #:joint (if (= i 1)
+                                     (revolute #:axis #(0 1 0) #:stiffness 1e4)
+                                     (weld #:at (vector length 0 0)))
+                         (if (< i links) (list (weld-on (1+ i))) '())))))))
+         (pieces (pendulum 'pieces 0 count)) (one (pendulum 'one 1 1)))
+    (run! #:until 0.5)
+    (test-approximate "one as forty" (joint-position one "1") (joint-position pieces "1") 1e-9)))
+
 (test-end "multibodies")
