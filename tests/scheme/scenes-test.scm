@@ -260,6 +260,24 @@
            (iota 5))))
 
 (in-world ()
+  (load-scene-named "gallery/four-bar" '((linkages . "2")))
+  (run! #:until 2)
+  (let* ((linkage (find-multibody "linkage-0"))
+         (rocker (link-body linkage 'rocker))
+         (end (v+ (position rocker) (rotate (orientation rocker) #(0.65 0 0)))))
+    (define (in-plane v) (vector (vector-ref v 0) (vector-ref v 2)))
+    (test-assert "the linkage is closed"
+      (close? (in-plane end) (in-plane (position (link-body linkage 'pin))) 2e-4))
+    (test-approximate "and its crank turns on" 6 (joint-position linkage 'crank) 0.1)))
+
+(in-world ()
+  (load-scene-named "gallery/walker")
+  (run! #:until 2.5)
+  (test-assert "the toy walks" (< 0.3 (at "toy/frame" 0) 0.7))
+  (test-assert "straight on" (< (abs (at "toy/frame" 1)) 0.02))
+  (test-assert "upright" (> (uprightness "toy/frame") 0.95)))
+
+(in-world ()
   (load-scene-named "gallery/turntable")
   (run! #:until 4)
   (test-assert "the turntable keeps what stands near its middle" (> (at "load-0" 2) 0.1))
