@@ -30,7 +30,7 @@ void set_motion(const Body& body, const PoseTwist& point, StateData& data) {
 
 std::shared_ptr<MultibodyState> joints_at(const State& state, double when) {
   auto joints = std::make_shared<MultibodyState>(*state.joints);
-  if (!state.group) return joints;
+  if (!state.group || state.group->at_rest) return joints;
   const GroupArc& arc = *state.group->arc;
   arc.joints(arc.start().members[state.member].tree, when, joints->q, joints->u);
   return joints;

@@ -24,6 +24,7 @@ namespace {
 
 // At rest from here on.
 void stop(Successor& successor) {
+  if (successor.joints) std::fill(successor.joints->u.begin(), successor.joints->u.end(), 0.0);
   successor.point.v = successor.point.w = successor.data.v = successor.data.L = Vec3::Zero();
 }
 
@@ -276,18 +277,18 @@ void make_groups(Regrouping& work) {
 
   // who touches anything at all, who hangs together, and where that comes to rest in part
   const std::size_t count = work.successors.size();
-  std::vector<bool> held(count, false);
+  work.touching.assign(count, false);
   work.stillness.resize(count);
   for (const ContactPair& pair : work.pairs)
     for (const BodyId id : {pair.a(), pair.b()})
       if (const Successor* member = work.successor_of(id); work.changes(member))
-        held[work.place_of(member)] = true;
-  // what is joined never parts; links do not rest, and keep those awake that touch them
+        work.touching[work.place_of(member)] = true;
+  std::vector<bool> held = work.touching;
+  // what is joined never parts
   for (std::size_t i = 0; i < count; ++i)
     if (is_joined(work.successors[i]) && work.changes(&work.successors[i])) held[i] = true;
   for (std::size_t i = 0; i < count; ++i)
-    if (held[i] && !work.successors[i].body->multibody)
-      work.stillness[i] = stillness_of(work, work.successors[i]);
+    if (held[i]) work.stillness[i] = stillness_of(work, work.successors[i]);
   work.rests.assign(count, false);
   Components components = parts_of(work);
   if (work.cause == Cause::check) {

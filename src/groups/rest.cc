@@ -8,26 +8,34 @@
 
 #include "base/constants.h"
 #include "groups/joined.h"
+#include "multibody/multibody.h"
 
 namespace tw {
 namespace {
 
+// How far it reaches: of a link without a shape, to the next joint.
+double reach_of(const Body& body) { return body.multibody ? extent_of_link(body) : body.extent(); }
+
 // What the body falls through its own size at, m/s.
 double speed_scale(const Scene& scene, const Body& body) {
-  return std::sqrt(scene.gravity_scale() * body.least_width);
+  const double size = body.shape_P ? body.least_width : reach_of(body);
+  return std::sqrt(scene.gravity_scale() * size);
 }
 
 // How long it is watched at least, s.
 double least_watch(const Scene& scene, const Body& body) {
-  return answer::watch_times * std::sqrt(body.radius / scene.gravity_scale());
+  return answer::watch_times * std::sqrt(reach_of(body) / scene.gravity_scale());
 }
 
-// Watched to the end, and settling or trembling in its place.
-bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body, double now) {
+// Watched to the end, and stopped, or, where it touches anything, settling or trembling in its
+// place: what swings a little on a joint or a spring swings on.
+bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body, double now,
+              bool touches) {
   const double age = now - book.since;
   if (book.since == never || age < book.length) return false;
   const double peak = std::max(book.early_peak, book.late_peak);
   if (peak <= answer::rounding_share * speed_scale(scene, *body.body)) return true;
+  if (!touches) return false;
   if (book.late_peak <= answer::settling * book.early_peak) return true;
   const double way =
       (body.point.x - book.x).norm() + body.point.q.angularDistance(book.q) * body.body->radius;
@@ -58,7 +66,8 @@ struct Share {
 
 Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   const PlacedBody body = placed(successor);
-  const double speed = body.fastest_point(), now = work.now();
+  const double now = work.now();
+  const double speed = body.point.v.norm() + body.point.w.norm() * reach_of(*body.body);
   if (speed >= answer::slow_share * speed_scale(work.scene(), *body.body)) return {};
   const Stillness begun{now,         least_watch(work.scene(), *body.body), speed, 0, body.point.x,
                         body.point.q};
@@ -71,8 +80,9 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   const double age = now - book.since;
   double& peak = age < 0.5 * book.length ? book.early_peak : book.late_peak;
   peak = std::max(peak, speed);
-  if (age < book.length || is_still(work.scene(), book, body, now)) return book;
-  if (book.late_peak > answer::growth * book.early_peak) return begun;
+  const bool touches = work.touching[work.place_of(&successor)];
+  if (age < book.length || is_still(work.scene(), book, body, now, touches)) return book;
+  if (!touches || book.late_peak > answer::growth * book.early_peak) return begun;
   book.early_peak = std::max(book.early_peak, std::exchange(book.late_peak, 0));
   book.length *= 2;
   return book;
@@ -85,8 +95,9 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
     const Successor& successor = work.successors[i];
     // what a spring pulls that moves at its other end waits for that
     const ForcesPtr& forces = successor.data.forces;
-    rests[i] = work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
-               is_still(work.scene(), work.stillness[i], placed(successor), work.now());
+    rests[i] =
+        work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
+        is_still(work.scene(), work.stillness[i], placed(successor), work.now(), work.touching[i]);
   }
 
   const auto wake = [&](BodyId id) {

@@ -1,5 +1,6 @@
 ;; Multibodies from Scheme: links and joints, how they stand, what drives them, kinematics.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
+(use-modules (timewarp vectors))
 (load "helpers.scm")
 
 (test-begin "multibodies")
@@ -330,5 +331,50 @@
          (pieces (pendulum 'pieces 0 count)) (one (pendulum 'one 1 1)))
     (run! #:until 0.5)
     (test-approximate "one as forty" (joint-position one "1") (joint-position pieces "1") 1e-7)))
+
+;; ---- rest ----
+
+(define (count-of what) (assq-ref (statistics) what))
+
+;; what has stopped costs nothing, and goes on where a servo is set or a ball strikes
+(in-world ()
+  (let* ((rod (placed (box 0.5 0.06 0.06) #:position #(0.25 0 0)))
+         (arm (add-multibody! #:name 'arm
+                (link 'upper #:joint (revolute #:axis #(0 1 0)) #:shape rod #:density 500
+                  (link 'fore #:joint (revolute #:axis #(0 1 0) #:at #(0.5 0 0)) #:shape rod
+                        #:density 500))))
+         (fore (link-body arm 'fore))
+         (hold! (lambda (target)
+                  (for-each (lambda (joint)
+                              (set! (joint-servo arm joint)
+                                    (servo #:target target #:stiffness 2000 #:damping 100)))
+                            '(upper fore)))))
+    (hold! -0.3)
+    (run! #:until 8)
+    (let ((checks (count-of 'group_checks)) (before (joint-positions arm)))
+      (run! #:until 100)
+      (test-equal "an arm that stands still is not checked" checks (count-of 'group_checks))
+      (test-equal "and stays" before (joint-positions arm))
+      (test-equal "at rest" #(0.0 0.0) (joint-velocities arm)))
+    (hold! -0.5)
+    (run-for! 8)
+    (test-approximate "a servo that is set wakes it" -0.5 (joint-position arm 'fore) 0.01)
+    (add-body! #:name "ball" #:shape (sphere 0.05) #:density 2000
+               #:position (v+ (position fore) (v+ (rotate (orientation fore) #(0.25 0 0)) #(0 0 1)))
+               #:velocity #(0 0 -3))
+    ;; it gets there after 0.27 s
+    (let ((before (joint-position arm 'fore)))
+      (run-for! 0.28)
+      (test-assert "and what strikes it" (> (abs (- (joint-position arm 'fore) before)) 1e-4)))))
+
+;; what swings a little swings on: a pendulum without damping
+(in-world ()
+  (let* ((pendulum (add-multibody! (link 'bob #:joint (revolute #:axis #(0 1 0))
+                                         #:shape (placed (sphere 0.1) #:position #(0 0 -1)))))
+         (I (+ (* 2/5 0.01) 1)) (w (sqrt (/ 9.81 I))))
+    (set! (joint-position pendulum 'bob) 1e-4)
+    (run! #:until 60)
+    (test-approximate "the small swing of a pendulum" (* 1e-4 (cos (* 60 w)))
+                      (joint-position pendulum 'bob) 1e-6)))
 
 (test-end "multibodies")
