@@ -132,6 +132,11 @@ bool holds(const ForcesPtr& forces, BodyId other) {
   return any_bond(forces, [&](const Bond& bond) { return bond.holds && bond.joins(other); });
 }
 
+bool needs_group(const ForcesPtr& forces) {
+  if (!forces) return false;
+  return !forces->bonds().empty() || any_bond(forces, [](const Bond& bond) { return bond.holds; });
+}
+
 ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other) {
   ForceChange change(forces);
   change.erase_bonds([&](const Bond& bond) { return bond.joins(other); });

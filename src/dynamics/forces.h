@@ -73,6 +73,9 @@ ForcesPtr with_bond(const ForcesPtr& forces, BondPtr bond);
 // Whether a spring or a hold goes to the other body.
 bool hangs_on(const ForcesPtr& forces, BodyId other);
 bool holds(const ForcesPtr& forces, BodyId other);
+// Whether a spring or a hold ties it to another dynamic body, or a hold, which is stiff, to any:
+// the body is then integrated in a group, implicitly.
+bool needs_group(const ForcesPtr& forces);
 // Without springs and holds to it, or without its holds alone.
 ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other);
 ForcesPtr without_holds_on(const ForcesPtr& forces, BodyId other);

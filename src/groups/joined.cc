@@ -33,8 +33,8 @@ void add_joined(const Before& before, std::vector<ProcessId>& processes) {
   }
 }
 
-bool is_joined(const Successor& successor) {
-  return successor.body->multibody || !bonds_of(successor.data.forces).empty();
+bool is_in_group(const Successor& successor) {
+  return successor.body->multibody || needs_group(successor.data.forces);
 }
 
 }  // namespace tw

@@ -13,8 +13,8 @@ namespace tw {
 // Adds all that is joined to some of the row (ascending), before the key.
 void add_joined(const Before& before, std::vector<ProcessId>& processes);
 
-// Whether the successor is a link, or tied to another dynamic body.
-bool is_joined(const Successor& successor);
+// Whether the successor is in a group also where it touches nothing: a link, or what is tied.
+bool is_in_group(const Successor& successor);
 // Calls visit(i, j) for the places of joined successors that have new arcs: enough to know all.
 template <class Visit>
 void visit_joined(const Regrouping& work, Visit&& visit);

@@ -175,20 +175,21 @@ const Group* same_before(const Regrouping& work, const Group& group) {
   return same != work.old.end() ? same->get() : nullptr;
 }
 
-// Until contacts may be other ones; what is joined and touches nothing waits for that alone.
+// Until contacts may be other ones; what is joined and touches nothing waits for the slowest of it.
 double interval_of(const Regrouping& work, const Group& group) {
   std::vector<ProcessId> touching;
-  double interval = never;
+  double slowest = 0;
   for (std::uint32_t i = 0; i < group.members.size(); ++i) {
     const Body& body = *work.successor_of(group.members[i])->body;
     if (!group.pairs_of(i).empty())
       touching.push_back(group.members[i]);
     else
-      interval =
-          std::min(interval, body.multibody ? joint_check_interval(work.scene(), *body.multibody)
-                                            : bond_check_interval(work.scene(), body));
+      slowest =
+          std::max(slowest, body.multibody ? joint_check_interval(work.scene(), *body.multibody)
+                                           : bond_check_interval(work.scene(), body));
   }
-  return std::min(interval, check_interval(work, touching));
+  const double interval = check_interval(work, touching);
+  return slowest > 0 ? std::min(slowest, interval) : interval;
 }
 
 // Soon after the next call of a callback that is handed a member again and again, and is likely to
@@ -286,7 +287,7 @@ void make_groups(Regrouping& work) {
   std::vector<bool> held = work.touching;
   // what is joined never parts
   for (std::size_t i = 0; i < count; ++i)
-    if (is_joined(work.successors[i]) && work.changes(&work.successors[i])) held[i] = true;
+    if (is_in_group(work.successors[i]) && work.changes(&work.successors[i])) held[i] = true;
   for (std::size_t i = 0; i < count; ++i)
     if (held[i]) work.stillness[i] = stillness_of(work, work.successors[i]);
   work.rests.assign(count, false);

@@ -89,8 +89,7 @@ bool all_known(const Region& region, const Known& known) {
 
 bool touches_groups(const std::vector<Successor>& successors) {
   return std::any_of(successors.begin(), successors.end(), [](const Successor& successor) {
-    return successor.starts_arc() &&
-           (successor.data.group || !bonds_of(successor.data.forces).empty());
+    return successor.starts_arc() && (successor.data.group || needs_group(successor.data.forces));
   });
 }
 
