@@ -39,16 +39,36 @@
                   (else 3))
             "a vector of numbers"))
 
-;; PROCEDURE of the numbers of two vectors, one pair after the other.
-(define (map-pairs procedure a b)
+;; Three numbers are what scenes add up: these need no loop.
+(define-syntax-rule (triple? v)
+  (and (vector? v) (= (vector-length v) 3)
+       (real? (vector-ref v 0)) (real? (vector-ref v 1)) (real? (vector-ref v 2))))
+
+;; PROCEDURE, an operator's name, of the numbers of two vectors, one pair after the other.
+(define-syntax-rule (map-pairs procedure a b)
+  (let ((x a) (y b))
+    (if (and (triple? x) (triple? y))
+        (vector (procedure (vector-ref x 0) (vector-ref y 0))
+                (procedure (vector-ref x 1) (vector-ref y 1))
+                (procedure (vector-ref x 2) (vector-ref y 2)))
+        (map-long procedure x y))))
+
+(define (map-long procedure a b)
   (let* ((a (reals a)) (b (reals b)) (size (vector-length a)) (result (make-vector size)))
     (unless (= size (vector-length b))
       (bad-value "the argument" b (format #f "a vector of ~a numbers, as the other" size)))
     (do ((i 0 (1+ i))) ((= i size) result)
       (vector-set! result i (procedure (vector-ref a i) (vector-ref b i))))))
 
+(define-syntax-rule (map-one procedure a)
+  (let ((x a))
+    (if (triple? x)
+        (vector (procedure (vector-ref x 0)) (procedure (vector-ref x 1))
+                (procedure (vector-ref x 2)))
+        (map-long (lambda (each _) (procedure each)) x x))))
+
 (define (scaled vector factor)
-  (map-pairs (lambda (x _) (* factor x)) vector vector))
+  (map-one (lambda (x) (* factor x)) vector))
 
 (define (v+ first . rest)
   "Return the sum of vectors of one length."
@@ -58,7 +78,7 @@
 (define (v- first . rest)
   "Return FIRST minus the other vectors, all of one length; with one argument its negative."
   (if (null? rest)
-      (map-pairs (lambda (x _) (- x)) first first)
+      (map-one - first)
       (let loop ((difference (reals first)) (rest rest))
         (if (null? rest) difference (loop (map-pairs - difference (car rest)) (cdr rest))))))
 
@@ -70,9 +90,12 @@
 
 (define (dot a b)
   "Return the scalar product of two vectors of one length."
-  (let ((products (map-pairs * a b)))
-    (let loop ((i 0) (sum 0))
-      (if (= i (vector-length products)) sum (loop (1+ i) (+ sum (vector-ref products i)))))))
+  (if (and (triple? a) (triple? b))
+      (+ (* (vector-ref a 0) (vector-ref b 0)) (* (vector-ref a 1) (vector-ref b 1))
+         (* (vector-ref a 2) (vector-ref b 2)))
+      (let ((products (map-long * a b)))
+        (let loop ((i 0) (sum 0))
+          (if (= i (vector-length products)) sum (loop (1+ i) (+ sum (vector-ref products i))))))))
 
 (define (cross a b)
   "Return the vector product of two vectors."
@@ -88,7 +111,7 @@
   "Return the unit vector along A; zero is an error."
   (let ((length (norm a)))
     (when (zero? length) (bad-value "the vector" a "one that is not zero"))
-    (map-pairs (lambda (x _) (/ x length)) a a)))
+    (map-one (lambda (x) (/ x length)) a)))
 
 (define (lerp a b share)
   "Return the point SHARE of the way from A to B (vectors or numbers): A at 0, B at 1."
