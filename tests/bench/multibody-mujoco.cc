@@ -1,12 +1,9 @@
 // Forward dynamics by MuJoCo: the stages of mj_forward that a tree without contacts needs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include <mujoco/mujoco.h>
-
-#include <cstring>
 #include <iomanip>
 #include <sstream>
-#include <stdexcept>
 
+#include "bench/mujoco-text.h"
 #include "support/dynamics-engine.h"
 
 namespace tw::test {
@@ -38,23 +35,10 @@ class MujocoEngine : public DynamicsEngine {
         << "<option gravity='" << gravity.transpose() << "'/><worldbody>";
     write_body(out, links, links[0]);
     out << "</worldbody></mujoco>";
-    const std::string text = out.str();
-    auto files = std::make_unique<mjVFS>();
-    mj_defaultVFS(files.get());
-    mj_makeEmptyFileVFS(files.get(), "tree.xml", static_cast<int>(text.size()));
-    std::memcpy(files->filedata[0], text.data(), text.size());
-    char error[1000] = "";
-    model_ = mj_loadXML("tree.xml", files.get(), error, sizeof error);
-    mj_deleteVFS(files.get());
-    if (!model_) throw std::runtime_error(error);
-    data_ = mj_makeData(model_);
+    made_ = std::make_unique<bench::MujocoModel>(out.str());
+    model_ = made_->model;
+    data_ = made_->data;
   }
-  ~MujocoEngine() override {
-    mj_deleteData(data_);
-    mj_deleteModel(model_);
-  }
-  MujocoEngine(const MujocoEngine&) = delete;
-  MujocoEngine& operator=(const MujocoEngine&) = delete;
 
   void accelerations(const double* q, const double* u, const double* tau, double* rate) override {
     const auto nv = static_cast<std::size_t>(model_->nv);
@@ -71,6 +55,7 @@ class MujocoEngine : public DynamicsEngine {
   }
 
  private:
+  std::unique_ptr<bench::MujocoModel> made_;
   mjModel* model_ = nullptr;
   mjData* data_ = nullptr;
 };
