@@ -82,7 +82,7 @@ Progress ImpactEvents::process(std::uint32_t index) {
         std::make_shared<const Report>(Report{*collision});
   if (successors[0].data.error)
     discontinuities_.stop_group_mates(key, successors);
-  else if ((soft || successors[0].data.group || successors[1].data.group) &&
+  else if ((soft || touches_groups(successors)) &&
            groups_.regroup(key, successors, soft ? Cause::fusion : Cause::impact, points) ==
                Progress::try_again)
     return Progress::try_again;

@@ -101,6 +101,19 @@
     (test-eq "let go" #f (attached? a b))
     (test-equal "one fission" 1 (assq-ref (statistics) 'fissions))))
 
+;; what meets sticks: attach! where two collide, in free flight
+(in-world ()
+  (scene #:gravity #(0 0 0))
+  (let ((a (add-body! #:name "a" #:shape (sphere 0.1) #:mass 1 #:position #(0 0 0)
+                      #:velocity #(1 0 0)))
+        (b (add-body! #:name "b" #:shape (sphere 0.1) #:mass 1 #:position #(0.5 0.1 0))))
+    (on-collision! a b (lambda (collision a b) (unless (attached? a b) (attach! a b))))
+    (run! #:until 2)
+    (test-eq "held by the collision" #t (attached? a b))
+    (test-approximate "they stay as near as they met" 0.2 (norm (v- (position b) (position a))) 1e-4)
+    (test-assert "and go on together" (close? (angular-velocity a) (angular-velocity b) 1e-4))
+    (test-assert "with their momentum" (close? #(1 0 0) (v+ (velocity a) (velocity b)) 1e-12))))
+
 (in-world ()
   (let ((a (add-body! #:name "a" #:shape (sphere 0.1) #:density 500 #:position #(0 0 1)))
         (b (add-body! #:name "b" #:shape (sphere 0.1) #:density 500 #:position #(0.3 0 1)))
