@@ -25,9 +25,9 @@
      contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
      contact-slipping? contact?)
     ("Forces" "what acts on bodies, from now on"
-     add-drag! add-spring! add-force!)
+     add-drag! add-spring! attach! detach! attached? add-force!)
     ("Multibodies" "links that hang on one another by joints"
-     add-multibody! link revolute prismatic universal spherical weld link-body joint-names
+     add-multibody! load-urdf link revolute prismatic universal spherical weld link-body joint-names
      joint-limits joint-position joint-velocity joint-torque joint-servo servo joint-positions
      joint-velocities joint-torques jacobian forward-kinematics inverse-kinematics inverse-dynamics
      multibody-name multibody-links body-multibody find-multibody world-multibodies servo-target

@@ -15,8 +15,8 @@
 
 ;; a copy of the robot and its meshes, with TO instead of FROM
 (define (changed from to)
-  (system* "cp" "-r" (file "meshes") (force folder))
-  (write-file "changed.urdf"
+  (system* "cp" "-r" (file "") (in-folder "urdf"))
+  (write-file "urdf/changed.urdf"
     (replaced (call-with-input-file (file "arm.urdf") get-string-all) from to)))
 
 (in-world ()
@@ -87,11 +87,11 @@
 (refused "mimic" "<dynamics damping=\"0.5\" friction=\"0.1\"/>" "<mimic joint=\"tilt_joint\"/>"
          "changed.urdf:14: the joint pan_joint is driven by another one")
 (refused "a mesh that is missing" "meshes/tetra.stl" "meshes/none.stl"
-         "changed.urdf:46: <mesh> of the link tool: the mesh .*none.stl is missing")
+         "changed.urdf:42: <mesh> of the link tool: the mesh .*none.stl is missing")
 (refused "a moving link without mass" "type=\"fixed\"" "type=\"continuous\""
-         "changed.urdf:44: the link tool has no mass and is moved by the joint tool_joint")
+         "changed.urdf:40: the link tool has no mass and is moved by the joint tool_joint")
 (refused "an inertia that no body has" "izz=\"0.01\"" "izz=\"0.1\""
-         "changed.urdf:11: the <inertia> of the link pan has the principal moments 0.02, 0.02, 0.1 kg")
+         "changed.urdf:10: the <inertia> of the link pan has the principal moments 0.02, 0.02, 0.1 kg")
 (refused "a parent that is not there" "<parent link=\"tilt\"/>" "<parent link=\"nix\"/>" "nix")
 
 (clean-up)
