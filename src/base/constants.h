@@ -187,6 +187,8 @@ inline constexpr double settling = 0.25;
 inline constexpr double growth = 1.1, drift = 0.1;
 // What was always slower than this share has stopped, up to rounding.
 inline constexpr double rounding_share = 1e-7;
+// What touches nothing has stopped below this one, or where it settles below that.
+inline constexpr double stopped_share = 1e-12;
 // Where others go on, fewer that could rest are not worth a group of their own: a number, and a
 // share of those that hang together.
 inline constexpr std::size_t least_resting = 8;

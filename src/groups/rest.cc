@@ -34,9 +34,12 @@ bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body,
   const double age = now - book.since;
   if (book.since == never || age < book.length) return false;
   const double peak = std::max(book.early_peak, book.late_peak);
-  if (peak <= answer::rounding_share * speed_scale(scene, *body.body)) return true;
-  if (!touches) return false;
-  if (book.late_peak <= answer::settling * book.early_peak) return true;
+  const double share = peak / speed_scale(scene, *body.body);
+  const bool settles = book.late_peak <= answer::settling * book.early_peak;
+  // what gets faster, however slowly, goes on
+  if (!touches)
+    return share <= answer::stopped_share || (settles && share <= answer::rounding_share);
+  if (settles || share <= answer::rounding_share) return true;
   const double way =
       (body.point.x - book.x).norm() + body.point.q.angularDistance(book.q) * body.body->radius;
   return book.late_peak <= answer::growth * book.early_peak && way <= answer::drift * peak * age;
@@ -82,7 +85,13 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   peak = std::max(peak, speed);
   const bool touches = work.touching[work.place_of(&successor)];
   if (age < book.length || is_still(work.scene(), book, body, now, touches)) return book;
-  if (!touches || book.late_peak > answer::growth * book.early_peak) return begun;
+  if (book.late_peak > answer::growth * book.early_peak) return begun;
+  if (!touches) {
+    // a longer look at what decays slowly
+    Stillness longer = begun;
+    longer.length = 2 * book.length;
+    return longer;
+  }
   book.early_peak = std::max(book.early_peak, std::exchange(book.late_peak, 0));
   book.length *= 2;
   return book;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "import/mesh-file.h"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -17,6 +18,8 @@ std::vector<Vec3> mesh_points(const std::string& file) {
   TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
              "the mesh " + file + " is missing; expected a file that can be read");
   Assimp::Importer importer;
+  // the axes are the file's own
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene =
       importer.ReadFile(file, aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices);
   TW_REQUIRE(scene, "the mesh " + file + " cannot be read: " + importer.GetErrorString() +

@@ -13,7 +13,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "import/mesh-file.h"
@@ -47,6 +49,11 @@ Pose from(const urdf::Pose& pose) {
   return {from(pose.position), Quat(r.w, r.x, r.y, r.z).normalized()};
 }
 
+Pose inverse(const Pose& pose) {
+  const Quat q = pose.q.conjugate();
+  return {-(q * pose.p), q};
+}
+
 class Reader {
  public:
   Reader(const std::string& file, bool free) : file_(file), free_(free) {
@@ -71,6 +78,11 @@ class Reader {
     robot_.multibody.name = model_->getName();
     robot_.multibody.free = free_;
     add(*model_->getRoot(), "", Pose{});
+    for (const auto& [name, link] : model_->links_)
+      if (!added_.contains(name))
+        throw UserError(at(line_of("link", name)) + "the link " + name +
+                        " does not hang on the root, " + model_->getRoot()->name +
+                        "; expected a tree of joints, without cycles");
     if (robot_.multibody.links.empty())
       throw UserError(file_ + ": the robot " + model_->getName() +
                       " has no link with a mass; expected one or more with <inertial>");
@@ -258,6 +270,12 @@ class Reader {
   // of, which has the parent's frame at `part`; empty: the base.
   void add(const urdf::Link& link, const std::string& owner, const Pose& part) {
     const bool root = !link.parent_joint;
+    if (!added_.insert(link.name).second)
+      throw UserError(at(line_of("link", link.name)) + "the link " + link.name +
+                      " is the child of two joints; expected one");
+    if (link.inertial && !(link.inertial->mass >= 0))
+      throw UserError(at(line_of("link", link.name, "mass")) + "the mass of the link " + link.name +
+                      " is " + show(link.inertial->mass) + "; expected 0 or more, kg");
     std::string name = link.name;
     Pose place;
     if (has_mass(link)) {
@@ -275,11 +293,15 @@ class Reader {
               link.parent_joint->name +
               " moves the first link with a mass of a free robot; expected a fixed one");
         // the robot's frame is that of its first link
+        first_ = def.joint.placement;
         def.joint = JointSpec();
       }
       set_mass(*link.inertial, link.name, def.body);
       robot_.multibody.links.push_back(def);
       add_shapes(link, Pose{}, shapes_.emplace_back());
+      if (robot_.multibody.links.size() == 1)
+        for (const auto& [part_link, where] : std::exchange(waiting_, {}))
+          add_part(*part_link, owner, where);
     } else {
       // a part of its parent
       name = owner;
@@ -300,9 +322,14 @@ class Reader {
   void add_part(const urdf::Link& link, const std::string& owner, const Pose& place) {
     for (std::size_t i = 0; i < robot_.multibody.links.size(); ++i)
       if (robot_.multibody.links[i].name == owner) return add_shapes(link, place, shapes_[i]);
+    if (free_) {
+      // a part of the first link with a mass, which may come later
+      if (shapes_.empty()) return waiting_.emplace_back(&link, place), void();
+      return add_shapes(link, inverse(first_) * place, shapes_.front());
+    }
     Shapes shapes;
     add_shapes(link, place, shapes);
-    if (shapes.touching.empty() || free_) return;
+    if (shapes.touching.empty()) return;
     stands_.insert(stands_.end(), shapes.touching.begin(), shapes.touching.end());
     BodyDef& stand = robot_.stand ? *robot_.stand : robot_.stand.emplace();
     if (stand.name.empty()) stand.name = link.name;
@@ -335,6 +362,10 @@ class Reader {
   UrdfRobot robot_;
   std::vector<Shapes> shapes_;  // of each link
   std::vector<ShapePtr> stands_;
+  std::set<std::string> added_;
+  // of a free robot: its first link in the root's frame, and parts of it that came before
+  Pose first_;
+  std::vector<std::pair<const urdf::Link*, Pose>> waiting_;
 };
 
 }  // namespace

@@ -40,16 +40,16 @@ Vec3 arm_of(const Body& body, const Vec3& at) {
   return body.dynamic() ? Vec3(body.X_PB.q * at + body.X_PB.p) : at;
 }
 
-// What a hold at `point` swings on one side.
+// What a hold at `point` has on one side: kg, m^2, and how far off the centre of mass is, squared.
 struct HeldSide {
-  double mass = never, inertia = never;
+  double mass = never, gyration = never, lever = 0;
 
   HeldSide(const Body& body, const PoseTwist& at, const Vec3& point) {
     if (!body.dynamic()) return;
     mass = body.multibody ? body.multibody->tree.mass() : body.mass;
-    // the means about all axes
-    const double own = body.moments.sum() / 3 + 2.0 / 3 * body.mass * (point - at.x).squaredNorm();
-    inertia = own * (mass / body.mass);
+    // the mean about all axes
+    gyration = body.moments.sum() / 3 / body.mass;
+    lever = (point - at.x).squaredNorm();
   }
 };
 
@@ -80,7 +80,9 @@ Bond make_hold(const Scene& scene, const Successor& first, const Successor& seco
   }
   const HeldSide side_a(*a.body, a.point, point), side_b(*b.body, b.point, point);
   const double mass = std::min(side_a.mass, side_b.mass);
-  const double inertia = std::min(side_a.inertia, side_b.inertia);
+  // of turning against stretching, m^2: the longer lever is what a weight turns it by
+  const double arm =
+      std::min(side_a.gyration, side_b.gyration) + std::max(side_a.lever, side_b.lever);
   const double size = std::min(size_of(*a.body), size_of(*b.body));
 
   Bond bond;
@@ -95,8 +97,8 @@ Bond make_hold(const Scene& scene, const Successor& first, const Successor& seco
       def.damping.value_or(2 * answer::hold_damping * std::sqrt(bond.spring.stiffness * mass));
   require_constant(bond.spring.damping, "damping of " + what, "N s/m");
   bond.holds = true;
-  bond.turn.stiffness = bond.spring.stiffness * inertia / mass;
-  bond.turn.damping = bond.spring.damping * inertia / mass;
+  bond.turn.stiffness = bond.spring.stiffness * arm;
+  bond.turn.damping = bond.spring.damping * arm;
   bond.turn.relative = (a.point.q.conjugate() * b.point.q).normalized();
   return bond;
 }
@@ -136,19 +138,25 @@ void add_spring(Kernel& kernel, const SpringDef& def) {
 }
 
 void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def) {
+  require_two(kernel.simulation.body(a), kernel.simulation.body(b),
+              "the hold " + between(kernel.simulation.body(a), kernel.simulation.body(b)));
   kernel.editing.edit_pair(
       a, b, [&](SuccessorView& view_a, SuccessorView& view_b) { view_a.attach(view_b, def); });
 }
 
-void detach(Kernel& kernel, BodyId a, BodyId b) {
-  kernel.editing.edit_pair(
-      a, b, [](SuccessorView& view_a, SuccessorView& view_b) { view_a.detach(view_b); });
-}
-
 bool attached(const Kernel& kernel, BodyId a, BodyId b) {
+  if (a == b) return false;
   const bool first = kernel.simulation.body(a).dynamic();
   const State& state = *state_at(kernel.simulation, first ? a : b, kernel.simulation.present.time);
   return holds(state.forces, first ? b : a);
+}
+
+void detach(Kernel& kernel, BodyId a, BodyId b) {
+  TW_REQUIRE(attached(kernel, a, b), kernel.simulation.body(a).info.name + " and " +
+                                         kernel.simulation.body(b).info.name +
+                                         " are not held together; expected two that attach! holds");
+  kernel.editing.edit_pair(
+      a, b, [](SuccessorView& view_a, SuccessorView& view_b) { view_a.detach(view_b); });
 }
 
 }  // namespace tw

@@ -18,8 +18,9 @@ bool attached(const Kernel& kernel, BodyId a, BodyId b);
 // The hold between two successors as they are.
 //
 // Its stiffness carries the weight of the lighter with a sag of answer::hold_sag of the lesser
-// size: a frequency w, w^2 = g/(sag size), at which masses and moments of inertia about the point
-// where it holds swing alike; a link has the mass of all its multibody.
+// size; a link has the mass of all its multibody.  Against turning it is as stiff times the square
+// of the longer lever from the point where it holds to a centre of mass, and of the lesser radius
+// of gyration: so a weight at the end of a lever sinks no more.
 //
 // Errors: UserError where the two are one, are held already, or neither is dynamic; constants that
 // are negative or not finite.

@@ -152,9 +152,9 @@ void SuccessorView::attach(StateView& view, const HoldDef& hold) {
 
 void SuccessorView::detach(StateView& view) {
   auto& other = static_cast<SuccessorView&>(view);
-  TW_REQUIRE(attached(other), successor_.body->info.name + " and " +
-                                  other.successor_.body->info.name +
-                                  " are not held together; expected two that attach! holds");
+  TW_REQUIRE(body() != other.body() && attached(other),
+             successor_.body->info.name + " and " + other.successor_.body->info.name +
+                 " are not held together; expected two that attach! holds");
   for (SuccessorView* one : {this, &other}) {
     if (!one->successor_.body->dynamic()) continue;
     one->start_arc();
@@ -164,6 +164,7 @@ void SuccessorView::detach(StateView& view) {
 }
 
 bool SuccessorView::attached(const StateView& other) const {
+  if (body() == other.body()) return false;
   return holds(successor_.body->dynamic()
                    ? successor_.data.forces
                    : static_cast<const SuccessorView&>(other).successor_.data.forces,

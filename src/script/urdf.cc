@@ -32,6 +32,17 @@ void stand_on(World& world, const BodyDef& stand, MultibodyDef& def) {
   def.orientation = Quat::Identity();
 }
 
+// As the first links of a multibody and its base do not.
+void pass_through(World& world, BodyId a, BodyId b) {
+  ContactSide side_a, side_b;
+  side_a.kind = side_b.kind = ContactSide::Kind::body;
+  side_a.body = a;
+  side_b.body = b;
+  ContactSettings settings;
+  settings.collide = false;
+  world.set_contact(side_a, side_b, settings);
+}
+
 void touch_nothing(World& world, BodyId id) {
   ContactSide body, all;
   body.kind = ContactSide::Kind::body;
@@ -61,6 +72,7 @@ TW_PRIMITIVE(load_urdf, "%load-urdf",
   if (is_place(place)) def.place = to_place(place);
   for (LinkDef& link : def.links) link.body.place = def.place;
   World& to = to_world(world);
+  const BodyId table = def.base;
   if (robot.stand) stand_on(to, *robot.stand, def);
   std::uint32_t number = 0;
   try {
@@ -73,6 +85,9 @@ TW_PRIMITIVE(load_urdf, "%load-urdf",
   for (std::size_t i = 0; i < made.links.size(); ++i)
     if (std::count(robot.untouchable.begin(), robot.untouchable.end(), def.links[i].name) > 0)
       touch_nothing(to, made.links[i]);
+  if (robot.stand && table != no_body)
+    for (std::size_t i = 0; i < made.links.size(); ++i)
+      if (def.links[i].parent.empty()) pass_through(to, made.links[i], table);
   SCM names = SCM_EOL;
   for (std::size_t i = def.links.size(); i-- > 0;)
     names = scm_cons(scm_string_to_symbol(from_string(def.links[i].name)), names);

@@ -120,6 +120,11 @@
         (wall (add-body! #:name "wall" #:shape (box 0.1 1 1) #:fixed? #t #:position #(-1 0 0)))
         (post (add-body! #:name "post" #:shape (box 0.1 1 1) #:fixed? #t #:position #(-2 0 0))))
     (test-message "with itself" "the hold between a and a has both ends on one body" (attach! a a))
+    (attach! a b)
+    (test-eq "nothing is attached to itself" #f (attached? a a))
+    (test-message "nor detached from it" "a and a are not held together" (detach! a a))
+    (test-eq "what was held is" #t (attached? a b))
+    (detach! a b)
     (test-message "nobody moves" "the hold between wall and post moves neither" (attach! wall post))
     (test-message "a stiffness below 0" "stiffness of the hold between a and b is -1"
       (attach! a b #:stiffness -1))
@@ -128,6 +133,25 @@
     (add-callback! a (lambda (time view) (attach! view b) #f) #:start 0.1)
     (test-message "a body where views are wanted"
       "expected a view, as the other one is: make it a target of the callback" (run! #:until 1))))
+
+;; ---- how stiff, and how slow ----
+
+;; a weight at the end of a long lever sinks by no more than a share of its size
+(in-world ()
+  (let ((wall (add-body! #:name "wall" #:shape (box 0.2 0.2 0.2) #:fixed? #t #:position #(0 0 0)))
+        (b (add-body! #:name "b" #:shape (box 0.2 0.2 0.2) #:mass 1 #:position #(10 0 0))))
+    (attach! wall b #:at #(0.1 0 0))
+    (run! #:until 3)
+    (test-approximate "ten metres off" 0 (vector-ref (position b) 2) 1e-5)))
+
+;; a weak tether draws two heavy balls together, however slowly they start
+(in-world ()
+  (scene #:gravity #(0 0 0))
+  (let ((a (add-body! #:shape (sphere 0.1) #:mass 1000 #:position #(0 0 0)))
+        (b (add-body! #:shape (sphere 0.1) #:mass 1000 #:position #(3 0 0))))
+    (add-spring! a b #:stiffness 1e-4 #:rest 2)
+    (run! #:until (* 0.5 (acos -1) (sqrt (/ 500 1e-4))))
+    (test-approximate "after a quarter of its period" 2.5 (vector-ref (position b) 0) 1e-4)))
 
 ;; ---- links ----
 

@@ -69,6 +69,15 @@
          (slide (link-body arm 'slide)))
     (test-assert "a file with visuals alone" (multibody? arm))))
 
+;; what is fixed to a free robot before its first mass is a part of that
+(in-world ()
+  (let* ((arm (load-urdf (changed "type=\"continuous\"" "type=\"fixed\"") #:base 'free
+                         #:position #(0 0 5)))
+         (pan (link-body arm 'pan)))
+    (add-body! #:name "ball" #:shape (sphere 0.01) #:density 1000
+               #:position (v+ (position pan) #(0.05 0 -0.3)))
+    (test-message "the stand hangs under it" "ball overlap" (run! #:until 0.1))))
+
 ;; ---- what cannot be ----
 
 (define-syntax-rule (refused name from to pattern)
@@ -90,6 +99,10 @@
          "changed.urdf:42: <mesh> of the link tool: the mesh .*none.stl is missing")
 (refused "a moving link without mass" "type=\"fixed\"" "type=\"continuous\""
          "changed.urdf:40: the link tool has no mass and is moved by the joint tool_joint")
+(refused "a negative mass" "<mass value=\"2\"/>" "<mass value=\"-2\"/>"
+         "changed.urdf:9: the mass of the link pan is -2")
+(refused "links that hang on each other" "<parent link=\"stand\"/>" "<parent link=\"slide\"/>"
+         "does not hang on the root, stand")
 (refused "an inertia that no body has" "izz=\"0.01\"" "izz=\"0.1\""
          "changed.urdf:10: the <inertia> of the link pan has the principal moments 0.02, 0.02, 0.1 kg")
 (refused "a parent that is not there" "<parent link=\"tilt\"/>" "<parent link=\"nix\"/>" "nix")
