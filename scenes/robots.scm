@@ -1,6 +1,7 @@
-;;; Twenty arms of eight links pick up boxes and throw them up a chute, from where they slide back to
-;;; be picked up again.  An arm knows where a box lies, finds its joint angles by inverse kinematics,
-;;; moves along polynomials by computed torques, holds a box by attach! and lets go of it in mid-swing.
+;;; Twenty arms of eight links pick up boxes and throw them up a chute, from where they slide back
+;;; to be picked up again.  An arm knows where a box lies, finds its joint angles by inverse
+;;; kinematics, moves along polynomials by computed torques, holds a box by attach! and lets go of
+;;; it in mid-swing.
 ;;; After B. Mirtich, Timewarp Rigid Body Simulation (2000), table 1.
 (use-modules (timewarp) (timewarp vectors) (srfi srfi-1) (ice-9 match))
 
@@ -16,11 +17,10 @@
 (define box-mass (* density side side side))
 (define tick (/ 1.0 rate))
 
-
 (set-contact-parameters! #t #t #:restitution 0.25 #:friction 0.5)
 (set-contact-parameters! 'chute #t #:restitution 0.25 #:friction 0.22)
 
-(define floor-body (add-body! #:name "ground" #:shape (half-space #(0 0 1) 0) #:fixed? #t))
+(add-body! #:name "ground" #:shape (half-space #(0 0 1) 0) #:fixed? #t)
 
 ;; ---- a bay: pedestal, trough, chute, back, walls; the arms stand in a ring and look outwards ----
 
@@ -95,8 +95,9 @@
                   (link 'fore #:joint (revolute #:axis #(0 1 0) #:at (vector (* 0.5 upper) 0 0)
                                                 #:limits '(-0.2 2.7))
                         #:shape (beam (* 0.5 fore) 0.08) #:density 400 #:color color
-                    (link 'fore-roll #:joint (revolute #:axis #(1 0 0) #:at (vector (* 0.5 fore) 0 0)
-                                                       #:limits '(-2 2))
+                    (link 'fore-roll
+                          #:joint (revolute #:axis #(1 0 0) #:at (vector (* 0.5 fore) 0 0)
+                                            #:limits '(-2 2))
                           #:shape (beam (* 0.5 fore) 0.07) #:density 400 #:color color
                       (link 'wrist #:joint (revolute #:axis #(0 1 0) #:at (vector (* 0.5 fore) 0 0)
                                                      #:limits '(-2.2 2.2))
@@ -110,7 +111,8 @@
                                                 #:orientation (rotation #(0 1 0) (/ pi 2))
                                                 #:position (vector (* 0.5 pad-length) 0 0))
                                 #:density 400 #:color #(0.1 0.1 0.11)
-                                #:slots '((phase . #f) (box . 0) (picked . 0) (thrown . 0)))))))))))))
+                                #:slots '((phase . #f) (box . 0) (picked . 0)
+                                          (thrown . 0)))))))))))))
     (disable-collisions! arm arm)
     arm))
 
@@ -159,7 +161,9 @@
             (wanted (make-vector n)) (ahead (make-vector n)))
        (do ((i 0 (1+ i))) ((= i n))
          (call-with-values
-             (lambda () (quintic (vector-ref from i) (vector-ref from-speed i) (vector-ref to i) (vector-ref speed i) length s))
+             (lambda ()
+               (quintic (vector-ref from i) (vector-ref from-speed i)
+                        (vector-ref to i) (vector-ref speed i) length s))
            (lambda (p v a)
              (let ((q* (+ (vector-ref q i) (* half (vector-ref qd i)))))
                (vector-set! ahead i q*)
@@ -185,11 +189,12 @@
   ;; with the pad on a point from above
   (define (angles view point)
     (let* ((way (rotate (q-conjugate turn) (v- point base)))
-           (yaw (atan (vector-ref way 1) (vector-ref way 0))))
+           (yaw (atan (vector-ref way 1) (vector-ref way 0)))
+           (start (vector-copy ready)))
+      (vector-set! start 0 yaw)
       (inverse-kinematics view 'pad #:position point #:point (vector pad-length 0 0)
                           #:orientation (q* turn (rotation #(0 0 1) yaw) pitch-down)
-                          #:start (let ((start (vector-copy ready))) (vector-set! start 0 yaw) start)
-                          #:starts 3)))
+                          #:start start #:starts 3)))
   (define (above box height) (v+ (position box) (vector 0 0 (+ (* 0.5 side) height))))
   (define (calm? box)
     (let ((way (v- (position box) base)))
@@ -243,12 +248,14 @@
 
 (define (add-robot! number)
   (let* ((hue (/ number 20))
-         (color (vector (+ 0.55 (* 0.4 (cos (* 2 pi hue)))) (+ 0.42 (* 0.25 (cos (* 2 pi (- hue 0.35)))))
+         (color (vector (+ 0.55 (* 0.4 (cos (* 2 pi hue))))
+                        (+ 0.42 (* 0.25 (cos (* 2 pi (- hue 0.35)))))
                         (+ 0.4 (* 0.38 (cos (* 2 pi (- hue 0.65)))))))
          (arm (add-arm! number (add-bay! number) color))
          (crew (map (lambda (k)
-                      (add-body! #:name (format #f "box-~a-~a" number k) #:shape (box side side side)
-                                 #:density density #:orientation (bay-turn number)
+                      (add-body! #:name (format #f "box-~a-~a" number k)
+                                 #:shape (box side side side) #:density density
+                                 #:orientation (bay-turn number)
                                  #:position
                                  (in-bay number (vector 0.74 (* 0.28 (- k (* 0.5 (1- boxes))))
                                                         (+ trough-top (* 0.5 side))))

@@ -52,6 +52,9 @@ struct Bond {
 
   BodyId other(BodyId body) const { return body == a ? b : a; }
   bool joins(BodyId body) const { return body == a || body == b; }
+  bool joins(BodyId one, BodyId two) const {
+    return (one == a && two == b) || (one == b && two == a);
+  }
 
   struct Wrenches {
     Wrench a, b;

@@ -124,12 +124,12 @@ bool any_bond(const ForcesPtr& forces, Test&& test) {
 
 }  // namespace
 
-bool hangs_on(const ForcesPtr& forces, BodyId other) {
-  return any_bond(forces, [&](const Bond& bond) { return bond.joins(other); });
+bool hangs_on(const ForcesPtr& forces, BodyId body) {
+  return any_bond(forces, [&](const Bond& bond) { return bond.joins(body); });
 }
 
-bool holds(const ForcesPtr& forces, BodyId other) {
-  return any_bond(forces, [&](const Bond& bond) { return bond.holds && bond.joins(other); });
+bool holds(const ForcesPtr& forces, BodyId a, BodyId b) {
+  return any_bond(forces, [&](const Bond& bond) { return bond.holds && bond.joins(a, b); });
 }
 
 bool needs_group(const ForcesPtr& forces) {
@@ -137,15 +137,15 @@ bool needs_group(const ForcesPtr& forces) {
   return !forces->bonds().empty() || any_bond(forces, [](const Bond& bond) { return bond.holds; });
 }
 
-ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other) {
+ForcesPtr without_those_on(const ForcesPtr& forces, BodyId body) {
   ForceChange change(forces);
-  change.erase_bonds([&](const Bond& bond) { return bond.joins(other); });
+  change.erase_bonds([&](const Bond& bond) { return bond.joins(body); });
   return change.done();
 }
 
-ForcesPtr without_holds_on(const ForcesPtr& forces, BodyId other) {
+ForcesPtr without_holds(const ForcesPtr& forces, BodyId a, BodyId b) {
   ForceChange change(forces);
-  change.erase_bonds([&](const Bond& bond) { return bond.holds && bond.joins(other); });
+  change.erase_bonds([&](const Bond& bond) { return bond.holds && bond.joins(a, b); });
   return change.done();
 }
 

@@ -70,15 +70,15 @@ using ForcesPtr = std::shared_ptr<const ActingForces>;
 ForcesPtr with_torque(const ForcesPtr& forces, const Vec3& torque);
 ForcesPtr with_law(const ForcesPtr& forces, ForceLawPtr law);
 ForcesPtr with_bond(const ForcesPtr& forces, BondPtr bond);
-// Whether a spring or a hold goes to the other body.
-bool hangs_on(const ForcesPtr& forces, BodyId other);
-bool holds(const ForcesPtr& forces, BodyId other);
+// Whether a spring or a hold goes to the body, or a hold joins the two.
+bool hangs_on(const ForcesPtr& forces, BodyId body);
+bool holds(const ForcesPtr& forces, BodyId a, BodyId b);
 // Whether a spring or a hold ties it to another dynamic body, or a hold, which is stiff, to any:
 // the body is then integrated in a group, implicitly.
 bool needs_group(const ForcesPtr& forces);
-// Without springs and holds to it, or without its holds alone.
-ForcesPtr without_those_on(const ForcesPtr& forces, BodyId other);
-ForcesPtr without_holds_on(const ForcesPtr& forces, BodyId other);
+// Without springs and holds to the body, or without what holds the two.
+ForcesPtr without_those_on(const ForcesPtr& forces, BodyId body);
+ForcesPtr without_holds(const ForcesPtr& forces, BodyId a, BodyId b);
 
 inline const std::vector<BondPtr>& bonds_of(const ForcesPtr& forces) {
   static const std::vector<BondPtr> none;

@@ -35,8 +35,6 @@ struct PlacedBody {
     const double turn = body->sphere_radius >= 0 ? 0 : turning_speed();
     return point.v.norm() + (turn > 0 ? turn : 0);
   }
-  // The same with what rolls in its place, as rest asks: a ball that spins does not rest.
-  double fastest_point() const { return point.v.norm() + point.w.norm() * body->radius; }
 };
 
 // What users see: the body frame's pose.

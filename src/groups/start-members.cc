@@ -42,7 +42,9 @@ void StartOfMembers::set_tolerances() {
   // nothing of it can touch
   if (size_ == never) size_ = reach_;
   const double accuracy = scene_.options.accuracy, gravity = scene_.gravity_scale();
-  const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
+  start_.joint_tolerance = answer::joint_step_share * accuracy;
+  start_.joint_size = size_;
+  start_.joint_rate = std::sqrt(gravity / reach_);
   // springs alone are followed as closely as single bodies are; a contact or a hold gives way by
   // more
   const bool springs_alone = !start_.bonds.empty() && start_.contacts.empty() &&
@@ -54,10 +56,8 @@ void StartOfMembers::set_tolerances() {
     start_.velocity_tolerance = share * std::sqrt(gravity * size_);
     return;
   }
+  const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
-  start_.joint_tolerance = answer::joint_step_share * accuracy;
-  start_.joint_size = size_;
-  start_.joint_rate = std::sqrt(gravity / reach_);
   start_.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size_, gravity);
 }
 

@@ -75,15 +75,14 @@ class Reader {
   }
 
   UrdfRobot read() {
-    robot_.multibody.name = model_->getName();
-    robot_.multibody.free = free_;
+    robot_.name = model_->getName();
     add(*model_->getRoot(), "", Pose{});
     for (const auto& [name, link] : model_->links_)
       if (!added_.contains(name))
         throw UserError(at(line_of("link", name)) + "the link " + name +
                         " does not hang on the root, " + model_->getRoot()->name +
                         "; expected a tree of joints, without cycles");
-    if (robot_.multibody.links.empty())
+    if (robot_.links.empty())
       throw UserError(file_ + ": the robot " + model_->getName() +
                       " has no link with a mass; expected one or more with <inertial>");
     for (std::size_t i = 0; i < shapes_.size(); ++i) finish(i);
@@ -100,17 +99,20 @@ class Reader {
   // ---- errors ----
 
   std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
-  // The line of <tag name="name"> in the robot, of its first descendant `part` where there is one.
-  int line_of(const char* tag, const std::string& name, const char* part = nullptr) const {
+  // <tag name="name"> of the robot; null: there is none.
+  const TiXmlElement* element(const char* tag, const std::string& name) const {
     const TiXmlElement* robot = xml_.FirstChildElement("robot");
-    for (const TiXmlElement* e = robot ? robot->FirstChildElement(tag) : nullptr; e;
-         e = e->NextSiblingElement(tag)) {
-      const char* its = e->Attribute("name");
-      if (!its || name != its) continue;
-      const TiXmlElement* found = part ? descendant(*e, part) : nullptr;
-      return (found ? found : e)->Row();
-    }
-    return 1;
+    const TiXmlElement* e = robot ? robot->FirstChildElement(tag) : nullptr;
+    for (; e; e = e->NextSiblingElement(tag))
+      if (const char* its = e->Attribute("name"); its && name == its) break;
+    return e;
+  }
+  // Its line, or that of its first descendant `part` where there is one.
+  int line_of(const char* tag, const std::string& name, const char* part = nullptr) const {
+    const TiXmlElement* found = element(tag, name);
+    if (!found) return 1;
+    const TiXmlElement* inner = part ? descendant(*found, part) : nullptr;
+    return (inner ? inner : found)->Row();
   }
   static const TiXmlElement* descendant(const TiXmlElement& of, const char* tag) {
     for (const TiXmlElement* e = of.FirstChildElement(); e; e = e->NextSiblingElement()) {
@@ -121,19 +123,13 @@ class Reader {
   }
   // The line of the <mesh> of a link that names this file.
   int line_of_mesh(const std::string& link, const std::string& file) const {
-    int line = line_of("link", link, "mesh");
-    const TiXmlElement* robot = xml_.FirstChildElement("robot");
-    for (const TiXmlElement* e = robot->FirstChildElement("link"); e;
-         e = e->NextSiblingElement("link")) {
-      const char* its = e->Attribute("name");
-      if (!its || link != its) continue;
-      for (const TiXmlElement* part = e->FirstChildElement(); part;
-           part = part->NextSiblingElement())
-        if (const TiXmlElement* mesh = descendant(*part, "mesh"))
-          if (const char* name = mesh->Attribute("filename"); name && file == name)
-            line = mesh->Row();
-    }
-    return line;
+    const TiXmlElement* found = element("link", link);
+    for (const TiXmlElement* part = found ? found->FirstChildElement() : nullptr; part;
+         part = part->NextSiblingElement())
+      if (const TiXmlElement* mesh = descendant(*part, "mesh"))
+        if (const char* name = mesh->Attribute("filename"); name && file == name)
+          return mesh->Row();
+    return line_of("link", link, "mesh");
   }
 
   // ---- shapes ----
@@ -147,8 +143,7 @@ class Reader {
     const fs::path inside = name.substr(10);
     std::error_code ignored;
     for (fs::path above = folder;; above = above.parent_path()) {
-      for (const fs::path& found : {above / inside, above.parent_path() / inside})
-        if (fs::exists(found, ignored)) return found.string();
+      if (fs::exists(above / inside, ignored)) return (above / inside).string();
       if (above == above.parent_path()) break;
     }
     if (const char* paths = std::getenv("ROS_PACKAGE_PATH")) {
@@ -217,7 +212,7 @@ class Reader {
 
   void finish(std::size_t number) {
     const Shapes& shapes = shapes_[number];
-    LinkDef& link = robot_.multibody.links[number];
+    LinkDef& link = robot_.links[number];
     link.body.color = shapes.color;
     link.body.shape = together(shapes.touching);
     if (link.body.shape || shapes.seen.empty()) return;
@@ -297,9 +292,9 @@ class Reader {
         def.joint = JointSpec();
       }
       set_mass(*link.inertial, link.name, def.body);
-      robot_.multibody.links.push_back(def);
+      robot_.links.push_back(def);
       add_shapes(link, Pose{}, shapes_.emplace_back());
-      if (robot_.multibody.links.size() == 1)
+      if (robot_.links.size() == 1)
         for (const auto& [part_link, where] : std::exchange(waiting_, {}))
           add_part(*part_link, owner, where);
     } else {
@@ -320,8 +315,8 @@ class Reader {
   }
 
   void add_part(const urdf::Link& link, const std::string& owner, const Pose& place) {
-    for (std::size_t i = 0; i < robot_.multibody.links.size(); ++i)
-      if (robot_.multibody.links[i].name == owner) return add_shapes(link, place, shapes_[i]);
+    for (std::size_t i = 0; i < robot_.links.size(); ++i)
+      if (robot_.links[i].name == owner) return add_shapes(link, place, shapes_[i]);
     if (free_) {
       // a part of the first link with a mass, which may come later
       if (shapes_.empty()) return waiting_.emplace_back(&link, place), void();

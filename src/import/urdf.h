@@ -15,7 +15,8 @@
 namespace tw {
 
 struct UrdfRobot {
-  MultibodyDef multibody;        // called as the robot is
+  std::string name;
+  std::vector<LinkDef> links;
   std::optional<BodyDef> stand;  // what is fixed to the base, in its frame; called as its link
   std::vector<std::string> untouchable;  // links that are to touch nothing
 };

@@ -10,6 +10,18 @@ namespace tw {
 
 using namespace rows;
 
+namespace {
+
+// Of a wrench by the change of a body.
+Vec6 change_of(const WrenchDerivative& by, const BodyChange& change) {
+  Vec6 pose, twist;
+  pose << vec(change.x), vec(change.th);
+  twist << vec(change.v), vec(change.w);
+  return by.by_pose * pose + by.by_twist * twist;
+}
+
+}  // namespace
+
 void GroupSystem::linearise(double time, const double* y, GroupScratch& s, double* slope) {
   evaluate_as<true>(time, y, s, slope);
   for (int p = 0; p < packs(); ++p)
@@ -164,14 +176,14 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     set_body_stage(m, sigma);
     double* block = matrix_.at(matrix_.offset(i, i));
     for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
-    if (!m.forces) continue;
-    // d(theta) = P kL, dw = V kL
-    Eigen::Map<Mat6> own(block);
-    own.leftCols<3>() -= m.forced.by_pose.leftCols<3>() / sigma + m.forced.by_twist.leftCols<3>();
-    own.rightCols<3>() -=
-        m.forced.by_pose.rightCols<3>() * m.P + m.forced.by_twist.rightCols<3>() * m.V;
+    if (m.forces) subtract_from_block(m.forced, sigma, i, i);
   }
-  add_bond_blocks(sigma);
+  for (const HeldPair& pair : bonds_) {
+    const int body[2] = {pair.given.a, pair.given.b};
+    for (const int Y : {0, 1})
+      for (const int X : {0, 1})
+        subtract_from_block(pair.derivative.of[Y][X], sigma, body[Y], body[X]);
+  }
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
@@ -191,19 +203,12 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
   return matrix_.factor();
 }
 
-// d(x) = kv/s, d(theta) = P kL, dw = V kL, of both ends
-void GroupSystem::add_bond_blocks(double sigma) {
-  for (const HeldPair& pair : bonds_) {
-    const int body[2] = {pair.given.a, pair.given.b};
-    for (const int Y : {0, 1})
-      for (const int X : {0, 1}) {
-        const WrenchDerivative& by = pair.derivative.of[Y][X];
-        const Member& m = member_[index(body[X])];
-        Eigen::Map<Mat6> block(matrix_.at(matrix_.offset(body[Y], body[X])));
-        block.leftCols<3>() -= by.by_pose.leftCols<3>() / sigma + by.by_twist.leftCols<3>();
-        block.rightCols<3>() -= by.by_pose.rightCols<3>() * m.P + by.by_twist.rightCols<3>() * m.V;
-      }
-  }
+// What the wrench on Y changes by with the stage of X: d(x) = kv/s, d(theta) = P kL, dw = V kL.
+void GroupSystem::subtract_from_block(const WrenchDerivative& by, double sigma, int Y, int X) {
+  const Member& m = member_[index(X)];
+  Eigen::Map<Mat6> block(matrix_.at(matrix_.offset(Y, X)));
+  block.leftCols<3>() -= by.by_pose.leftCols<3>() / sigma + by.by_twist.leftCols<3>();
+  block.rightCols<3>() -= by.by_pose.rightCols<3>() * m.P + by.by_twist.rightCols<3>() * m.V;
 }
 
 // The wrenches of a spring or hold by the changes of its two bodies.
@@ -212,14 +217,8 @@ void GroupSystem::change_bond(int number, GroupScratch& s) const {
   const int body[2] = {pair.given.a, pair.given.b};
   for (const int Y : {0, 1}) {
     Vec6 sum = Vec6::Zero();
-    for (const int X : {0, 1}) {
-      const BodyChange& change = s.changes[index(body[X])];
-      Vec6 pose, twist;
-      pose << vec(change.x), vec(change.th);
-      twist << vec(change.v), vec(change.w);
-      const WrenchDerivative& by = pair.derivative.of[Y][X];
-      sum += by.by_pose * pose + by.by_twist * twist;
-    }
+    for (const int X : {0, 1})
+      sum += change_of(pair.derivative.of[Y][X], s.changes[index(body[X])]);
     BodyWrench& wrench = s.wrenches[index(body[Y])];
     vec(wrench.f) += sum.head<3>();
     vec(wrench.t) += sum.tail<3>();
@@ -250,10 +249,7 @@ void GroupSystem::take_body(const Member& m, const double* solved, BodyChange& c
 
 // Of the force and the torque of what else acts on it.
 Vec6 GroupSystem::forced_change(const Member& m, const BodyChange& change) const {
-  Vec6 pose, twist;
-  pose << vec(change.x), vec(change.th);
-  twist << vec(change.v), vec(change.w);
-  return m.forced.by_pose * pose + m.forced.by_twist * twist;
+  return change_of(m.forced, change);
 }
 
 // The wrenches of all contacts by the changes of the slots and the right sides of the stretches.

@@ -122,7 +122,7 @@ class GroupSystem {
                  double* stage) const;
   Vec6 forced_change(const Member& member, const BodyChange& change) const;
   void change_bond(int bond, GroupScratch& scratch) const;
-  void add_bond_blocks(double sigma);
+  void subtract_from_block(const WrenchDerivative& by, double sigma, int Y, int X);
   void scatter_stretches(GroupScratch& scratch, const double* stage) const;
   void solve_stretches(GroupScratch& scratch, double* stage) const;
 

@@ -64,9 +64,8 @@ Bond make_hold(const Scene& scene, const Successor& first, const Successor& seco
                const HoldDef& def) {
   const std::string what = "the hold " + between(*first.body, *second.body);
   require_two(*first.body, *second.body, what);
-  const Successor& mover = first.body->dynamic() ? first : second;
-  const Body& other = first.body->dynamic() ? *second.body : *first.body;
-  TW_REQUIRE(!holds(mover.data.forces, other.id()),
+  const Successor& holder = first.body->dynamic() ? first : second;
+  TW_REQUIRE(!holds(holder.data.forces, first.body->id(), second.body->id()),
              first.body->info.name + " and " + second.body->info.name +
                  " are held together already; expected detach! before");
 
@@ -138,23 +137,17 @@ void add_spring(Kernel& kernel, const SpringDef& def) {
 }
 
 void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def) {
-  require_two(kernel.simulation.body(a), kernel.simulation.body(b),
-              "the hold " + between(kernel.simulation.body(a), kernel.simulation.body(b)));
   kernel.editing.edit_pair(
       a, b, [&](SuccessorView& view_a, SuccessorView& view_b) { view_a.attach(view_b, def); });
 }
 
 bool attached(const Kernel& kernel, BodyId a, BodyId b) {
-  if (a == b) return false;
-  const bool first = kernel.simulation.body(a).dynamic();
-  const State& state = *state_at(kernel.simulation, first ? a : b, kernel.simulation.present.time);
-  return holds(state.forces, first ? b : a);
+  const Simulation& simulation = kernel.simulation;
+  const BodyId holder = simulation.body(a).dynamic() ? a : b;
+  return holds(state_at(simulation, holder, simulation.present.time)->forces, a, b);
 }
 
 void detach(Kernel& kernel, BodyId a, BodyId b) {
-  TW_REQUIRE(attached(kernel, a, b), kernel.simulation.body(a).info.name + " and " +
-                                         kernel.simulation.body(b).info.name +
-                                         " are not held together; expected two that attach! holds");
   kernel.editing.edit_pair(
       a, b, [](SuccessorView& view_a, SuccessorView& view_b) { view_a.detach(view_b); });
 }

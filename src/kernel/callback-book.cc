@@ -46,7 +46,11 @@ std::uint32_t CallbackBook::add(const CallbackDef& def) {
   const Present& present = sim_.present;
   const KeyKind now = present.begun ? KeyKind::group_check : KeyKind::birth;
   if (def.period) callback.next = first_tick(callback, {present.time, 0, now, 0});
-  for (const BodyId id : def.targets) sim_.process(sim_.body(id)).callbacks.push_back(number);
+  for (const BodyId id : def.targets) {
+    Body& body = *sim_.scene.bodies[id];
+    sim_.process(body).callbacks.push_back(number);
+    body.callback_period = std::min(body.callback_period, def.period.value_or(never));
+  }
   schedule(number);
   return number;
 }

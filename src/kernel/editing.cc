@@ -28,13 +28,18 @@ Key Editing::edit_key(const std::vector<ProcessId>& concerned) {
   return {sim_.present.time, microstep, KeyKind::edit, sim_.present.edits++};
 }
 
+// Of an edit of these (ascending): it concerns what touches them, too.
+Key Editing::key_around(const std::vector<ProcessId>& edited) {
+  const Region region = region_of(sim_.before(sim_.present.key()), edited, true);
+  std::vector<ProcessId> concerned = region.inside;
+  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
+  return edit_key(concerned);
+}
+
 std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
   sim_.require_between_runs("a body was changed");
   const Body& body = sim_.body(id);
-  const Region region = region_of(sim_.before(sim_.present.key()), {body.process}, true);
-  std::vector<ProcessId> concerned = region.inside;
-  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
-  const Key key = edit_key(concerned);
+  const Key key = key_around({body.process});
   std::vector<Successor> successors{make_successor(sim_.before(key), body.process, false)};
   successors[0].role = Role::record;
   const Vec3 x_before = successors[0].point.x;
@@ -52,21 +57,19 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
 void Editing::edit_pair(BodyId a, BodyId b,
                         const std::function<void(SuccessorView&, SuccessorView&)>& change) {
   sim_.require_between_runs("two bodies were changed");
-  const Before standing = sim_.before(sim_.present.key());
-  std::vector<ProcessId> concerned;
   std::vector<ProcessId> both;
   for (const BodyId id : {a, b}) insert(both, sim_.process_of(id));
-  const Region region = region_of(standing, both, true);
-  concerned = region.inside;
-  concerned.insert(concerned.end(), region.border.begin(), region.border.end());
-  const Key key = edit_key(concerned);
+  const Key key = key_around(both);
   std::vector<Successor> successors;
-  for (const BodyId id : {a, b})
-    successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));
+  for (const ProcessId process : both)
+    successors.push_back(make_successor(sim_.before(key), process, false));
   share_joints(successors);
-  SuccessorView view_a(sim_.scene, successors[0], key, false);
-  SuccessorView view_b(sim_.scene, successors[1], key, false);
-  change(view_a, view_b);
+  std::vector<SuccessorView> views;
+  for (Successor& successor : successors) views.emplace_back(sim_.scene, successor, key, false);
+  const auto view_of = [&](BodyId id) -> SuccessorView& {
+    return sim_.process_of(id) == both.front() ? views.front() : views.back();
+  };
+  change(view_of(a), view_of(b));
   groups_.regroup_edited(key, successors);
   discontinuities_.enter(key, successors);
 }

@@ -26,7 +26,7 @@ class Editing {
   // `change` gets a view of the body.  Those that were placed elsewhere: it, or the links of its
   // multibody.
   std::vector<BodyId> edit(BodyId id, const std::function<void(StateView&)>& change);
-  // The same of two at once, which stay where they are.
+  // The same of two at once, which stay where they are; they may be one.
   void edit_pair(BodyId a, BodyId b,
                  const std::function<void(SuccessorView&, SuccessorView&)>& change);
   void set_gravity(const Vec3& gravity);
@@ -37,6 +37,7 @@ class Editing {
 
  private:
   Key edit_key(const std::vector<ProcessId>& concerned);
+  Key key_around(const std::vector<ProcessId>& edited);
   void edit_together(const std::function<bool(BodyId)>& concerned,
                      const std::function<void(Successor&)>& change);
 

@@ -30,10 +30,6 @@ std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   simulation.require_between_runs("a callback was added");
   callbacks.require_possible(def);
   if (simulation.present.begun) discontinuities.restart_future();
-  for (const BodyId id : def.targets) {
-    double& period = simulation.scene.bodies[id]->callback_period;
-    period = std::min(period, def.period.value_or(never));
-  }
   return callbacks.add(def);
 }
 

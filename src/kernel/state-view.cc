@@ -152,23 +152,21 @@ void SuccessorView::attach(StateView& view, const HoldDef& hold) {
 
 void SuccessorView::detach(StateView& view) {
   auto& other = static_cast<SuccessorView&>(view);
-  TW_REQUIRE(body() != other.body() && attached(other),
-             successor_.body->info.name + " and " + other.successor_.body->info.name +
-                 " are not held together; expected two that attach! holds");
+  TW_REQUIRE(attached(other), successor_.body->info.name + " and " +
+                                  other.successor_.body->info.name +
+                                  " are not held together; expected two that attach! holds");
   for (SuccessorView* one : {this, &other}) {
     if (!one->successor_.body->dynamic()) continue;
     one->start_arc();
     ForcesPtr& forces = one->successor_.data.forces;
-    forces = without_holds_on(forces, one == this ? other.body() : body());
+    forces = without_holds(forces, body(), other.body());
   }
 }
 
 bool SuccessorView::attached(const StateView& other) const {
-  if (body() == other.body()) return false;
-  return holds(successor_.body->dynamic()
-                   ? successor_.data.forces
-                   : static_cast<const SuccessorView&>(other).successor_.data.forces,
-               successor_.body->dynamic() ? other.body() : body());
+  const Successor& theirs = static_cast<const SuccessorView&>(other).successor_;
+  const Successor& holder = successor_.body->dynamic() ? successor_ : theirs;
+  return holds(holder.data.forces, body(), other.body());
 }
 
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }

@@ -134,8 +134,7 @@ void with_both(SCM world, SCM a, SCM b, const char* what, OfViews&& of_views,
     for (const SCM object : {a, b})
       if (!is_view(object))
         throw BadValue{"one of the two", object,
-                       "a view, as the other one is: make it a target of "
-                       "the callback"};
+                       "a view, as the other one is: make it a target of the callback"};
     StateView &view_a = to_view(a), &view_b = to_view(b);
     return of_views(view_a, view_b);
   }

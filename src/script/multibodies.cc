@@ -173,10 +173,7 @@ SCM from_columns(const std::vector<double>& columns, std::size_t rows) {
 
 }  // namespace
 
-TW_PRIMITIVE(add_multibody, "%add-multibody!",
-             (SCM world, SCM name, SCM base, SCM position, SCM orientation, SCM links, SCM place),
-             "Add a multibody; return its handle.") {
-  require_outside_callbacks("add-multibody!");
+MultibodyDef to_root_def(SCM world, SCM name, SCM base, SCM position, SCM orientation, SCM place) {
   MultibodyDef def;
   if (scm_is_true(name)) def.name = to_link_name(name, "the name of a multibody");
   if (stands_for_body(base)) {
@@ -190,6 +187,14 @@ TW_PRIMITIVE(add_multibody, "%add-multibody!",
   if (scm_is_true(position)) def.position = to_vec3(position, "position");
   if (scm_is_true(orientation)) def.orientation = to_quat(orientation, "orientation");
   if (is_place(place)) def.place = to_place(place);
+  return def;
+}
+
+TW_PRIMITIVE(add_multibody, "%add-multibody!",
+             (SCM world, SCM name, SCM base, SCM position, SCM orientation, SCM links, SCM place),
+             "Add a multibody; return its handle.") {
+  require_outside_callbacks("add-multibody!");
+  MultibodyDef def = to_root_def(world, name, base, position, orientation, place);
   for (SCM rest = links; scm_is_pair(rest); rest = SCM_CDR(rest)) {
     def.links.push_back(to_link_def(SCM_CAR(rest)));
     def.links.back().body.place = def.place;

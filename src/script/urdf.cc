@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "script/body-def.h"
 #include "script/file-names.h"
 #include "script/joints.h"
 #include "script/primitive.h"
@@ -32,25 +33,16 @@ void stand_on(World& world, const BodyDef& stand, MultibodyDef& def) {
   def.orientation = Quat::Identity();
 }
 
-// As the first links of a multibody and its base do not.
-void pass_through(World& world, BodyId a, BodyId b) {
-  ContactSide side_a, side_b;
-  side_a.kind = side_b.kind = ContactSide::Kind::body;
-  side_a.body = a;
-  side_b.body = b;
+// Lets a body pass through another one, or through all.
+void let_pass(World& world, BodyId body, std::optional<BodyId> other) {
+  ContactSide a, b;
+  a.kind = ContactSide::Kind::body;
+  a.body = body;
+  b.kind = other ? ContactSide::Kind::body : ContactSide::Kind::all;
+  b.body = other.value_or(no_body);
   ContactSettings settings;
   settings.collide = false;
-  world.set_contact(side_a, side_b, settings);
-}
-
-void touch_nothing(World& world, BodyId id) {
-  ContactSide body, all;
-  body.kind = ContactSide::Kind::body;
-  body.body = id;
-  all.kind = ContactSide::Kind::all;
-  ContactSettings settings;
-  settings.collide = false;
-  world.set_contact(body, all, settings);
+  world.set_contact(a, b, settings);
 }
 
 }  // namespace
@@ -59,17 +51,10 @@ TW_PRIMITIVE(load_urdf, "%load-urdf",
              (SCM world, SCM file, SCM name, SCM base, SCM position, SCM orientation, SCM place),
              "Add the robot of a URDF file; return its handle and the names of its links.") {
   require_outside_callbacks("load-urdf");
-  const bool on_body = stands_for_body(base);
-  const std::string kind = scm_is_symbol(base) ? to_symbol_name(base, "base") : "";
-  if (!on_body && kind != "free" && kind != "fixed")
-    throw BadValue{"base", base, "'fixed, 'free, or a fixed body"};
-  UrdfRobot robot = read_urdf(to_file_name(file, "the file"), kind == "free");
-  MultibodyDef& def = robot.multibody;
-  if (scm_is_true(name)) def.name = to_link_name(name, "the name of a multibody");
-  if (on_body) def.base = to_body(world, base, "base");
-  if (scm_is_true(position)) def.position = to_vec3(position, "position");
-  if (scm_is_true(orientation)) def.orientation = to_quat(orientation, "orientation");
-  if (is_place(place)) def.place = to_place(place);
+  MultibodyDef def = to_root_def(world, name, base, position, orientation, place);
+  UrdfRobot robot = read_urdf(to_file_name(file, "the file"), def.free);
+  if (scm_is_false(name)) def.name = robot.name;
+  def.links = std::move(robot.links);
   for (LinkDef& link : def.links) link.body.place = def.place;
   World& to = to_world(world);
   const BodyId table = def.base;
@@ -82,12 +67,13 @@ TW_PRIMITIVE(load_urdf, "%load-urdf",
     throw;
   }
   const Multibody& made = to.multibody(number);
-  for (std::size_t i = 0; i < made.links.size(); ++i)
+  for (std::size_t i = 0; i < made.links.size(); ++i) {
     if (std::count(robot.untouchable.begin(), robot.untouchable.end(), def.links[i].name) > 0)
-      touch_nothing(to, made.links[i]);
-  if (robot.stand && table != no_body)
-    for (std::size_t i = 0; i < made.links.size(); ++i)
-      if (def.links[i].parent.empty()) pass_through(to, made.links[i], table);
+      let_pass(to, made.links[i], std::nullopt);
+    // as the first links of a multibody and its base do
+    if (robot.stand && table != no_body && def.links[i].parent.empty())
+      let_pass(to, made.links[i], table);
+  }
   SCM names = SCM_EOL;
   for (std::size_t i = def.links.size(); i-- > 0;)
     names = scm_cons(scm_string_to_symbol(from_string(def.links[i].name)), names);
