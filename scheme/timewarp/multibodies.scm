@@ -220,8 +220,9 @@ is a body called NAME/LINK.  Links that a joint joins don't touch each other, no
 touch the base's body.  A multibody stands for its first link where a body is expected.
 
 #:name      a symbol or a string that no other multibody has; multibody-N
-#:base      what the first links hang on: 'fixed, the world; a fixed body; 'free, nothing: then
-            there is one first link, which has no joint, and is what moves about; 'fixed
+#:base      what the first links hang on: 'fixed, the world; a body that is fixed or kinematic, and
+            carries them along; 'free, nothing: then there is one first link, which has no joint,
+            and is what moves about; 'fixed
 #:position  m, of the base, or of a free first link's frame; in the frame of the base's body, if
             there is one; #(0 0 0)
 #:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
@@ -248,7 +249,8 @@ velocity are not (see servo's #:max-torque).  What cannot be expressed is an err
 floating and planar joints, <mimic>, moving links without mass.
 
 #:name      of the multibody; that of the robot
-#:base      what the first link stands on: 'fixed, the world; a fixed body; 'free, nothing; 'fixed
+#:base      what the first link stands on: 'fixed, the world; a body that is fixed or, where nothing
+            is fixed to the base, kinematic; 'free, nothing; 'fixed
 #:position  m, of the first link's frame, in that of the base's body if there is one; #(0 0 0)
 #:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
   (let* ((place (caller-place))

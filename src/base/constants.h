@@ -103,6 +103,10 @@ inline constexpr double motion_turn = 1;
 // there.
 inline constexpr double shortest_motion_piece = 0x1p-24, shortest_motion_spacings = 1024;
 
+// Its velocity jumps where one piece ends at more than this share from where the next one begins:
+// well above what fitting leaves, well below what anybody sees.
+inline constexpr double motion_jump = 1e-6;
+
 // ---- which contacts are the same ----
 // A contact after a refresh is one before it if they are not farther apart, share of the smaller
 // size.

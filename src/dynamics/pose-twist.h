@@ -14,6 +14,8 @@ namespace tw {
 struct Twist {
   Vec3 v = Vec3::Zero();
   Vec3 w = Vec3::Zero();
+
+  bool operator==(const Twist&) const = default;
 };
 
 // Pose and twist: m, unit quaternion, m/s, rad/s.

@@ -8,17 +8,20 @@
 #include "groups/start-members.h"
 #include "integrate/joint-record.h"
 #include "integrate/member-trajectory.h"
+#include "integrate/moving-base.h"
 
 namespace tw {
 
 void make_birth_group(const Scene& scene, const std::shared_ptr<const Multibody>& multibody,
                       const MultibodyStatePtr& joints, std::span<State* const> states) {
   const double now = states.front()->key.time;
-  const PlacedJoints placed(*multibody, *joints);
+  const PlacedJoints placed(*multibody, *joints, now);
   auto group = std::make_shared<Group>();
   group->key = states.front()->key;
   group->birth = now;
   group->next_check = next_check_time(now, now, joint_check_interval(scene, *multibody));
+  group->next_check =
+      std::min(group->next_check, next_corner_of(*multibody, now, group->next_check));
   GroupStart start;
   start.time = now;
   start.end = group->next_check;

@@ -36,7 +36,7 @@ struct AtStop {
 };
 
 // Impulses at the stops that are struck, the fastest first.
-void strike(const Multibody& multibody, MultibodyState& joints) {
+void strike(const Multibody& multibody, double now, MultibodyState& joints) {
   const Tree& tree = multibody.tree;
   std::unique_ptr<PlacedJoints> placed;
   Articulation factors(tree);
@@ -53,7 +53,7 @@ void strike(const Multibody& multibody, MultibodyState& joints) {
     }
     if (!struck) return;
     if (!placed) {
-      placed = std::make_unique<PlacedJoints>(multibody, joints);
+      placed = std::make_unique<PlacedJoints>(multibody, joints, now);
       factor(tree, placed->kinematics(), factors);
     }
     const Factored factored{tree, placed->kinematics(), factors};
@@ -68,13 +68,13 @@ void strike(const Multibody& multibody, MultibodyState& joints) {
 
 }  // namespace
 
-void settle_stops(const Multibody& multibody, bool may_leave, MultibodyState& joints) {
+void settle_stops(const Multibody& multibody, double now, bool may_leave, MultibodyState& joints) {
   const std::vector<Axis>& axes = multibody.tree.axes();
   bool any = false;
   for (const Axis& axis : axes) any = any || AtStop(axis, joints).touches;
   if (!any && joints.stops.empty()) return;
   joints.stops.resize(axes.size(), Stop::none);
-  strike(multibody, joints);
+  strike(multibody, now, joints);
   // rounding of an impulse that leaves nothing
   constexpr double nothing = 1e-6 * answer::stop_speed;
   bool leans = false;

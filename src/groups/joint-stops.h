@@ -13,6 +13,6 @@
 namespace tw {
 
 // `may_leave`: whether what has come off its stop is let go.
-void settle_stops(const Multibody& multibody, bool may_leave, MultibodyState& joints);
+void settle_stops(const Multibody& multibody, double now, bool may_leave, MultibodyState& joints);
 
 }  // namespace tw

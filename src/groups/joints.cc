@@ -6,16 +6,18 @@
 
 #include "groups/joint-stops.h"
 #include "integrate/joint-record.h"
+#include "integrate/moving-base.h"
 
 namespace tw {
 
 using namespace multibody;
 
-PlacedJoints::PlacedJoints(const Multibody& multibody, const MultibodyState& joints)
+PlacedJoints::PlacedJoints(const Multibody& multibody, const MultibodyState& joints, double time)
     : multibody_(multibody), k_(multibody.tree) {
   // gravity and accelerations of the base don't enter places and velocities
   multibody::Surroundings around;
-  around.base = multibody.base;
+  MovingBase(multibody).set(time, around);
+  around.v = joints.base.v, around.w = joints.base.w;
   place(multibody.tree, joints.q, joints.u, around, k_);
 }
 
@@ -32,7 +34,10 @@ std::shared_ptr<MultibodyState> joints_at(const State& state, double when) {
   auto joints = std::make_shared<MultibodyState>(*state.joints);
   if (!state.group || state.group->at_rest) return joints;
   const GroupArc& arc = *state.group->arc;
-  arc.joints(arc.start().members[state.member].tree, when, joints->q, joints->u);
+  const int tree = arc.start().members[state.member].tree;
+  arc.joints(tree, when, joints->q, joints->u);
+  const MovingBase base(*arc.start().trees[static_cast<std::size_t>(tree)].multibody);
+  if (base.moves() && arc.start().time < when) joints->base = base.twist_before(when);
   return joints;
 }
 
@@ -49,10 +54,10 @@ void share_joints(std::vector<Successor>& successors) {
   }
 }
 
-void follow_changed_joints(std::vector<Successor>& successors) {
+void follow_changed_joints(double time, std::vector<Successor>& successors) {
   for (const Successor& changed : successors) {
     if (!changed.joints_changed) continue;
-    const PlacedJoints joints(*changed.body->multibody, *changed.joints);
+    const PlacedJoints joints(*changed.body->multibody, *changed.joints, time);
     for (Successor& link : successors) {
       if (link.body->multibody != changed.body->multibody) continue;
       link.point = joints.link(static_cast<int>(link.body->link));
@@ -70,7 +75,7 @@ void JointImpulses::add(Successor& successor, std::uint32_t slot) {
     Struck struck{multibody,
                   successor.joints,
                   {},
-                  std::make_shared<PlacedJoints>(*multibody, *successor.joints),
+                  std::make_shared<PlacedJoints>(*multibody, *successor.joints, time_),
                   std::make_shared<Articulation>(multibody->tree)};
     factor(multibody->tree, struck.placed->kinematics(), *struck.factors);
     at = struck_.insert(at, std::move(struck));
@@ -127,8 +132,9 @@ void settle_joints(Regrouping& work) {
     const Multibody* multibody = successor.body->multibody;
     if (!multibody || !work.changes(&successor)) continue;
     if (multibody != placed) {
-      settle_stops(*multibody, finds_contacts(work.cause), *successor.joints);
-      joints = std::make_unique<PlacedJoints>(*multibody, *successor.joints);
+      follow_base(*multibody, work.now(), *successor.joints);
+      settle_stops(*multibody, work.now(), finds_contacts(work.cause), *successor.joints);
+      joints = std::make_unique<PlacedJoints>(*multibody, *successor.joints, work.now());
     }
     placed = multibody;
     successor.point = joints->link(static_cast<int>(successor.body->link));

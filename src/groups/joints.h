@@ -20,10 +20,10 @@
 
 namespace tw {
 
-// A multibody's links where its joints are.
+// A multibody's links where its joints are; of a base that moves, at a time.
 class PlacedJoints {
  public:
-  PlacedJoints(const Multibody& multibody, const MultibodyState& joints);
+  PlacedJoints(const Multibody& multibody, const MultibodyState& joints, double time);
   PoseTwist link(int link) const;
   const multibody::Kinematics& kinematics() const { return k_; }
 
@@ -43,12 +43,12 @@ std::shared_ptr<MultibodyState> joints_at(const State& state, double when);
 void share_joints(std::vector<Successor>& successors);
 
 // The links of multibodies whose joints an edit or a callback has changed, where their joints are.
-void follow_changed_joints(std::vector<Successor>& successors);
+void follow_changed_joints(double time, std::vector<Successor>& successors);
 
 // Joins the slots of links in a solver, then takes what they received.
 class JointImpulses {
  public:
-  explicit JointImpulses(ImpulseSolver& solver) : solver_(solver) {}
+  JointImpulses(ImpulseSolver& solver, double time) : solver_(solver), time_(time) {}
   // Nothing where the successor is no link.
   void add(Successor& successor, std::uint32_t slot);
   void join();
@@ -63,10 +63,11 @@ class JointImpulses {
     std::shared_ptr<multibody::Articulation> factors;
   };
   ImpulseSolver& solver_;
+  double time_;
   std::vector<Struck> struck_;
 };
 
-// Stops, then the links where their joints are: for new arcs.
+// What the base's jumps do, then stops, then the links where their joints are: for new arcs.
 void settle_joints(Regrouping& work);
 
 }  // namespace tw

@@ -59,7 +59,7 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
           {slot_of(a), slot_of(b), c.normal, c.point, law.restitution, law.friction, slow});
   }
   const int most = work.struck_at.empty() ? guard::most_passed_on : guard::most_struck_again;
-  JointImpulses joints(solver);
+  JointImpulses joints(solver, work.now());
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
     if (solver.slot(slot).moves()) joints.add(*work.successor_of(ids[slot]), slot);
   joints.join();

@@ -66,7 +66,7 @@ std::vector<Successor> successors_of(const Region& region, const Before& before,
   for (const ProcessId process : region.border)
     if (!known(process)) add_record(process, Role::border);
   share_joints(all);
-  follow_changed_joints(all);
+  follow_changed_joints(before.key().time, all);
   return all;
 }
 

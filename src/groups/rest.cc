@@ -102,10 +102,12 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
   std::vector<bool> rests(count, false);
   for (std::size_t i = 0; i < count; ++i) {
     const Successor& successor = work.successors[i];
-    // what a spring pulls that moves at its other end waits for that
+    // what a spring pulls that moves at its other end waits for that, as what hangs on such a base
     const ForcesPtr& forces = successor.data.forces;
+    const Multibody* multibody = successor.body->multibody;
+    const bool carried = multibody && multibody->base_motion;
     rests[i] =
-        work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
+        work.changes(&successor) && (!forces || forces->longest_unlooked() == never) && !carried &&
         is_still(work.scene(), work.stillness[i], placed(successor), work.now(), work.touching[i]);
   }
 

@@ -108,7 +108,7 @@ struct GroupBond {
 
 struct GroupStart {
   double time = 0;  // s
-  double end = 0;   // the arc goes no further, s
+  double end = 0;   // the arc goes no further, s; no base of a multibody has a corner before
   std::vector<GroupMember> members;
   std::vector<GroupTree> trees;
   std::vector<TrajectoryPtr> outside;  // of bodies that the arc meets and does not move

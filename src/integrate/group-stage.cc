@@ -47,8 +47,26 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
   }
 }
 
-void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
-                                 double* time_slope) const {
+// Forwards, to the fourth order: the arc may begin at a corner of what moves.
+namespace {
+constexpr double forward_weights[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
+}
+
+void GroupSystem::difference_slopes(double time, double step, const double* y, const double* slope,
+                                    GroupScratch& s, double* time_slope) const {
+  const double d = step / 32;
+  thread_local std::vector<double> later;
+  later.resize(size_);
+  for (std::size_t e = 0; e < size_; ++e) time_slope[e] = forward_weights[0] / d * slope[e];
+  for (int j = 1; j < 5; ++j) {
+    evaluate(time + j * d, y, s, later.data());
+    for (std::size_t e = 0; e < size_; ++e) time_slope[e] += forward_weights[j] / d * later[e];
+  }
+}
+
+void GroupSystem::set_time_slope(double time, double step, const double* y, const double* slope,
+                                 GroupScratch& s, double* time_slope) const {
+  if (bases_move_) return difference_slopes(time, step, y, slope, s, time_slope);
   std::fill(time_slope, time_slope + size_, 0.0);
   std::fill(s.changes.begin(), s.changes.begin() + packs_.slots, BodyChange{});
   std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
@@ -78,13 +96,11 @@ void GroupSystem::set_time_slope(double time, double step, GroupScratch& s,
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
     if (!m.forces || !(m.forces->longest_unlooked() < never)) continue;
-    // forwards, to the fourth order: the arc may begin at a corner of what moves
-    constexpr double weight[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
     BodyWrench& wrench = s.wrenches[index(i)];
     for (int j = 0; j < 5; ++j) {
       const Wrench f = m.forces->wrench(time + j * d, m.point);
-      vec(wrench.f) += weight[j] / d * f.force;
-      vec(wrench.t) += weight[j] / d * f.torque;
+      vec(wrench.f) += forward_weights[j] / d * f.force;
+      vec(wrench.t) += forward_weights[j] / d * f.torque;
     }
   }
   for (std::size_t t = 0; t < trees_.size(); ++t) {

@@ -25,12 +25,12 @@ GroupStepper::GroupStepper(const GroupStart& start)
     y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());
     explicit_ = std::make_unique<Solution>(
         start.joint_tolerance > answer::loose_steps ? tsit5 : dop853,
-        std::make_unique<JointEquations>(tree, start.joint_tolerance, start.joint_size,
+        std::make_unique<JointEquations>(tree, start.end, start.joint_tolerance, start.joint_size,
                                          start.joint_rate),
         start.time, std::move(y), tree.state->q);
   }
   for (const GroupTree& tree : start.trees)
-    joints_.emplace_back(*tree.multibody, start.time, tree.state->q, tree.state->u,
+    joints_.emplace_back(*tree.multibody, start.time, start.end, tree.state->q, tree.state->u,
                          explicit_ ? explicit_->method().degree() : 3);
 }
 
@@ -235,7 +235,8 @@ bool GroupStepper::implicit_step() {
   const double turn_limit = answer::most_step_turn / std::max(fastest_turn(s), 1e-300);
   if (!(next_step_ > 0)) next_step_ = first_step(s);
   double h = std::min({next_step_, left, turn_limit});
-  if (system_.moved_from_outside()) system_.set_time_slope(time, h, s, s.time_slope.data());
+  if (system_.moved_from_outside())
+    system_.set_time_slope(time, h, s.state.data(), s.slope.data(), s, s.time_slope.data());
 
   for (bool rejected = false;; rejected = true) {
     // the last step lands on the end, the one before leaves no sliver

@@ -47,7 +47,8 @@ GroupSystem::GroupSystem(const GroupStart& start)
   for (const GroupBond& bond : start.bonds) bonds_.push_back({bond, {}});
   size_ = 12 * (start.members.size() + packs_.packs.size());
   for (const GroupTree& tree : start.trees) {
-    trees_.push_back(std::make_unique<TreeInGroup>(tree));
+    trees_.push_back(std::make_unique<TreeInGroup>(tree, start.end));
+    bases_move_ = bases_move_ || trees_.back()->moved_from_outside();
     tree_rows_.push_back(size_);
     size_ += index(2 * trees_.back()->freedoms());
   }
@@ -143,7 +144,7 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
 
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const double* row = y + tree_rows_[t];
-    trees_[t]->place(row, row + trees_[t]->freedoms(), s.bodies.data());
+    trees_[t]->place(time, row, row + trees_[t]->freedoms(), s.bodies.data());
   }
 
   // contacts

@@ -51,7 +51,9 @@ class GroupSystem {
   const std::vector<std::unique_ptr<TreeInGroup>>& trees() const { return trees_; }
   // Where the numbers of a multibody begin.
   std::size_t tree_row(std::size_t tree) const { return tree_rows_[tree]; }
-  bool moved_from_outside() const { return !moving_slots_.empty() || forces_change_; }
+  bool moved_from_outside() const {
+    return !moving_slots_.empty() || forces_change_ || bases_move_;
+  }
   std::uint64_t factorizations() const {
     return coupled_ ? coupled_->factorizations() : matrix_.factorizations();
   }
@@ -66,10 +68,11 @@ class GroupSystem {
   void evaluate(double time, const double* y, GroupScratch& scratch, double* slope) const;
   // The same at theta = 0, with the derivative; sets the sides.
   void linearise(double time, const double* y, GroupScratch& scratch, double* slope);
-  // Partial derivative by time, by the motion of outside bodies, whose velocities are differenced
-  // over a part of the `step`, as are forces that change by themselves.  After linearise, before
-  // factor.
-  void set_time_slope(double time, double step, GroupScratch& scratch, double* time_slope) const;
+  // Partial derivative by time at y, by the motion of outside bodies, whose velocities are
+  // differenced over a part of the `step`, as are forces that change by themselves; all of it where
+  // bases of multibodies move.  After linearise, which gave `slope`, before factor.
+  void set_time_slope(double time, double step, const double* y, const double* slope,
+                      GroupScratch& scratch, double* time_slope) const;
   // Largest over members of the sum of |dN/dd| of its contacts over its mass, 1/s^2, as linearised
   // last.
   double squared_frequency(GroupScratch& scratch) const;
@@ -112,6 +115,8 @@ class GroupSystem {
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
   PoseTwist point_of(int member, const double* y, const BodyKinematics& body) const;
+  void difference_slopes(double time, double step, const double* y, const double* slope,
+                         GroupScratch& scratch, double* time_slope) const;
   void place_outside(int slot, double time, BodyKinematics& body) const;
   // Outside bodies that move; the others are where set_outside put them.
   void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
@@ -153,6 +158,7 @@ class GroupSystem {
   std::vector<TrajectoryPtr> outside_;
   std::vector<BodyKinematics> outside_at_start_;
   bool forces_change_ = false;     // of some member, with time by themselves
+  bool bases_move_ = false;        // of some multibody
   std::vector<int> moving_slots_;  // of outside bodies that do not stand still, ascending
   std::vector<Member> member_;
   std::vector<HeldPair> bonds_;

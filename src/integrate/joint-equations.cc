@@ -17,13 +17,15 @@ namespace {
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-JointEquations::JointEquations(const GroupTree& tree, double tolerance, double size, double rate)
+JointEquations::JointEquations(const GroupTree& tree, double end, double tolerance, double size,
+                               double rate)
     : tree_(tree),
       n_(tree.multibody->tree.nv()),
       tolerance_(tolerance),
       size_(size),
       rate_(rate),
       is_distance_(index(n_), false),
+      base_(*tree.multibody, end),
       placed_(tree.multibody->tree),
       articulation_(tree.multibody->tree),
       q_(index(tree.multibody->tree.nq())),
@@ -37,11 +39,12 @@ JointEquations::JointEquations(const GroupTree& tree, double tolerance, double s
 
 int JointEquations::chart_size() const { return tree_.multibody->tree.nq(); }
 
-void JointEquations::slope(double, const double* y, const double* chart, double* slope) const {
+void JointEquations::slope(double time, const double* y, const double* chart, double* slope) const {
   const Tree& tree = tree_.multibody->tree;
   const std::size_t n = index(n_);
   const In z{y, n}, u{y + n, n};
   displace(tree, {chart, q_.size()}, z, q_);
+  if (base_.moves()) base_.set(time, around_);
   place(tree, q_, u, around_, placed_);
   for (int link = 0; link < tree.link_count(); ++link)
     if (const Vec3& force = tree_.forces[index(link)]; !force.isZero(0))
@@ -63,12 +66,14 @@ void JointEquations::tolerances(const double* y, const double*, double* allowed)
   }
 }
 
-// No joint turns by more than a chart bears; and not for ever where nothing moves.
+// No joint turns by more than a chart bears; and not for ever where nothing moves, or past a part
+// of how the base does.
 double JointEquations::longest_step(const double* y, const double*, const double*) const {
   double fastest = rate_;
   for (int k = 0; k < n_; ++k)
     if (!is_distance_[index(k)]) fastest = std::max(fastest, std::abs(y[n_ + k]));
-  return answer::most_step_turn / fastest;
+  const double longest = answer::most_step_turn / fastest;
+  return base_.moves() ? std::min(longest, answer::motion_span) : longest;
 }
 
 void JointEquations::recentre(double* y, double* slope, double* chart) const {

@@ -10,15 +10,16 @@
 
 #include "integrate/equations.h"
 #include "integrate/group-arc.h"
+#include "integrate/moving-base.h"
 #include "multibody/forward-dynamics.h"
 
 namespace tw {
 
 class JointEquations final : public Equations {
  public:
-  // `tolerance`: the error of a step in displacements, rad; of distances a share of `size`, m, of
-  // velocities times `rate`, 1/s, or the fastest one.
-  JointEquations(const GroupTree& tree, double tolerance, double size, double rate);
+  // `end`: of the arc; `tolerance`: the error of a step in displacements, rad; of distances a share
+  // of `size`, m, of velocities times `rate`, 1/s, or the fastest one.
+  JointEquations(const GroupTree& tree, double end, double tolerance, double size, double rate);
 
   int size() const override { return 2 * n_; }
   int chart_size() const override;
@@ -31,8 +32,9 @@ class JointEquations final : public Equations {
   const GroupTree& tree_;
   int n_;
   double tolerance_, size_, rate_;
-  multibody::Surroundings around_;
   std::vector<bool> is_distance_;  // of each dof
+  MovingBase base_;
+  mutable multibody::Surroundings around_;
   mutable multibody::Kinematics placed_;
   mutable multibody::Articulation articulation_;
   mutable std::vector<double> q_, tau_;

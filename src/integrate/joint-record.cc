@@ -48,10 +48,8 @@ PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) 
           twist.w};
 }
 
-// Bounds of a frame over a stretch: |w|, |w'|, |w''|, |v|, |a|, |a'|.
-struct JointRecord::Rates {
-  double turn = 0, turn_change = 0, turn_jerk = 0, speed = 0, acceleration = 0, jerk = 0;
-
+// Over a stretch.
+struct JointRecord::Rates : MotionRates {
   // Of a point at this distance from the origin.
   Rates at(double arm) const {
     return {turn,
@@ -100,9 +98,10 @@ std::uint64_t JointRecord::next_serial() {
   return ++last;
 }
 
-JointRecord::JointRecord(const Multibody& multibody, double start, const std::vector<double>& q,
-                         const std::vector<double>& u, int degree)
+JointRecord::JointRecord(const Multibody& multibody, double start, double end,
+                         const std::vector<double>& q, const std::vector<double>& u, int degree)
     : multibody_(&multibody),
+      base_(multibody, end),
       n_(multibody.tree.nv()),
       path_(start, 2 * n_, degree),
       nodes_(q),
@@ -130,7 +129,7 @@ const JointRecord::Placed& JointRecord::placed(double time, Velocities which) co
   if (p.record == serial_ && p.time == time && p.which == which) return p;
   const bool of_path = which == Velocities::of_path && path_.steps() > 0;
   const int step = of_path ? path_.step_to(time) : path_.step_from(time);
-  fill(step, step < 0 ? 0 : path_.fraction(step, time), of_path, p);
+  fill(step, step < 0 ? 0 : path_.fraction(step, time), time, of_path, p);
   p.record = serial_;
   p.time = time;
   p.which = which;
@@ -142,13 +141,17 @@ const JointRecord::Placed& JointRecord::place_on_path(int step, double r) const 
   thread_local Placed places[2];
   thread_local int next = 0;
   next = 1 - next;
-  fill(step, r, true, places[next]);
+  fill(step, r, time_at(step, r), true, places[next]);
   return places[next];
 }
 
-// At the fraction r of a step; step -1: at the last node.  At a node what stands there is taken as
-// it is, so that it makes no difference whether there is a next step already.
-void JointRecord::fill(int step, double r, bool of_path, Placed& p) const {
+double JointRecord::time_at(int step, double r) const {
+  return r < 1 ? path_.time(step) + r * path_.length(step) : path_.time(step + 1);
+}
+
+// At `time`, the fraction r of a step; step -1: at the last node.  At a node what stands there is
+// taken as it is, so that it makes no difference whether there is a next step already.
+void JointRecord::fill(int step, double r, double time, bool of_path, Placed& p) const {
   const Tree& tree = multibody_->tree;
   const int at = step < 0 ? path_.steps() : step;
   p.q.assign(node(at), node(at) + tree.nq());
@@ -169,7 +172,7 @@ void JointRecord::fill(int step, double r, bool of_path, Placed& p) const {
   if (!p.k || p.k->nodes.size() != index(tree.node_count()) || p.k->axes.size() != index(n_))
     p.k = std::make_unique<Kinematics>(tree);
   Surroundings around;
-  around.base = multibody_->base;
+  base_.set(time, around);
   place(tree, p.q, p.u, around, *p.k);
 }
 
@@ -191,6 +194,11 @@ Pose JointRecord::pose(int link, double time) const {
 Twist JointRecord::rates(int link, double time) const {
   const PoseTwist point = link_point(*multibody_, *placed(time, Velocities::of_path).k, link);
   return {point.v, point.w};
+}
+
+JointRecord::Rates JointRecord::base_rates(const Stretch& stretch) const {
+  if (!base_.moves()) return {};
+  return {base_.most_rates(time_at(stretch.step, stretch.r0), time_at(stretch.step, stretch.r1))};
 }
 
 JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Stretch& stretch,
@@ -287,6 +295,7 @@ void JointRecord::keep_bounds(int step) {
     const double r0 = static_cast<double>(part) / parts, r1 = (part + 1.0) / parts;
     place_at(r1, after, links_after);
     const Stretch stretch{step, r0, r1, length};
+    rates[index(base_node)] = base_rates(stretch);
     for (int i = first_node; i < tree.node_count(); ++i)
       rates[index(i)] = node_rates(i, rates[index(tree.node(i).parent)], stretch, {before, after});
     for (int i = 0; i < tree.link_count(); ++i)
@@ -306,7 +315,7 @@ MotionBounds JointRecord::short_bounds(int step, int link, double from, double t
   // the way from the base
   std::vector<int> way;
   for (int i = tree.link(link).node; i >= first_node; i = tree.node(i).parent) way.push_back(i);
-  Rates rates;
+  Rates rates = base_rates(stretch);
   for (auto at = way.rbegin(); at != way.rend(); ++at)
     rates = node_rates(*at, rates, stretch, {before, after.k->nodes});
   return link_bounds(rates, link, stretch, begin, link_point(*multibody_, *after.k, link));

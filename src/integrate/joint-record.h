@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrate/moving-base.h"
 #include "integrate/step-polynomials.h"
 #include "integrate/trajectory.h"
 #include "multibody/kinematics.h"
@@ -26,8 +27,8 @@ namespace tw {
 
 class JointRecord {
  public:
-  // `degree`: of the polynomials.
-  JointRecord(const Multibody& multibody, double start, const std::vector<double>& q,
+  // `end`: of the arc; `degree`: of the polynomials.
+  JointRecord(const Multibody& multibody, double start, double end, const std::vector<double>& q,
               const std::vector<double>& u, int degree);
 
   double start() const { return path_.start(); }
@@ -56,13 +57,15 @@ class JointRecord {
   struct Placed;
   const Placed& placed(double time, Velocities which) const;
   const Placed& place_on_path(int step, double r) const;
-  void fill(int step, double r, bool of_path, Placed& p) const;
+  void fill(int step, double r, double time, bool of_path, Placed& p) const;
+  double time_at(int step, double r) const;
   double value(const multibody::Axis& axis, int step, double r) const;
   double first_beyond(const multibody::Axis& axis, double side, double limit, int step, double r0,
                       double r1, bool& inside) const;
   struct Rates;
   struct Stretch;
   struct Ends;
+  Rates base_rates(const Stretch& stretch) const;
   Rates node_rates(int node, const Rates& parent, const Stretch& stretch, const Ends& ends) const;
   MotionBounds link_bounds(const Rates& node, int link, const Stretch& stretch, const PoseTwist& a,
                            const PoseTwist& b) const;
@@ -82,6 +85,7 @@ class JointRecord {
   static std::uint64_t next_serial();
 
   const Multibody* multibody_;
+  MovingBase base_;
   int n_;
   StepPolynomials path_;                   // displacements, velocities
   std::vector<double> nodes_;              // q

@@ -15,7 +15,10 @@ namespace {
 // Minimum-jerk timing s(u) and its slope, u in [0, 1].
 double smooth_share(double u) { return u * u * u * (10 + u * (6 * u - 15)); }
 double smooth_slope(double u) { return 30 * u * u * (1 - u) * (1 - u); }
-constexpr double smooth_peak_slope = 1.875;  // s'(1/2)
+double smooth_change(double u) { return 60 * u * (1 - u) * (1 - 2 * u); }
+constexpr double smooth_peak_slope = 1.875;               // s'(1/2)
+constexpr double smooth_peak_change = 5.773502691896258;  // s'' at (1 - 1/sqrt 3)/2
+constexpr double smooth_peak_third = 60;                  // s'''(0)
 
 // Straight line and constant axis from one keyframe to the next.
 struct Segment {
@@ -47,6 +50,39 @@ class Keyframes final : public Trajectory {
     if (!s) return {};
     const double rate = slope_at(*s, time) / s->length();
     return {rate * (s->p1 - s->p0), rate * s->turn};
+  }
+
+  Twist twist_rates(double time) const override {
+    const Segment* s = segment_at(time);
+    if (!s || !smooth_) return {};
+    const double rate =
+        smooth_change((time - s->start) / s->length()) / (s->length() * s->length());
+    return {rate * (s->p1 - s->p0), rate * s->turn};
+  }
+
+  double next_corner(double from, double to) const override {
+    if (smooth_) return never;
+    for (const Segment& s : segments_)
+      for (const double time : {s.start, s.end})
+        if (time > from) return time <= to ? time : never;
+    return never;
+  }
+
+  MotionRates most_rates(double from, double to) const override {
+    MotionRates most;
+    for (const Segment& s : segments_) {
+      if (!(s.end >= from && s.start <= to)) continue;
+      const double way = (s.p1 - s.p0).norm(), turn = s.turn.norm(), rate = 1 / s.length();
+      const auto raise = [&](double& turning, double& moving, double share) {
+        turning = std::max(turning, share * turn);
+        moving = std::max(moving, share * way);
+      };
+      raise(most.turn, most.speed, (smooth_ ? smooth_peak_slope : 1) * rate);
+      if (!smooth_) continue;
+      raise(most.turn_change, most.acceleration, smooth_peak_change * rate * rate);
+      raise(most.turn_jerk, most.jerk, smooth_peak_third * rate * rate * rate);
+    }
+    return most;
   }
 
   MotionBounds bounds(double from, double to) const override {

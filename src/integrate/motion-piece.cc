@@ -140,6 +140,31 @@ PoseTwist MotionPiece::at(double time) const {
   return {there.p, there.q, rates.v, rates.w};
 }
 
+Twist MotionPiece::twist_rates(double time) const {
+  const double s = share(time), rate = 1 / half_;
+  return {
+      rate * rate * second(x_, s),
+      rate * rate * angular_acceleration(value(theta_, s), first(theta_, s), second(theta_, s))};
+}
+
+// As below; w = J(theta) theta' with |J'| < |theta'|.
+void MotionPiece::add_rates(double from, double to, MotionRates& most) const {
+  const double s0 = share(std::max(from, start_)), s1 = share(std::min(to, end_));
+  const double m = 0.5 * (s0 + s1), d = 0.5 * (s1 - s0), rate = 1 / half_;
+  constexpr double widen = 1 + 1e-12;
+  const auto raise = [&](double& known, int order, double value) {
+    known = std::max(known, widen * std::pow(rate, order) * value);
+  };
+  raise(most.speed, 1, (first(x_, m).cwiseAbs() + d * second_x_).norm());
+  raise(most.acceleration, 2, (second(x_, m).cwiseAbs() + d * third_x_).norm());
+  raise(most.jerk, 3, third_x_.norm());
+  const double turn = first(theta_, m).norm() + d * second_theta_;
+  const double change = second(theta_, m).norm() + d * third_theta_;
+  raise(most.turn, 1, turn);
+  raise(most.turn_change, 2, change + turn * turn);
+  raise(most.turn_jerk, 3, third_theta_ + 3 * turn * change + turn * turn * turn);
+}
+
 // By the values at the middle m of [from, to] and d = half its length: f(m) +- d max|f'|.
 void MotionPiece::add_speeds(double from, double to, MotionBounds& bounds) const {
   const double s0 = share(std::max(from, start_)), s1 = share(std::min(to, end_));

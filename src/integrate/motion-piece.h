@@ -38,6 +38,9 @@ class MotionPiece {
   Pose pose(double time) const;
   Twist twist(double time) const;
   PoseTwist at(double time) const;
+  Twist twist_rates(double time) const;
+  // Raises each to what the piece does within [from, to].
+  void add_rates(double from, double to, MotionRates& most) const;
   // Widens the path, speed and turn of `bounds` by what the piece does within [from, to];
   void add_speeds(double from, double to, MotionBounds& bounds) const;
   // its acceleration and turn_change too.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/constants.h"
 #include "base/error.h"
@@ -47,6 +48,51 @@ Pose SampledMotion::pose(double time) const { return span_at(time).piece_at(time
 Twist SampledMotion::twist(double time) const { return span_at(time).piece_at(time).twist(time); }
 
 PoseTwist SampledMotion::at(double time) const { return span_at(time).piece_at(time).at(time); }
+
+Twist SampledMotion::twist_rates(double time) const {
+  return span_at(time).piece_at(time).twist_rates(time);
+}
+
+template <class Visit>
+void SampledMotion::visit_pieces(double from, double to, Visit&& visit) const {
+  for (double known = from; known <= to;) {
+    const MotionSpan& here = span_at(known);
+    if (here.failure && !(known < here.end)) return;
+    const MotionPiece& piece = here.piece_at(known);
+    if (visit(piece)) return;
+    known = piece.end();
+  }
+}
+
+MotionRates SampledMotion::most_rates(double from, double to) const {
+  MotionRates most;
+  visit_pieces(from, to, [&](const MotionPiece& piece) {
+    piece.add_rates(from, to, most);
+    return false;
+  });
+  return most;
+}
+
+double SampledMotion::next_corner(double from, double to) const {
+  const auto jumps = [](const Vec3& before, const Vec3& after) {
+    const double most = std::max(before.norm(), after.norm());
+    return (after - before).norm() > answer::motion_jump * most;
+  };
+  double corner = never, reached = from;
+  std::optional<Twist> before;
+  visit_pieces(from, to, [&](const MotionPiece& piece) {
+    const Twist begin = piece.twist(piece.start());
+    if (before && (jumps(before->v, begin.v) || jumps(before->w, begin.w))) {
+      corner = piece.start();
+      return true;
+    }
+    before = piece.twist(piece.end());
+    reached = piece.end();
+    return false;
+  });
+  const bool fails = corner == never && from < reached && reached <= to;
+  return fails ? reached : corner;
+}
 
 double SampledMotion::step_end(double time) const {
   const MotionSpan& here = span_at(time);

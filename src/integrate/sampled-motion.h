@@ -27,11 +27,19 @@ class SampledMotion : public Trajectory {
   // Acceleration and change of turning: those of the piece at `from`, and so valid to its end.
   // Where the motion fails before `to`, of what comes before.
   MotionBounds bounds(double from, double to) const override;
+  Twist twist_rates(double time) const override;
+  // Jumps that are more than how well pieces are fitted.
+  double next_corner(double from, double to) const override;
+  MotionRates most_rates(double from, double to) const override;
   // The end of the span, or where the motion fails: nothing is sampled beyond.
   double step_end(double time) const override;
 
  private:
   const MotionSpan& span_at(double time) const;
+  // Visits the pieces that meet [from, to], as far as the motion does not fail, until visit(piece)
+  // is true.
+  template <class Visit>
+  void visit_pieces(double from, double to, Visit&& visit) const;
   const MotionSpan& span(std::int64_t number) const;
 
   std::unique_ptr<const MotionProcedure> procedure_;

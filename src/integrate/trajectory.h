@@ -52,6 +52,12 @@ struct MotionBounds {
   bool velocity_may_jump() const { return acceleration.unbounded(); }
 };
 
+// Bounds of how a frame moves, each order by the next one's norm: |w|, |w'|, |w''|, |v|, |a|, |a'|.
+struct MotionRates {
+  double turn = 0, turn_change = 0, turn_jerk = 0;
+  double speed = 0, acceleration = 0, jerk = 0;
+};
+
 // The origin's path where nothing acts but a constant acceleration: what exact prediction asks for.
 struct Parabola {
   double start = 0;  // s
@@ -100,6 +106,14 @@ class Trajectory {
     const Parabola* path = ballistic();
     return path ? path->acceleration : Vec3(Vec3::Zero());
   }
+  // ---- of given motions: what hangs on such a body by a joint asks for ----
+  // The rates of the twist; at a corner the right ones.
+  virtual Twist twist_rates(double /*time*/) const { return {}; }
+  // The first time in (from, to] at which the twist jumps, or it fails; `never`: none.
+  virtual double next_corner(double /*from*/, double /*to*/) const { return never; }
+  // Between two such times.
+  virtual MotionRates most_rates(double /*from*/, double /*to*/) const { return {}; }
+
   // Why it ends, where that is an error; null: it doesn't, or nobody looked so far yet.
   virtual std::exception_ptr failure() const { return nullptr; }
   virtual Effort effort() const { return {}; }

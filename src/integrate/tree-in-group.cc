@@ -15,7 +15,7 @@ using namespace multibody;
 using rows::index;
 using rows::vec;
 
-TreeInGroup::TreeInGroup(const GroupTree& start)
+TreeInGroup::TreeInGroup(const GroupTree& start, double end)
     : start_(&start),
       n_(start.multibody->tree.nv()),
       q0_(start.state->q),
@@ -23,6 +23,7 @@ TreeInGroup::TreeInGroup(const GroupTree& start)
       tau_(index(n_)),
       u0_(index(n_)),
       rate_(index(n_)),
+      base_(*start.multibody, end),
       placed_(start.multibody->tree),
       linear_(start.multibody->tree),
       articulation_(start.multibody->tree),
@@ -41,7 +42,8 @@ std::vector<double> TreeInGroup::displaced(const double* z) const {
   return q;
 }
 
-void TreeInGroup::place(const double* z, const double* u, BodyKinematics* bodies) {
+void TreeInGroup::place(double time, const double* z, const double* u, BodyKinematics* bodies) {
+  if (base_.moves()) base_.set(time, around_);
   displace(tree(), q0_, {z, index(n_)}, q_);
   multibody::place(tree(), q_, {u, index(n_)}, around_, placed_);
   for (int link = 0; link < tree().link_count(); ++link) {

@@ -22,6 +22,7 @@
 
 #include "integrate/contact-linear.h"
 #include "integrate/group-arc.h"
+#include "integrate/moving-base.h"
 #include "multibody/derivatives.h"
 #include "multibody/forward-dynamics.h"
 
@@ -29,17 +30,19 @@ namespace tw {
 
 class TreeInGroup {
  public:
-  explicit TreeInGroup(const GroupTree& start);
+  // `end`: of the arc.
+  TreeInGroup(const GroupTree& start, double end);
 
   int freedoms() const { return n_; }
   const GroupTree& start() const { return *start_; }
+  bool moved_from_outside() const { return base_.moves(); }
   const std::vector<double>& positions() const { return q0_; }  // at the step's start
   void set_positions(const std::vector<double>& q) { q0_ = q; }
   // q0 (+) z.
   std::vector<double> displaced(const double* z) const;
 
   // The links' kinematics into their slots.
-  void place(const double* z, const double* u, BodyKinematics* bodies);
+  void place(double time, const double* z, const double* u, BodyKinematics* bodies);
   // z' and u' where `place` put it.  What is singular gives rates that are not finite.
   void evaluate(const double* z, const double* u, const BodyWrench* wrenches, double* z_rate,
                 double* u_rate);
@@ -67,6 +70,7 @@ class TreeInGroup {
   const GroupTree* start_;
   int n_;
   std::vector<double> q0_, q_, tau_, u0_, rate_;
+  MovingBase base_;
   multibody::Surroundings around_;
   multibody::Kinematics placed_;  // at the last place
   multibody::Kinematics linear_;  // at the step's start

@@ -53,23 +53,27 @@ std::unique_ptr<Body> Bodies::make(const BodyDef& def, BodyId id) const {
   return make_body(def, id, name);
 }
 
-// Where the base is in the world.
-Pose Bodies::base_of(const MultibodyDef& def) const {
-  const Pose given{def.position, def.orientation.normalized()};
-  if (def.base == no_body) return given;
+// What carries a multibody; null: nothing does.
+const Body* Bodies::carrier_of(const MultibodyDef& def) const {
+  if (def.base == no_body) return nullptr;
   const Body& base = sim_.body(def.base);
-  TW_REQUIRE(base.fixed() && !base.info.removed && !def.free,
+  TW_REQUIRE(!base.dynamic() && !base.info.removed && !def.free,
              "the base of the multibody " + def.name + " is " + base.info.name +
-                 "; expected a fixed body, 'fixed or 'free");
-  return base.motion->pose(0) * base.X_PB * given;
+                 "; expected a body that is fixed or whose motion is given, 'fixed or 'free (what "
+                 "moves freely can be the first link of a free multibody, or be held by attach!)");
+  return &base;
 }
 
 std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   sim_.require_between_runs("a multibody was added");
   Scene& scene = sim_.scene;
   MultibodyDef def = given;
-  if (def.base != no_body) {
-    const Pose base = base_of(def);
+  const double now = sim_.present.time;
+  const Body* carrier = carrier_of(def);
+  Pose in_carrier;
+  if (carrier) {
+    in_carrier = carrier->X_PB * Pose{def.position, def.orientation.normalized()};
+    const Pose base = carrier->motion->pose(now) * in_carrier;
     def.position = base.p, def.orientation = base.q;
   }
   const std::uint32_t number = static_cast<std::uint32_t>(scene.multibodies.size());
@@ -77,7 +81,11 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   for (const auto& other : scene.multibodies)
     TW_REQUIRE(other->name != multibody->name,
                "name " + multibody->name + " is taken; expected a name no other multibody has");
-  const MultibodyStatePtr joints = joints_at_birth(*multibody, def);
+  if (carrier && carrier->kinematic()) {
+    multibody->base_motion = carrier->motion;
+    multibody->base_in_motion = in_carrier;
+  }
+  const MultibodyStatePtr joints = joints_at_birth(*multibody, def, now);
   const BodyId first = static_cast<BodyId>(scene.bodies.size());
   const std::vector<BodyDef> defs = link_bodies(*multibody, def, *joints);
   // errors come before any link is there
@@ -196,6 +204,10 @@ void Bodies::remove(BodyId id) {
                                   body.multibody->name + ", expected a body that is no link");
   TW_REQUIRE(!body.info.removed,
              "body " + body.info.name + " was removed before; expected one that is there");
+  for (const auto& multibody : sim_.scene.multibodies)
+    TW_REQUIRE(!body.kinematic() || multibody->base_motion != body.motion,
+               body.info.name + " cannot be removed; it is the base of " + multibody->name +
+                   ", expected a body that carries no multibody");
   const BodyState last = body_state(body, point_at(sim_, id, sim_.present.time));
   body.info.removed = true;
   if (sim_.present.begun) discontinuities_.restart_future();

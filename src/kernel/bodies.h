@@ -41,7 +41,7 @@ class Bodies {
   void check_overlaps(const Body& body);
 
  private:
-  Pose base_of(const MultibodyDef& def) const;
+  const Body* carrier_of(const MultibodyDef& def) const;
   // The body with that id as it is defined; errors where it cannot be.
   std::unique_ptr<Body> make(const BodyDef& def, BodyId id) const;
   // `born_as`: whose id its birth has.

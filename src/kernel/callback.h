@@ -35,9 +35,10 @@ class StateView {
   virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
   virtual Vec3 applied_torque() const = 0;        // N m, world
   virtual const SlotsPtr& slots() const = 0;
-  // Of a link: its multibody and how the joints stand; null of other bodies.
+  // Of a link: its multibody and how the joints stand, and when, s; null of other bodies.
   virtual const Multibody* multibody() const { return nullptr; }
   virtual const MultibodyState* joints() const { return nullptr; }
+  virtual double joints_time() const { return 0; }
 
   // Errors: UserError where the body cannot do it (velocity of a fixed body), or a value is not
   // finite.

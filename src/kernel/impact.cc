@@ -196,7 +196,7 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   solver.clear();
   const std::uint32_t slot_a = solver.add(ImpulseSlot::of(*a.body, a.point));
   const std::uint32_t slot_b = solver.add(ImpulseSlot::of(*b.body, b.point));
-  JointImpulses joints(solver);
+  JointImpulses joints(solver, key.time);
   joints.add(a, slot_a);
   joints.add(b, slot_b);
   joints.join();

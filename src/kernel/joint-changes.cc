@@ -116,15 +116,15 @@ void check_gains(const Multibody& multibody, const MultibodyState& after) {
 
 }  // namespace
 
-void check_joints(const Multibody& multibody, const MultibodyState& before, bool may_place,
-                  MultibodyState& after) {
+void check_joints(const Multibody& multibody, const MultibodyState& before, double time,
+                  bool may_place, MultibodyState& after) {
   require_finite(multibody, after);
   check_positions(multibody, before, may_place, after);
   require_inputs(multibody.tree, after.inputs());
   check_gains(multibody, after);
   const bool torques = !after.torques.empty() && after.torques != before.torques;
   if (after.q == before.q && after.u == before.u && !torques) return;
-  const PlacedJoints placed(multibody, after);
+  const PlacedJoints placed(multibody, after, time);
   check_speeds(multibody, placed);
   if (torques) check_torques(multibody, placed, after);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "integrate/moving-base.h"
 #include "multibody/kinematics.h"
 
 namespace tw {
@@ -52,15 +53,16 @@ std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t
   TW_REQUIRE(is_finite(def.orientation) && def.orientation.squaredNorm() > 0,
              "orientation of " + name + " is zero or not finite; expected a quaternion #(w x y z)");
   const Frame base(Pose{def.position, def.orientation.normalized()});
-  return std::make_shared<Multibody>(
-      Multibody{number, name, def.place, Tree(specs_of(def, name)), base, {}, {}});
+  return std::make_shared<Multibody>(Multibody{
+      number, name, def.place, Tree(specs_of(def, name)), base, {}, {}, false, nullptr, {}});
 }
 
-MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def) {
+MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def, double now) {
   const Tree& tree = multibody.tree;
   auto joints = std::make_shared<MultibodyState>();
   joints->q.resize(static_cast<std::size_t>(tree.nq()));
   joints->u.resize(static_cast<std::size_t>(tree.nv()), 0.0);
+  joints->base = MovingBase(multibody).twist(now);
   neutral_position(tree, joints->q);
   for (const Axis& axis : tree.axes())
     if (!axis.ball)

@@ -14,9 +14,9 @@ namespace tw {
 // properties; no links; a free base with several first links or one that has a joint of its own.
 std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t number);
 
-// All joints at 0, or at the limit that is nearest to it, at rest; a free first link where the
-// multibody is put.
-MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def);
+// All joints at 0, or at the limit that is nearest to it, at rest against the base; a free first
+// link where the multibody is put.
+MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def, double now);
 
 // The links as bodies, where these joints put them.
 std::vector<BodyDef> link_bodies(const Multibody& multibody, const MultibodyDef& def,

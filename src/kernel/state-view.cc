@@ -41,7 +41,7 @@ void SuccessorView::change_joints(const std::function<void(MultibodyState&)>& ch
   MultibodyState changed = *successor_.joints;
   change(changed);
   if (changed == *successor_.joints) return;
-  check_joints(*successor_.body->multibody, *successor_.joints, may_place_, changed);
+  check_joints(*successor_.body->multibody, *successor_.joints, key_.time, may_place_, changed);
   start_arc();
   const bool placed = changed.q != successor_.joints->q;
   const bool moved = placed || changed.u != successor_.joints->u;
@@ -49,7 +49,7 @@ void SuccessorView::change_joints(const std::function<void(MultibodyState&)>& ch
   successor_.joints_changed = successor_.joints_changed || moved;
   *successor_.joints = std::move(changed);
   if (!moved) return;
-  successor_.point = PlacedJoints(*successor_.body->multibody, *successor_.joints)
+  successor_.point = PlacedJoints(*successor_.body->multibody, *successor_.joints, key_.time)
                          .link(static_cast<int>(successor_.body->link));
   state_ = body_state(*successor_.body, successor_.point);
 }

@@ -33,6 +33,7 @@ class SuccessorView : public StateView {
   const SlotsPtr& slots() const override { return successor_.data.slots; }
   const Multibody* multibody() const override { return successor_.body->multibody; }
   const MultibodyState* joints() const override { return successor_.joints.get(); }
+  double joints_time() const override { return key_.time; }
   void change_joints(const std::function<void(MultibodyState&)>& change) override;
   void set_velocity(const Vec3& v) override;
   void set_angular_velocity(const Vec3& w) override;

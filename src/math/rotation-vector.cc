@@ -9,6 +9,7 @@
 #include "math/rotation-vector.h"
 
 #include <cmath>
+#include <utility>
 
 namespace tw {
 
@@ -35,6 +36,33 @@ double inverse_jacobian_term(double squared) {
   return (1 - half * std::cos(half) / std::sin(half)) / squared;
 }
 
+// The factors of the left Jacobian,
+//   p = sum (-1)^k phi^2k/(2k+2)!,  q = sum (-1)^k phi^2k/(2k+3)!
+struct Jacobian {
+  double p, q;
+
+  explicit Jacobian(double squared) {
+    constexpr double p_series[] = {1.0 / 2,      -1.0 / 24,     1.0 / 720,
+                                   -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
+    constexpr double q_series[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
+                                   -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
+    const double phi = std::sqrt(squared);
+    const bool series = squared < near;
+    p = series ? polynomial(p_series, squared) : (1 - std::cos(phi)) / squared;
+    q = series ? polynomial(q_series, squared) : (phi - std::sin(phi)) / (squared * phi);
+  }
+  // By phi^2.
+  std::pair<double, double> slopes(double squared) const {
+    constexpr double p_series[] = {-1.0 / 24,     2.0 / 720,        -3.0 / 40320,
+                                   4.0 / 3628800, -5.0 / 479001600, 6.0 / 87178291200};
+    constexpr double q_series[] = {-1.0 / 120,     2.0 / 5040,        -3.0 / 362880,
+                                   4.0 / 39916800, -5.0 / 6227020800, 6.0 / 1307674368000};
+    if (squared < near) return {polynomial(p_series, squared), polynomial(q_series, squared)};
+    const double phi = std::sqrt(squared);
+    return {(0.5 * std::sin(phi) / phi - p) / squared, (0.5 * p - 1.5 * q) / squared};
+  }
+};
+
 }  // namespace
 
 Vec3 rotation_vector_rate(const Vec3& theta, const Vec3& w) {
@@ -43,17 +71,21 @@ Vec3 rotation_vector_rate(const Vec3& theta, const Vec3& w) {
 }
 
 Vec3 angular_velocity(const Vec3& theta, const Vec3& rate) {
-  // p = sum (-1)^k phi^2k/(2k+2)!,  q = sum (-1)^k phi^2k/(2k+3)!
-  constexpr double p_series[] = {1.0 / 2,      -1.0 / 24,     1.0 / 720,
-                                 -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
-  constexpr double q_series[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
-                                 -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
-  const double squared = theta.squaredNorm(), phi = std::sqrt(squared);
-  const bool series = squared < near;
-  const double p = series ? polynomial(p_series, squared) : (1 - std::cos(phi)) / squared;
-  const double q = series ? polynomial(q_series, squared) : (phi - std::sin(phi)) / (squared * phi);
+  const Jacobian by(theta.squaredNorm());
   const Vec3 turned = theta.cross(rate);
-  return rate + p * turned + q * theta.cross(turned);
+  return rate + by.p * turned + by.q * theta.cross(turned);
+}
+
+// The rate of each of the three terms; p' = 2 (theta.theta') dp/d(phi^2).
+Vec3 angular_acceleration(const Vec3& theta, const Vec3& rate, const Vec3& change) {
+  const double squared = theta.squaredNorm();
+  const Jacobian by(squared);
+  const auto [p_slope, q_slope] = by.slopes(squared);
+  const double growth = 2 * theta.dot(rate);
+  const Vec3 turned = theta.cross(rate), turned_rate = theta.cross(change);
+  return change + growth * p_slope * turned + by.p * turned_rate +
+         growth * q_slope * theta.cross(turned) +
+         by.q * (rate.cross(turned) + theta.cross(turned_rate));
 }
 
 Vec3 turn_between(const Quat& from, const Quat& to) {

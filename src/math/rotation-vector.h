@@ -14,6 +14,9 @@ Vec3 rotation_vector_rate(const Vec3& theta, const Vec3& w);
 // x rate), p = (1 - cos phi)/phi^2, q = (phi - sin phi)/phi^3.  Never longer than the rate.
 Vec3 angular_velocity(const Vec3& theta, const Vec3& rate);
 
+// Its rate, with theta'' = change.
+Vec3 angular_acceleration(const Vec3& theta, const Vec3& rate, const Vec3& change);
+
 // The rotation vector of the shorter way from one orientation to another, |v| <= pi.
 Vec3 turn_between(const Quat& from, const Quat& to);
 

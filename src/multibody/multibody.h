@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dynamics/body.h"
+#include "dynamics/pose-twist.h"
 #include "multibody/joint-laws.h"
 
 namespace tw {
@@ -25,6 +26,7 @@ struct MultibodyState {
   std::vector<double> torques, targets, target_velocities;
   std::vector<multibody::ServoGains> servos;
   std::vector<multibody::Stop> stops;
+  Twist base;  // what u is against: the velocity of the base's origin; 0 where it stands
 
   bool operator==(const MultibodyState&) const = default;
   multibody::Inputs inputs() const { return {torques, servos, targets, target_velocities, stops}; }
@@ -36,10 +38,13 @@ struct Multibody {
   std::string name;
   Place place;
   multibody::Tree tree;
-  Frame base;                   // where it stands, in the world
+  Frame base;                   // where it stands, or was put first, in the world
   std::vector<BodyId> links;    // ascending, one a link of the tree
   std::vector<Pose> principal;  // of each: the principal frame in the link's
   bool touches = false;         // a link has a shape
+  // Of the body that carries the base, null where that stands; and the base in what this moves.
+  std::shared_ptr<const Trajectory> base_motion;
+  Pose base_in_motion;
 };
 
 // How far a link reaches, m: its shape, what lies between its joint and its parent's, or, where

@@ -1,5 +1,6 @@
 // Scheme primitives: making multibodies and asking about them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/moving-base.h"
 #include "multibody/inverse-dynamics.h"
 #include "multibody/inverse-kinematics.h"
 #include "multibody/jacobian.h"
@@ -128,7 +129,8 @@ LinkDef to_link_def(SCM value) {
 multibody::Surroundings around(const Jointed& of) {
   multibody::Surroundings result;
   result.gravity = of.world.gravity();
-  result.base = of.multibody.base;
+  const double now = is_view(of.object) ? to_view(of.object).joints_time() : of.world.time();
+  MovingBase(of.multibody).set(now, result);
   return result;
 }
 
@@ -181,7 +183,7 @@ MultibodyDef to_root_def(SCM world, SCM name, SCM base, SCM position, SCM orient
   } else {
     const std::string kind = scm_is_symbol(base) ? to_symbol_name(base, "base") : "";
     if (kind != "free" && kind != "fixed")
-      throw BadValue{"base", base, "'fixed, 'free, or a fixed body"};
+      throw BadValue{"base", base, "'fixed, 'free, or a body that is fixed or kinematic"};
     def.free = kind == "free";
   }
   if (scm_is_true(position)) def.position = to_vec3(position, "position");

@@ -21,6 +21,11 @@ Pose pose_of(const BodyState& state) { return {state.position, state.orientation
 
 // What is fixed to the base becomes a body that the robot stands on.
 void stand_on(World& world, const BodyDef& stand, MultibodyDef& def) {
+  TW_REQUIRE(def.base == no_body || world.body(def.base).kind == BodyKind::fixed,
+             "the link " + stand.name + " of " + def.name +
+                 " has no mass, and would be fixed to a body that moves, " +
+                 world.body(def.base).name +
+                 "; expected #:base to be fixed, or <inertial> with a mass above 0");
   Pose place{def.position, def.orientation.normalized()};
   if (def.base != no_body) place = pose_of(world.state(def.base)) * place;
   BodyDef body = stand;

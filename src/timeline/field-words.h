@@ -113,6 +113,9 @@ void each_word(const MultibodyStatePtr& joints, Put&& put) {
     each_word(*row, put);
   each_word(joints->servos, put);
   each_word(joints->stops, put);
+  if (joints->base == Twist()) return;
+  each_word(joints->base.v, put);
+  each_word(joints->base.w, put);
 }
 template <class Put>
 void each_word(const std::shared_ptr<const Report>& report, Put&& put) {

@@ -214,6 +214,16 @@
   (test-assert "and throws" (> (at "stone" 0) 5))
   (test-assert "up to its stop" (close? 1.45 (joint-position (find-multibody "catapult") 'arm) 1e-3)))
 
+;; the trolley stops half a period after it started at v: the ball passes it at 2 v
+(in-world ()
+  (load-scene-named "gallery/crane" '((courses . "1")))
+  (run! #:until 0.4)
+  (test-approximate "the crane's ball hangs" -2.6 (at "rope/ball" 0) 1e-6)
+  (run! #:until 2)
+  (test-assert "and runs ahead of the trolley" (> (vector-ref (velocity (find-body "rope/ball")) 0) 3))
+  (run! #:until 3)
+  (test-assert "then swings about where it stopped" (< -1.5 (at "rope/ball" 0) 1.7)))
+
 (in-world ()
   (load-scene-named "gallery/gripper" '((cubes . "2")))
   (run! #:until 4)

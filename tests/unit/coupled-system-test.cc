@@ -24,8 +24,8 @@ Bond random_bond(Random& random, bool holds) {
 // A tree of `links` becomes the next one of the arc, its links the next members.
 void add_tree(GroupStart& start, Random& random, int links) {
   const TreeState drawn(random_links(random, links, true), random, false);
-  auto multibody =
-      std::make_shared<Multibody>(Multibody{0, "tree", {}, drawn.tree, Frame(), {}, {}, false});
+  auto multibody = std::make_shared<Multibody>(
+      Multibody{0, "tree", {}, drawn.tree, Frame(), {}, {}, false, nullptr, {}});
   auto state = std::make_shared<MultibodyState>();
   state->q = drawn.q;
   state->u = drawn.u;

@@ -264,7 +264,8 @@ TEST_P(GroupSystemTest, time_slope_is_that_of_the_outside_motion_to_1e_6) {
     Bench bench(start);
     Eigen::VectorXd f(bench.y.size()), slope(bench.y.size());
     bench.system.linearise(start.time, bench.y.data(), bench.scratch, f.data());
-    bench.system.set_time_slope(start.time, 0.01, bench.scratch, slope.data());
+    bench.system.set_time_slope(start.time, 0.01, bench.y.data(), f.data(), bench.scratch,
+                                slope.data());
     const double d = 1e-5;
     const Eigen::VectorXd expected =
         (bench.slope(start.time + d, bench.y) - bench.slope(start.time - d, bench.y)) / (2 * d);

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "integrate/keyframes.h"
 #include "multibody/coordinates.h"
+#include "support/motions.h"
 #include "support/random-tree.h"
+#include "support/scene.h"
 
 namespace tw::test {
 namespace {
@@ -14,8 +17,8 @@ using namespace multibody;
 
 // A multibody of random links, each with its principal frame at its centre of mass.
 Multibody random_multibody(Random& random, int links) {
-  Tree tree(random_links(random, links, false));
-  Multibody multibody{0, "tree", {}, tree, {}, {}, {}, true};
+  const Tree tree(random_links(random, links, false));
+  Multibody multibody{0, "tree", {}, tree, {}, {}, {}, true, nullptr, {}};
   for (int i = 0; i < links; ++i) {
     multibody.links.push_back(static_cast<BodyId>(i));
     multibody.principal.push_back({tree.link(i).center_of_mass, random_attitude(random)});
@@ -31,7 +34,7 @@ JointRecord random_record(Random& random, const Multibody& multibody, Numbers& n
   const auto n = static_cast<std::size_t>(tree.nv());
   Numbers q(static_cast<std::size_t>(tree.nq()));
   neutral_position(tree, q);
-  JointRecord record(multibody, 0, q, Numbers(n), degree);
+  JointRecord record(multibody, 0, never, q, Numbers(n), degree);
   double time = 0;
   for (int step = 0; step < steps; ++step) {
     const double length = random.real(0.05, 0.2);
@@ -52,10 +55,11 @@ JointRecord random_record(Random& random, const Multibody& multibody, Numbers& n
   return record;
 }
 
-TEST(JointRecord, bounds_hold) {
-  Random random(7);
+void expect_bounds(Random& random, const TrajectoryPtr& base) {
   for (int trial = 0; trial < 60; ++trial) {
-    const Multibody multibody = random_multibody(random, 5);
+    Multibody multibody = random_multibody(random, 5);
+    multibody.base_motion = base;
+    multibody.base_in_motion = {random_vector(random, 0.5), random_attitude(random)};
     Numbers nodes;
     const JointRecord record = random_record(random, multibody, nodes);
     for (int i = 0; i < 12; ++i) {
@@ -91,6 +95,23 @@ TEST(JointRecord, bounds_hold) {
       }
     }
   }
+}
+
+TEST(JointRecord, bounds_hold) {
+  Random random(7);
+  expect_bounds(random, nullptr);
+}
+
+TEST(JointRecord, bounds_hold_on_bases_that_move) {
+  Random random(8);
+  std::vector<Keyframe> frames;
+  for (int i = 0; i < 4; ++i)
+    frames.push_back({0.3 * i - 0.1, random_vector(random, 0.3), random_attitude(random)});
+  expect_bounds(random, make_keyframes(frames, true));
+  const Sampled circling([](double t) {
+    return Pose{{std::cos(3 * t), std::sin(3 * t), 0}, rotation_by(Vec3(0, std::sin(4 * t), t))};
+  });
+  expect_bounds(random, circling.motion);
 }
 
 }  // namespace

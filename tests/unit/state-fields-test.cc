@@ -49,7 +49,8 @@ void change(std::shared_ptr<const Report>& report) {
   report = std::make_shared<const Report>(Report{Collision{}});
 }
 void change(MultibodyStatePtr& joints) {
-  joints = std::make_shared<const MultibodyState>(MultibodyState{{0.5}, {0}, {}, {}, {}, {}, {}});
+  joints =
+      std::make_shared<const MultibodyState>(MultibodyState{{0.5}, {0}, {}, {}, {}, {}, {}, {}});
 }
 // of another group than the first member's: its own fields are compared once
 void change(std::shared_ptr<Group>& group) { group = std::make_shared<Group>(); }

@@ -1,0 +1,75 @@
+// The base of a multibody.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "integrate/moving-base.h"
+
+#include <cmath>
+
+#include "multibody/forward-dynamics.h"
+
+namespace tw {
+
+using namespace multibody;
+
+double MovingBase::inside(double time) const {
+  return time < end_ ? time : std::nextafter(end_, -never);
+}
+
+void MovingBase::set(double time, Surroundings& around) const {
+  around.base = multibody_->base;
+  if (!moves()) return;
+  const Pose body = motion().pose(time);
+  const Twist t = motion().twist(inside(time)), rate = motion().twist_rates(inside(time));
+  const Vec3 arm = body.q * multibody_->base_in_motion.p;
+  around.base = Frame(body * multibody_->base_in_motion);
+  around.v = t.v + t.w.cross(arm);
+  around.w = t.w;
+  around.a = rate.v + rate.w.cross(arm) + t.w.cross(t.w.cross(arm));
+  around.alpha = rate.w;
+}
+
+Twist MovingBase::twist(double time) const {
+  if (!moves()) return {};
+  Surroundings around;
+  set(time, around);
+  return {around.v, around.w};
+}
+
+Twist MovingBase::twist_before(double time) const { return twist(std::nextafter(time, -never)); }
+
+MotionRates MovingBase::most_rates(double from, double to) const {
+  if (!moves()) return {};
+  MotionRates most = motion().most_rates(from, to);
+  const double arm = multibody_->base_in_motion.p.norm(), w = most.turn, change = most.turn_change;
+  most.speed += arm * w;
+  most.acceleration += arm * (change + w * w);
+  most.jerk += arm * (most.turn_jerk + 3 * change * w + w * w * w);
+  return most;
+}
+
+double next_corner_of(const Multibody& multibody, double from, double to) {
+  return multibody.base_motion ? multibody.base_motion->next_corner(from, to) : never;
+}
+
+void follow_base(const Multibody& multibody, double time, MultibodyState& joints) {
+  const MovingBase base(multibody);
+  if (!base.moves()) return;
+  const Twist now = base.twist(time);
+  Surroundings jump;
+  jump.base = multibody.base;
+  base.set(time, jump);
+  jump.v = jump.w = Vec3::Zero();
+  jump.a = now.v - joints.base.v;
+  jump.alpha = now.w - joints.base.w;
+  joints.base = now;
+  if (jump.a.isZero(0) && jump.alpha.isZero(0)) return;
+  const Tree& tree = multibody.tree;
+  const std::vector<double> none(joints.u.size());
+  std::vector<double> du(none);
+  Kinematics placed(tree);
+  Articulation factors(tree);
+  place(tree, joints.q, none, jump, placed);
+  if (!forward_dynamics(tree, placed, none, factors, du)) return;
+  for (std::size_t k = 0; k < du.size(); ++k) joints.u[k] += du[k];
+}
+
+}  // namespace tw
