@@ -123,11 +123,14 @@ Progress GroupEvents::check(ProcessId id) {
   ++counters_.group_checks;
 
   // only after the claims of kinematic bodies, and those of all that take part, have reached its
-  // time
+  // time; what an error has stopped before claims no more
   bool claimed = false;
-  for (const BodyId mover : sim_.kinematic)
-    for (; sim_.process(sim_.scene.body(mover)).claim.time < key.time; claimed = true)
-      claims_.claim_window(sim_.body(mover));
+  for (const BodyId mover : sim_.kinematic) {
+    const Body& body = sim_.body(mover);
+    const bool stopped = sim_.graph.tail(body.process)->error != nullptr;
+    for (; !stopped && sim_.process(body).claim.time < key.time; claimed = true)
+      claims_.claim_window(body);
+  }
   if (claimed) return Progress::try_again;
   const bool early = when < group->next_check;
   const auto all_concerned = [&] {

@@ -324,4 +324,15 @@
   (run! #:until 1)
   (test-equal "a scene without callbacks never calls Guile" 0 (assq-ref (statistics) 'guile_calls)))
 
+;; a body whose motion is given stops, and what lies in contact elsewhere does not wait for it
+(in-world ()
+  (ground)
+  (let ((mover (add-body! #:name "mover" #:shape (box 0.1 0.1 0.1)
+                          #:motion (keyframes '((0 #(0 0 3)) (1 #(0.2 0 3)))))))
+    (for-each (lambda (z) (add-body! #:shape (box 0.2 0.2 0.2) #:position (vector 0 0 z))) '(0.1 0.31))
+    (run-for! 0.1)
+    (add-callback! mover (lambda (time view) (error "no further")))
+    (test-message "an error of a kinematic body's callback" "no further" (run-for! 0.7))
+    (test-approximate "ends the run there" 0.1 (world-time) 1e-12)))
+
 (test-end "callbacks")

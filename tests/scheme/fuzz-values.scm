@@ -171,7 +171,7 @@
     ((multibody) (if (chance 0.8) `(a-multibody ,(draw 3)) `(a-kept 'view ,(draw 20))))
     ((joint) (a-joint))
     ((at point at-a at-b) (a-vector))
-    ((base) (one-of '('fixed 'free (a-body 0))))
+    ((base) (one-of `('fixed 'free (a-body ,(draw 6)))))
     ((limits) (one-of '('(-1 1) '(0 0.5) '((-1 1) (0 2)) '(1 -1) #(-3 3))))
     ((target) (one-of-these (a-vector) (short (uniform -2 2)) (a-quaternion) #(0.1 0.2)))
     ((target-velocity) (one-of-these (short (uniform -2 2)) (a-vector) #(0.1 0.2)))
@@ -304,7 +304,7 @@
 (define (a-body-to-add number)
   (case number
     ((0) `(add-body! #:shape (half-space #(0 0 1) -1) #:fixed? #t #:material 'steel))
-    ((1) `(add-multibody! #:name 'arm #:position #(0 -3 0.5)
+    ((1) `(add-multibody! #:name 'arm #:position #(0 -3 0.5) #:base ,(a-base)
             (link 'arm-1 #:joint ,(a-joint) #:shape (box 0.3 0.2 0.1)
               (link 'arm-2 #:joint ,(a-joint) #:shape (placed (sphere 0.1) #:position #(0.4 0 0))))))
     ;; strikes the ground within 0.01 s of any run
@@ -314,6 +314,16 @@
        ((name . arguments)
         (cons name (with-position (vector (* 2.2 (modulo number 3)) (* 2.2 (quotient number 3)) 0)
                      arguments)))))))
+
+;; stands, or goes to and fro with jumps
+(define (a-base)
+  (if (chance 0.5)
+      ''fixed
+      `(add-body! #:shape (box 0.1 0.1 0.1)
+                  #:motion (keyframes '((0 #(0 0 0)) (,(uniform 0.01 0.3) #(0.2 0 0.1))
+                                        (0.4 #(0 0 0) ,(one-of '(#(1 0 0 0) #(0.8 0 0.6 0))))
+                                        (,(uniform 0.5 2) #(0 0.3 0)))
+                                      #:smooth? ,(chance 0.3)))))
 
 (define (with-position position arguments)
   (match arguments
