@@ -201,6 +201,13 @@ void GroupArc::pose(int member, double time, Vec3& x, Quat& q) const {
   q = data_->record.attitude(member, at);
 }
 
+Vec3 GroupArc::position(int member, double time) const {
+  const double at = data_->at(time);
+  if (const JointRecord* joints = data_->joints_of(member))
+    return joints->pose(data_->link_of(member), at).p;
+  return data_->record.position(member, at);
+}
+
 void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) const {
   // at the start too the rates are those of a step
   if (const JointRecord* joints = data_->joints_of(member); joints && data_->has_steps()) {

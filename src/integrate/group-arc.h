@@ -178,8 +178,9 @@ class GroupArc : public Counted<GroupArc> {
   // All of the following look only: a time must not lie past what was completed.  Beyond its end,
   // and where it failed, an arc stands still.
   GroupSample evaluate(int member, double time) const;
-  // Position and attitude alone: cheaper.
+  // Position and attitude alone, or the position: cheaper.
   void pose(int member, double time, Vec3& x, Quat& q) const;
+  Vec3 position(int member, double time) const;
   // Rates of the pose's interpolant itself, continuous in time (differ from v and w by the
   // integration error, and at the ends of steps by rounding): for bounds.
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;

@@ -16,6 +16,8 @@ Pose MemberTrajectory::pose(double time) const {
   return pose;
 }
 
+Vec3 MemberTrajectory::center(double time) const { return arc_->position(member_, time); }
+
 Twist MemberTrajectory::twist(double time) const {
   Twist rates;
   arc_->pose_rates(member_, time, rates.v, rates.w);

@@ -15,6 +15,7 @@ class MemberTrajectory final : public Trajectory {
  public:
   MemberTrajectory(const GroupArc& arc, int member) : arc_(&arc), member_(member) {}
   Pose pose(double time) const override;
+  Vec3 center(double time) const override;
   Twist twist(double time) const override;
   PoseTwist at(double time) const override;
   MotionBounds bounds(double from, double to) const override;

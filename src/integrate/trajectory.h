@@ -119,7 +119,7 @@ class Trajectory {
   virtual Effort effort() const { return {}; }
 
   Frame frame(double time) const { return Frame(pose(time)); }
-  Vec3 center(double time) const {
+  virtual Vec3 center(double time) const {
     const Parabola* path = ballistic();
     return path ? path->position(time) : pose(time).p;
   }
