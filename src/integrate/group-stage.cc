@@ -12,6 +12,10 @@ using namespace rows;
 
 namespace {
 
+// Of a first derivative, forwards, to the fourth order: the arc may begin at a corner of what
+// moves.
+constexpr double forward_weights[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
+
 // Of a wrench by the change of a body.
 Vec6 change_of(const WrenchDerivative& by, const BodyChange& change) {
   Vec6 pose, twist;
@@ -45,11 +49,6 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
     pair.derivative =
         bond->derivative(point_of(a, y, s.bodies[index(a)]), point_of(b, y, s.bodies[index(b)]));
   }
-}
-
-// Forwards, to the fourth order: the arc may begin at a corner of what moves.
-namespace {
-constexpr double forward_weights[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
 }
 
 void GroupSystem::difference_slopes(double time, double step, const double* y, const double* slope,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "integrate/moving-base.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "multibody/forward-dynamics.h"
@@ -17,8 +18,16 @@ double MovingBase::inside(double time) const {
 void MovingBase::set(double time, Surroundings& around) const {
   around.base = multibody_->base;
   if (!moves()) return;
-  const Pose body = motion().pose(time);
-  const Twist t = motion().twist(inside(time)), rate = motion().twist_rates(inside(time));
+  const double known = std::min(time, end_), beyond = time - known;
+  Pose body = motion().pose(known);
+  Twist t = motion().twist(inside(known));
+  const Twist rate = motion().twist_rates(inside(known));
+  if (beyond > 0) {
+    body.p += beyond * (t.v + 0.5 * beyond * rate.v);
+    body.q = rotation_by(beyond * (t.w + 0.5 * beyond * rate.w)) * body.q;
+    t.v += beyond * rate.v;
+    t.w += beyond * rate.w;
+  }
   const Vec3 arm = body.q * multibody_->base_in_motion.p;
   around.base = Frame(body * multibody_->base_in_motion);
   around.v = t.v + t.w.cross(arm);
@@ -55,7 +64,6 @@ void follow_base(const Multibody& multibody, double time, MultibodyState& joints
   if (!base.moves()) return;
   const Twist now = base.twist(time);
   Surroundings jump;
-  jump.base = multibody.base;
   base.set(time, jump);
   jump.v = jump.w = Vec3::Zero();
   jump.a = now.v - joints.base.v;

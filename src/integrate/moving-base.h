@@ -17,7 +17,8 @@ namespace tw {
 
 class MovingBase {
  public:
-  // `end`: of an arc on it; at a corner there what comes before counts.
+  // `end`: of an arc on it, for steps that reach beyond: at a corner there what comes before
+  // counts, and goes on by its accelerations.
   explicit MovingBase(const Multibody& multibody, double end = never)
       : multibody_(&multibody), end_(end) {}
 

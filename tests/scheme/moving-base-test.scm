@@ -75,6 +75,22 @@
       (run! #:until 4)
       (test-approximate "then turns by itself" u (joint-velocity arm 'bob) 1e-9))))
 
+;; a base that turns, and stops: what is left about the joint is the momentum about it
+(in-world ()
+  (scene #:accuracy 1e-9 #:gravity #(0 0 0))
+  (let* ((base (driven `((0 #(0 0 0)) (0.5 #(0 0 0) ,(rotation #(0 1 0) 1))
+                         (1 #(0 0 0) ,(rotation #(0 1 0) 1)))))
+         (arm (add-multibody! #:base base #:position #(0.3 0 0) (bob-link 0.4)))
+         (bob (link-body arm 'bob)))
+    (run! #:until 0.49999999)
+    (let* ((u (joint-velocity arm 'bob)) (pivot (position bob))
+           (way (rotate (orientation bob) #(0 0 -0.4)))
+           (moment (vector-ref (cross way (cross #(0 2 0) pivot)) 1)))
+      (test-assert "it swings on the turning base" (> (abs u) 0.1))
+      (run! #:until 0.50000001)
+      (test-approximate "and on when that stops" (+ 2 u (/ moment (+ 0.16 (/ 1e-3 2))))
+        (joint-velocity arm 'bob) 1e-6))))
+
 ;; a kink of a procedure is found
 (in-world ()
   (scene #:gravity #(0 0 0) #:accuracy 1e-7)
