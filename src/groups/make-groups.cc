@@ -100,10 +100,14 @@ void start_bonds(const Regrouping& work, const Group& group, GroupStart& start) 
 void start_arc(Regrouping& work, Group& group) {
   GroupStart start;
   start.time = work.now();
-  start.end = group.next_check;
   start.first_step = group.first_step;
   StartOfMembers members(work.scene(), start);
   start_members(work, group, members);
+  // where a base jumps the joints go on with other velocities
+  for (const GroupTree& tree : start.trees)
+    group.next_check =
+        std::min(group.next_check, next_corner_of(*tree.multibody, start.time, group.next_check));
+  start.end = group.next_check;
   start_bonds(work, group, start);
 
   // >= 0: a member, else the complement of an outside body's number
@@ -204,18 +208,6 @@ double after_next_call(const Regrouping& work, const Group& group) {
   return next_check_time(group.birth, work.now() + period, call_check_grid(period));
 }
 
-// Where the base of a multibody jumps the joints go on with other velocities.
-double next_base_corner(const Regrouping& work, const Group& group, double end) {
-  const Multibody* last = nullptr;
-  for (const ProcessId member : group.members) {
-    const Multibody* multibody = work.successor_of(member)->body->multibody;
-    if (!multibody || multibody == last) continue;
-    last = multibody;
-    end = std::min(end, next_corner_of(*multibody, work.now(), end));
-  }
-  return end;
-}
-
 // Checks stay on the grid they are on, so that those of neighbours meet; the one that is due stays
 // due where there is something to look at, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
@@ -230,7 +222,6 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
     group.next_check = std::min(group.next_check, after_next_call(work, group));
   else if (before && !finds_contacts(work.cause) && before->next_check >= now)
     group.next_check = std::min(group.next_check, before->next_check);
-  group.next_check = next_base_corner(work, group, group.next_check);
 }
 
 // The step to be tried first: that which the arc before would have gone on with, if the same bodies

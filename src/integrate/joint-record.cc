@@ -37,6 +37,21 @@ void velocities_of(const Tree& tree, const double* z, const double* rate, double
   }
 }
 
+// With velocities at the ends of a stretch: a function is nowhere further from its mean rate than
+// half the length times the bound of the next.
+void narrow(MotionRates& rates, const Vec3& v0, const Vec3& w0, const Vec3& v1, const Vec3& w1,
+            double length) {
+  const double half = 0.5 * length;
+  const auto lessen = [&](double& value, double& change, double next, const Vec3& x0,
+                          const Vec3& x1) {
+    const double most = std::max(x0.norm(), x1.norm());
+    change = std::min(change, ((x1 - x0).norm() + rounding * most) / length + half * next);
+    value = std::min(value, most + half * change);
+  };
+  lessen(rates.turn, rates.turn_change, rates.turn_jerk, w0, w1);
+  lessen(rates.speed, rates.acceleration, rates.jerk, v0, v1);
+}
+
 }  // namespace
 
 PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) {
@@ -47,32 +62,6 @@ PoseTwist link_point(const Multibody& multibody, const Kinematics& k, int link) 
   return {frame.p + arm, (Quat(frame.R) * principal.q).normalized(), twist.v + twist.w.cross(arm),
           twist.w};
 }
-
-// Over a stretch.
-struct JointRecord::Rates : MotionRates {
-  // Of a point at this distance from the origin.
-  Rates at(double arm) const {
-    return {turn,
-            turn_change,
-            turn_jerk,
-            speed + turn * arm,
-            acceleration + (turn_change + turn * turn) * arm,
-            jerk + (turn_jerk + 3 * turn_change * turn + turn * turn * turn) * arm};
-  }
-  // With velocities at the ends of the stretch: a function is nowhere further from its mean rate
-  // than half the length times the bound of the next.
-  void narrow(const Vec3& v0, const Vec3& w0, const Vec3& v1, const Vec3& w1, double length) {
-    const double half = 0.5 * length;
-    const auto lessen = [&](double& value, double& change, double next, const Vec3& x0,
-                            const Vec3& x1) {
-      const double most = std::max(x0.norm(), x1.norm());
-      change = std::min(change, ((x1 - x0).norm() + rounding * most) / length + half * next);
-      value = std::min(value, most + half * change);
-    };
-    lessen(turn, turn_change, turn_jerk, w0, w1);
-    lessen(speed, acceleration, jerk, v0, v1);
-  }
-};
 
 // From r0 to r1 of a step.
 struct JointRecord::Stretch {
@@ -196,13 +185,12 @@ Twist JointRecord::rates(int link, double time) const {
   return {point.v, point.w};
 }
 
-JointRecord::Rates JointRecord::base_rates(const Stretch& stretch) const {
-  if (!base_.moves()) return {};
-  return {base_.most_rates(time_at(stretch.step, stretch.r0), time_at(stretch.step, stretch.r1))};
+MotionRates JointRecord::base_rates(const Stretch& stretch) const {
+  return base_.most_rates(time_at(stretch.step, stretch.r0), time_at(stretch.step, stretch.r1));
 }
 
-JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Stretch& stretch,
-                                           const Ends& ends) const {
+MotionRates JointRecord::node_rates(int i, const MotionRates& parent, const Stretch& stretch,
+                                    const Ends& ends) const {
   const Node& node = multibody_->tree.node(i);
   using Three = std::array<double, 3>;  // of orders 1, 2, 3
   const auto rate = [&](int dof) {
@@ -219,9 +207,9 @@ JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Str
     const auto [first, second, third] = all(dof);
     return Three{first, second + first * first, third + 3 * first * second + first * first * first};
   };
-  const auto narrowed = [&](Rates rates) {
+  const auto narrowed = [&](MotionRates rates) {
     const NodeMotion &a = ends.begin[index(i)], &b = ends.end[index(i)];
-    rates.narrow(a.V.v + a.V.w.cross(a.r), a.V.w, b.V.v + b.V.w.cross(b.r), b.V.w, stretch.length);
+    narrow(rates, a.V.v + a.V.w.cross(a.r), a.V.w, b.V.v + b.V.w.cross(b.r), b.V.w, stretch.length);
     return rates;
   };
   if (node.kind == NodeKind::floating) {
@@ -235,14 +223,14 @@ JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Str
       return (nodes[index(i)].r - nodes[index(node.parent)].r).norm();
     };
     const auto [first, second, third] = rate(node.u);
-    Rates rates =
+    MotionRates rates =
         parent.at(std::max(arm(ends.begin), arm(ends.end)) + 0.5 * stretch.length * first);
     rates.speed += first;
     rates.acceleration += second + 2 * turn * first;
     rates.jerk += third + 3 * turn * second + 3 * (change + turn * turn) * first;
     return narrowed(rates);
   }
-  Rates rates = parent.at(node.X_PF.p.norm());
+  MotionRates rates = parent.at(node.X_PF.p.norm());
   const auto w = node.kind == NodeKind::ball ? turning(node.u) : rate(node.u);
   rates.turn += w[0];
   rates.turn_change += w[1] + turn * w[0];
@@ -251,12 +239,12 @@ JointRecord::Rates JointRecord::node_rates(int i, const Rates& parent, const Str
 }
 
 // The link moves from a to b.
-MotionBounds JointRecord::link_bounds(const Rates& node, int link, const Stretch& stretch,
+MotionBounds JointRecord::link_bounds(const MotionRates& node, int link, const Stretch& stretch,
                                       const PoseTwist& a, const PoseTwist& b) const {
   const Link& fixed = multibody_->tree.link(link);
   const double length = stretch.length;
-  Rates rates = node.at((fixed.X_NL * fixed.center_of_mass).norm());
-  rates.narrow(a.v, a.w, b.v, b.w, length);
+  MotionRates rates = node.at((fixed.X_NL * fixed.center_of_mass).norm());
+  narrow(rates, a.v, a.w, b.v, b.w, length);
   MotionBounds bounds;
   bounds.speed = rates.speed;
   bounds.turn = rates.turn;
@@ -281,7 +269,7 @@ void JointRecord::keep_bounds(int step) {
   const double length = path_.length(step) / parts;
   std::vector<NodeMotion> before, after;
   std::vector<PoseTwist> links_before(multibody_->links.size()), links_after(links_before);
-  std::vector<Rates> rates(index(tree.node_count()));
+  std::vector<MotionRates> rates(index(tree.node_count()));
   const auto place_at = [&](double r, std::vector<NodeMotion>& nodes,
                             std::vector<PoseTwist>& links) {
     const Placed& p = place_on_path(step, r);
@@ -315,7 +303,7 @@ MotionBounds JointRecord::short_bounds(int step, int link, double from, double t
   // the way from the base
   std::vector<int> way;
   for (int i = tree.link(link).node; i >= first_node; i = tree.node(i).parent) way.push_back(i);
-  Rates rates = base_rates(stretch);
+  MotionRates rates = base_rates(stretch);
   for (auto at = way.rbegin(); at != way.rend(); ++at)
     rates = node_rates(*at, rates, stretch, {before, after.k->nodes});
   return link_bounds(rates, link, stretch, begin, link_point(*multibody_, *after.k, link));

@@ -62,13 +62,13 @@ class JointRecord {
   double value(const multibody::Axis& axis, int step, double r) const;
   double first_beyond(const multibody::Axis& axis, double side, double limit, int step, double r0,
                       double r1, bool& inside) const;
-  struct Rates;
   struct Stretch;
   struct Ends;
-  Rates base_rates(const Stretch& stretch) const;
-  Rates node_rates(int node, const Rates& parent, const Stretch& stretch, const Ends& ends) const;
-  MotionBounds link_bounds(const Rates& node, int link, const Stretch& stretch, const PoseTwist& a,
-                           const PoseTwist& b) const;
+  MotionRates base_rates(const Stretch& stretch) const;
+  MotionRates node_rates(int node, const MotionRates& parent, const Stretch& stretch,
+                         const Ends& ends) const;
+  MotionBounds link_bounds(const MotionRates& node, int link, const Stretch& stretch,
+                           const PoseTwist& a, const PoseTwist& b) const;
   void keep_bounds(int step);
   MotionBounds short_bounds(int step, int link, double from, double to) const;
   const MotionBounds& kept_bounds(int part, int link) const {

@@ -47,12 +47,7 @@ Twist MovingBase::twist_before(double time) const { return twist(std::nextafter(
 
 MotionRates MovingBase::most_rates(double from, double to) const {
   if (!moves()) return {};
-  MotionRates most = motion().most_rates(from, to);
-  const double arm = multibody_->base_in_motion.p.norm(), w = most.turn, change = most.turn_change;
-  most.speed += arm * w;
-  most.acceleration += arm * (change + w * w);
-  most.jerk += arm * (most.turn_jerk + 3 * change * w + w * w * w);
-  return most;
+  return motion().most_rates(from, to).at(multibody_->base_in_motion.p.norm());
 }
 
 double next_corner_of(const Multibody& multibody, double from, double to) {

@@ -23,7 +23,7 @@ class MovingBase {
       : multibody_(&multibody), end_(end) {}
 
   bool moves() const { return multibody_->base_motion != nullptr; }
-  // All but gravity; what stands is set once.
+  // All but gravity.
   void set(double time, multibody::Surroundings& around) const;
   // As `set` has it; and just before.
   Twist twist(double time) const;

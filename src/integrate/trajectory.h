@@ -56,6 +56,16 @@ struct MotionBounds {
 struct MotionRates {
   double turn = 0, turn_change = 0, turn_jerk = 0;
   double speed = 0, acceleration = 0, jerk = 0;
+
+  // Of a point fixed in the frame, at this distance from its origin.
+  MotionRates at(double arm) const {
+    return {turn,
+            turn_change,
+            turn_jerk,
+            speed + turn * arm,
+            acceleration + (turn_change + turn * turn) * arm,
+            jerk + (turn_jerk + 3 * turn_change * turn + turn * turn * turn) * arm};
+  }
 };
 
 // The origin's path where nothing acts but a constant acceleration: what exact prediction asks for.
