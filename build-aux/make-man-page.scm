@@ -1,8 +1,9 @@
-;; Makes the manual page: guile -s make-man-page.scm TEMPLATE VERSION EXAMPLES >timewarp.1
+;; Makes a manual page: guile -s make-man-page.scm TEMPLATE VERSION EXAMPLES MODULE >timewarp.1
 ;;
-;; The options come from the table that the program itself reads, so that the page cannot go stale.
+;; The options come from the table that the program itself reads, that of (timewarp MODULE), so
+;; that the page cannot go stale.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
-(use-modules (timewarp options) (srfi srfi-1) (ice-9 match) (ice-9 rdelim))
+(use-modules (srfi srfi-1) (ice-9 match) (ice-9 rdelim))
 
 ;; a hyphen is a minus, which can be copied; a backslash or a dot at the beginning is text
 (define (escape text)
@@ -21,12 +22,12 @@
     ((word) (format #f "[=\\fI~a\\fR]" (escape word)))
     (word (format #f "~a\\fI~a\\fR" (if long? "=" " ") (escape word)))))
 
-(define (print-options)
+(define (print-options options)
   (for-each (match-lambda
               ((names argument help)
                (format #t ".TP~%~a~a~%~a~%" (string-join (map name-text names) ", ")
                        (argument-text argument (any string? names)) (escape help))))
-            (documented-options)))
+            options))
 
 (define (replace-words line words)
   (match words
@@ -41,14 +42,16 @@
 
 (setlocale LC_ALL "C.UTF-8")
 (match (command-line)
-  ((_ template version examples)
+  ((_ template version examples module)
    (with-input-from-file template
      (lambda ()
        (let loop ()
          (let ((line (read-line)))
            (unless (eof-object? line)
              (if (string=? line "@OPTIONS@")
-                 (print-options)
+                 (print-options
+                  ((module-ref (resolve-interface (list 'timewarp (string->symbol module)))
+                               'documented-options)))
                  (format #t "~a~%" (replace-words line `(("@VERSION@" . ,version)
                                                          ("@EXAMPLES@" . ,(escape examples))))))
              (loop))))))))

@@ -64,6 +64,14 @@ check_tree() {
   claim "modules elsewhere on GUILE_LOAD_PATH are not mixed with its own" \
     bare GUILE_LOAD_PATH="$stage/strange" "$1/bin/timewarp" -c '(use-modules (timewarp vectors))'
 
+  if bare sh -c 'command -v parallel' >/dev/null; then
+    rm -rf "$stage/sweep"
+    bare "$1/bin/timewarp-sweep" "$(find "$1" -name bouncing-ball.scm)" --out="$stage/sweep" \
+      --seed=1,2 --until=1 --hash >"$stage/out" 2>&1
+    claim "a sweep runs it, by the program beside it" \
+      [ "$(grep -c "\"hash\":\"$hash\"" "$stage/sweep/runs.jsonl")" = 2 ]
+  fi
+
   bare GUILE_LOAD_PATH="$site" GUILE_LOAD_COMPILED_PATH="$compiled" "$GUILE_PROGRAM" \
     -c "(use-modules (timewarp)) (add-body! #:shape (sphere 1)) $mapped" >"$stage/out" 2>&1
   claim "plain guile loads the extension that was installed with the modules" \
@@ -106,15 +114,19 @@ claim "pkg-config knows the folders" \
   [ -n "$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --variable=guilesitedir timewarp)" ]
 claim "its file is valid" env PKG_CONFIG_PATH="$(dirname "$pc")" pkg-config --validate timewarp
 
-page=$moved/share/man/man1/timewarp.1
-options=$("$TIMEWARP" --help | sed -n 's/^  \(-.*\)/\1/p' | cut -c 1-26 | grep -o -- '--[a-z][a-z-]*')
-for option in $options; do
-  claim "the manual page has $option" grep -qF "$(printf '%s' "$option" | sed 's/-/\\-/g')" "$page"
+for program in timewarp timewarp-sweep; do
+  page=$moved/share/man/man1/$program.1
+  options=$("$(dirname "$TIMEWARP")/$program" --help | sed -n 's/^  \(-.*\)/\1/p' | cut -c 1-26 |
+    grep -o -- '--[a-z][a-z-]*')
+  for option in $options; do
+    claim "the manual page of $program has $option" \
+      grep -qF "$(printf '%s' "$option" | sed 's/-/\\-/g')" "$page"
+  done
+  if command -v groff >/dev/null; then
+    claim "groff finds nothing wrong with it" \
+      [ -z "$(groff -man -ww -Tutf8 "$page" 2>&1 >/dev/null)" ]
+  fi
 done
-if command -v groff >/dev/null; then
-  claim "groff finds nothing wrong with it" \
-    [ -z "$(groff -man -ww -Tutf8 "$page" 2>&1 >/dev/null)" ]
-fi
 
 # ---- what plain guile must be told ----
 

@@ -6,6 +6,7 @@
 (define-module (timewarp command-line)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp exit-status)
   #:use-module (timewarp worlds)
   #:use-module (timewarp parameters)
   #:use-module (timewarp interrupts)
@@ -13,6 +14,7 @@
   #:use-module (timewarp recorders)
   #:use-module (timewarp drawing)
   #:use-module (timewarp loader)
+  #:use-module (timewarp option-table)
   #:use-module (timewarp options)
   #:use-module (timewarp progress)
   #:use-module (srfi srfi-1)
@@ -56,15 +58,8 @@
 
 ;; ---- the run ----
 
-;; What is given twice: the last one holds.
-(define (option-ref options key)
-  (fold (lambda (pair value) (if (eq? (car pair) key) (cdr pair) value)) #f options))
-
-(define (option-values options key)
-  (filter-map (lambda (pair) (and (eq? (car pair) key) (cdr pair))) options))
-
 (define override-keys
-  '(accuracy seed fps size quality contacts hash check undo-redo gvt-interval window
+  '(accuracy seed fps size quality part contacts hash check undo-redo gvt-interval window
     group-check-rate integrator adversary write-states compare-states))
 
 (define (take-overrides! options)
@@ -187,46 +182,6 @@
               (scene (run-scene scene options))
               ((or (option-ref options 'interactive) (not (option-ref options 'command)))
                (start-repl* options))))))))
-
-;; A disk may be full.
-(define (flush-output)
-  (catch 'system-error
-    (lambda () (force-output (current-output-port)))
-    (lambda args
-      (raise-error (format #f "cannot write standard output: ~a"
-                           (strerror (system-error-errno args)))))))
-
-(define (complain format-string . args)
-  ;; standard output may be what failed
-  (false-if-exception (force-output (current-output-port)))
-  (let ((port (current-error-port)))
-    (apply format port format-string args)
-    (newline port)))
-
-;; An error that is no timewarp-error, for instance in -c: as describe-error sees it.
-(define (complain-about key args description)
-  (match (if (eq? key 'timewarp-error) (describe-error key args) description)
-    (#(message place backtrace)
-     (complain "~a~a~a"
-               (if place (string-append (place->string place) ": ") "timewarp: ")
-               message
-               (if (string-null? backtrace) "" (string-append "\n" backtrace))))
-    (_ (complain "timewarp: ~a" (error-text key args)))))
-
-(define (exit-status thunk)
-  (let ((description #f))
-    (catch #t
-      (lambda () (thunk) 0)
-      (lambda (key . args)
-        (match (cons key args)
-          (('timewarp-usage message) (complain "timewarp: ~a" message) 2)
-          (('timewarp-interrupted) (complain "interrupted") 130)
-          (('quit . status)
-           (match status ((or () (#t)) 0) ((#f) 1) (((? integer? n) . _) n) (_ 1)))
-          (_ (unless (reader-gone? key args) (complain-about key args description)) 1)))
-      (lambda (key . args)
-        (unless (memq key '(quit timewarp-usage timewarp-interrupted timewarp-error))
-          (set! description (describe-error key args)))))))
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."

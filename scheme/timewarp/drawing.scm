@@ -55,9 +55,10 @@
       (%open-frames frames width height (picture-quality quality)))))
 
 (define (attach-frames! world drawer fps contacts?)
-  "Let WORLD feed DRAWER with FPS frames per second, its contacts drawn if CONTACTS? is true."
+  "Let WORLD feed DRAWER with FPS frames per second, or with what --part says of them, its contacts
+drawn if CONTACTS? is true."
   (world-set! world 'drawer drawer)
-  (%attach-frames! world drawer fps (looks world) (world-ref world 'title #f)
+  (%attach-frames! world drawer fps (override 'part) (looks world) (world-ref world 'title #f)
                    (draw-contacts? contacts?)))
 
 ;; s of wall time: Ctrl-C has its say between two waits

@@ -43,7 +43,10 @@
                '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "forces" "multibodies"
                  "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
-                 "time-left" "progress" "interrupts" "help" "repl" "command-line")))))
+                 "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
+                 "exit-status" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
+                 "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
+                 "sweep-values")))))
 
 ;; a frame in this file stands for a form of a scene
 (define forms-file (string-append (own-directory) "/forms.scm"))

@@ -10,7 +10,9 @@
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
   #:use-module (srfi srfi-1)
-  #:export (make-progress))
+  #:export (make-progress)
+  ;; for timewarp-sweep
+  #:export (duration-text))
 
 (define (wall-seconds)
   (exact->inexact (/ (get-internal-real-time) internal-time-units-per-second)))

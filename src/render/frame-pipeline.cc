@@ -126,7 +126,7 @@ void FramePipeline::draw_all() {
   while (std::optional<DrawFrame> frame = next_frame()) {
     const Image image = renderer.draw(*frame);
     write_whole_file(name_.name(index), encode_png(image));
-    ++index;
+    index += settings_.stride;
     note_progress(renderer, *frame);
   }
 }

@@ -24,6 +24,7 @@ struct FrameSettings {
   RenderSettings render;
   std::string frames;    // a folder, made where it is missing, or a pattern like out/%05d.png
   long first_frame = 0;  // the number of the first frame submitted
+  long stride = 1;       // by which the numbers of those submitted go up
 };
 
 class FramePipeline {

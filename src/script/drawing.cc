@@ -125,6 +125,12 @@ long first_frame(const World& world, double fps) {
   return k;
 }
 
+// (PART PARTS), or #f for all frames.
+FrameShare to_share(SCM value) {
+  if (scm_is_false(value)) return {};
+  return {to_integer(SCM_CAR(value), "the part"), to_integer(SCM_CADR(value), "the parts")};
+}
+
 std::vector<HudLine> hud_lines(SCM title) {
   if (!scm_is_string(title)) return {};
   return {text_of(title)};
@@ -143,13 +149,16 @@ TW_PRIMITIVE(open_frames, "%open-frames", (SCM frames, SCM width, SCM height, SC
 }
 
 TW_PRIMITIVE(attach_frames, "%attach-frames!",
-             (SCM world, SCM object, SCM fps, SCM looks, SCM title, SCM contacts),
-             "Let a world feed the drawer.") {
+             (SCM world, SCM object, SCM fps, SCM share, SCM looks, SCM title, SCM contacts),
+             "Let a world feed the drawer with all frames or its share of them.") {
   World& w = to_world(world);
   DrawerBox& box = to_drawer(object);
   const double rate = to_real(fps, "fps");
+  const FrameShare of_frames = to_share(share);
   box.settings.first_frame = first_frame(w, rate);
-  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, scene_of(world, looks),
+  while (!of_frames.includes(box.settings.first_frame)) ++box.settings.first_frame;
+  box.settings.stride = of_frames.parts;
+  box.drawer = std::make_shared<FrameDrawer>(w, box.settings, of_frames, scene_of(world, looks),
                                              hud_lines(title), to_bool(contacts));
   w.add_frame_sink(box.drawer, rate);
   return SCM_UNSPECIFIED;

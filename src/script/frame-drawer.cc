@@ -3,6 +3,8 @@
 #ifdef TW_RENDER
 #include "script/frame-drawer.h"
 
+#include <utility>
+
 namespace tw {
 
 DrawBody draw_body(const World& world, BodyId id) {
@@ -30,29 +32,36 @@ static std::vector<Pose> poses_of(const DrawScene& scene) {
   return poses;
 }
 
-FrameDrawer::FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
-                         std::vector<HudLine> hud, bool contacts)
+FrameDrawer::FrameDrawer(const World& world, const FrameSettings& settings, const FrameShare& share,
+                         DrawScene scene, std::vector<HudLine> hud, bool contacts)
     : world_(world),
+      share_(share),
       poses_(poses_of(scene)),
       hud_(std::move(hud)),
       contacts_(contacts),
       pipeline_(settings, scene) {}
 
-void FrameDrawer::frame(long, double frame_time, std::span<const BodyPose> poses) {
-  ++frames_;
-  DrawFrame frame;
-  // bodies that came since the frame before
+// Also where the frame is not drawn: the next one that is must know who came and went.
+void FrameDrawer::note_bodies(std::span<const BodyPose> poses) {
   for (auto id = static_cast<BodyId>(poses_.size()); id < world_.body_count(); ++id) {
-    frame.added.push_back(draw_body(world_, id));
-    poses_.push_back(frame.added.back().pose);
+    next_.added.push_back(draw_body(world_, id));
+    poses_.push_back(next_.added.back().pose);
   }
-  // and those that went
-  if (world_.removals() > removals_)
+  if (world_.removals() > removals_) {
+    next_.removed.clear();
     for (BodyId id = 0; id < poses_.size(); ++id)
-      if (world_.body(id).removed) frame.removed.push_back(id);
+      if (world_.body(id).removed) next_.removed.push_back(id);
+  }
   removals_ = world_.removals();
   for (const BodyPose& pose : poses)
     poses_[pose.body] = {pose.state.position, pose.state.orientation};
+}
+
+void FrameDrawer::frame(long index, double frame_time, std::span<const BodyPose> poses) {
+  ++frames_;
+  note_bodies(poses);
+  if (!share_.includes(index)) return;
+  DrawFrame frame = std::exchange(next_, {});
   frame.time = frame_time;
   frame.poses = poses_;
   frame.hud = hud_;

@@ -10,20 +10,31 @@
 
 namespace tw {
 
+// Of every `parts` frames one is drawn, the `part`-th (from 1), so that several runs can share
+// them.
+struct FrameShare {
+  long part = 1, parts = 1;
+  bool includes(long index) const { return index % parts == part - 1; }
+};
+
 class FrameDrawer : public FrameSink {
  public:
   // Opens the drawing library.  `scene` holds the world's bodies at present; `contacts`: they are
-  // drawn.
-  FrameDrawer(const World& world, const FrameSettings& settings, DrawScene scene,
-              std::vector<HudLine> hud, bool contacts);
+  // drawn.  `settings` numbers the frames of the share.
+  FrameDrawer(const World& world, const FrameSettings& settings, const FrameShare& share,
+              DrawScene scene, std::vector<HudLine> hud, bool contacts);
 
   void frame(long index, double frame_time, std::span<const BodyPose> poses) override;
   FramePipeline& pipeline() { return pipeline_; }
-  // How many frames have come so far.
+  // How many frames have come so far, drawn or not.
   long frames() const { return frames_; }
 
  private:
+  void note_bodies(std::span<const BodyPose> poses);
+
   const World& world_;
+  FrameShare share_;
+  DrawFrame next_;           // bodies that came and went since the last frame that was drawn
   std::vector<Pose> poses_;  // by body, as last known
   std::vector<HudLine> hud_;
   bool contacts_;

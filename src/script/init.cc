@@ -30,6 +30,7 @@ void define_recorders();
 void define_versions();
 void define_drawing();
 void define_file_names();
+void define_json();
 
 }  // namespace tw
 
@@ -56,4 +57,5 @@ extern "C" void tw_init_guile() {
   tw::define_versions();
   tw::define_drawing();
   tw::define_file_names();
+  tw::define_json();
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <string_view>
 
 #include "script/file-names.h"
 #include "script/init.h"
@@ -26,15 +27,22 @@ void set_up_ports() {
                   scm_from_utf8_string("UTF-8"));
 }
 
+// One executable with two names.
+const char* main_module_of(std::string_view called) {
+  return called.substr(called.rfind('/') + 1) == "timewarp-sweep" ? "timewarp sweep"
+                                                                  : "timewarp command-line";
+}
+
 void inner_main(void*, int argc, char** argv) {
   set_up_ports();
   // (timewarp primitives) finds the extension built in, whatever file it would load
   scm_c_register_extension(
       nullptr, "tw_init_guile", [](void*) { tw_init_guile(); }, nullptr);
   load_modules();
+  const char* main_module = main_module_of(argc > 0 ? argv[0] : "");
   SCM arguments = SCM_EOL;
   for (int i = argc - 1; i > 0; --i) arguments = scm_cons(from_argument(argv[i]), arguments);
-  scm_call_1(scm_c_public_ref("timewarp command-line", "main"), arguments);
+  scm_call_1(scm_c_public_ref(main_module, "main"), arguments);
 }
 
 }  // namespace

@@ -45,6 +45,20 @@ TEST(FramePipeline, numbers_can_go_on_where_another_ended) {
   EXPECT_TRUE(fs::exists(folder / "f008.png"));
 }
 
+TEST(FramePipeline, numbers_can_go_up_by_more_than_one) {
+  TW_SKIP_WITHOUT_OPENGL();
+  const TemporaryFolder folder;
+  FrameSettings settings = settings_for(folder / "f%03d.png");
+  settings.first_frame = 1;
+  settings.stride = 3;
+  FramePipeline pipeline(settings, ball_over_ground());
+  for (int i = 0; i < 2; ++i) pipeline.submit(frame_at(i));
+  pipeline.finish();
+  EXPECT_TRUE(fs::exists(folder / "f001.png"));
+  EXPECT_FALSE(fs::exists(folder / "f002.png"));
+  EXPECT_TRUE(fs::exists(folder / "f004.png"));
+}
+
 TEST(FramePipeline, nothing_is_made_when_the_folder_cannot_be) {
   EXPECT_NE(user_error_of([] { FramePipeline pipeline(settings_for("/dev/full"), DrawScene()); }),
             "");

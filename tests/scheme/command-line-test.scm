@@ -32,7 +32,7 @@
   (for-each (lambda (option)
               (test-assert (string-append "--help shows " option)
                 (string-contains (run-output result) option)))
-            '("--until" "--frames" "--fps" "--size" "--quality" "--poses" "--events" "--stats" "--hash"
+            '("--until" "--frames" "--fps" "--size" "--quality" "--part" "--poses" "--events" "--stats" "--hash"
               "-D" "--accuracy" "--seed" "--check" "--quiet" "--version" "-i" "-L" "-l" "-c" "-q"))
   (test-assert "test modes are not in --help"
     (not (string-match "adversary|gvt-interval|undo-redo|pieces" (run-output result)))))
@@ -147,6 +147,8 @@
 (refused "--until is \"soon\"; expected a number of seconds" "ball.scm" "--until=soon")
 (refused "--fps is \"0\"; expected a positive" "ball.scm" "--fps=0")
 (refused "--size is \"12\"; expected WIDTHxHEIGHT" "ball.scm" "--size=12")
+(refused "--part is \"3/2\"; expected K/N with K from 1 to N" "ball.scm" "--part=3/2")
+(refused "--part is \"2\"; expected K/N such as 1/8" "ball.scm" "--part=2")
 (refused "--quality is \"great\"; expected draft" "ball.scm" "--quality=great")
 (refused "--seed is \"-1\"" "ball.scm" "--seed=-1")
 (refused "more than one scene" "ball.scm" "ball.scm")

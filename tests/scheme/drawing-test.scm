@@ -63,6 +63,27 @@
       (map (lambda (k) (png? (format #f "out/0000~a.png" k))) (iota 4)))
     (test-assert "drawing is counted apart"
       (string-match "\"draw_cpu_seconds\": (0.0[0-9]*[1-9]|0.[1-9])" (read-file "s.json"))))
+  ;; a body comes and one goes between the frames of a part
+  (write-file "parts.scm"
+              "(use-modules (timewarp))"
+              "(scene #:duration 1.5)"
+              "(camera #:eye #(2 -3 1) #:target #(0 0 0.4))"
+              "(add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)"
+              "(define first (add-body! #:shape (box 1 1 1) #:position #(0 0 0.5)))"
+              "(run! #:until 0.6)"
+              "(add-body! #:shape (sphere 0.3) #:position #(0.8 -0.8 1))"
+              "(run! #:until 0.8)"
+              "(remove-body! first)")
+  (let ((draw (lambda args (apply run "parts.scm" "--fps=4" "--size=160x90" "--quality=draft" "--hash"
+                                  "--quiet" args))))
+    (let ((whole (draw "--frames=whole")) (part (draw "--frames=part" "--part=2/3")))
+      (test-equal "--part draws every N-th frame, from the K-th" '("00001.png" "00004.png")
+        (list-files "part"))
+      (test-equal "as they are in the whole" (map (lambda (k) (bytes (format #f "whole/0000~a.png" k))) '(1 4))
+        (map (lambda (k) (bytes (format #f "part/0000~a.png" k))) '(1 4)))
+      (test-equal "and doesn't change the history" (run-output whole) (run-output part))
+      (draw "--frames=few" "--part=1/100")
+      (test-equal "there may be more parts than frames" '("00000.png") (list-files "few"))))
   (run "ball.scm" "--frames=frame-%02d.png" "--fps=2" "--size=64x36" "--quality=draft")
   (test-assert "a pattern names the frames" (png? "frame-01.png"))
   (test-assert "drawing does load a library (so the test above can fail)"
