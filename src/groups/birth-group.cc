@@ -18,8 +18,7 @@ void make_birth_group(const Scene& scene, const std::shared_ptr<const Multibody>
   const PlacedJoints placed(*multibody, *joints, now);
   auto group = std::make_shared<Group>();
   group->key = states.front()->key;
-  group->birth = now;
-  group->next_check = next_check_time(now, now, joint_check_interval(scene, *multibody));
+  group->next_check = next_check_time(now, joint_check_interval(scene, *multibody));
   group->next_check =
       std::min(group->next_check, next_corner_of(*multibody, now, group->next_check));
   GroupStart start;

@@ -56,11 +56,20 @@ double bond_check_interval(const Scene& scene, const Body& body) {
 
 double call_check_grid(double period) { return on_lattice(answer::check_unit, period / 4); }
 
-double next_check_time(double birth, double now, double interval) {
+double next_check_time(double now, double interval) {
   TW_ASSERT(interval > 0, "checks are apart");
-  double k = std::max(0.0, std::floor((now - birth) / interval));
-  while (birth + k * interval <= now) ++k;
-  return birth + k * interval;
+  constexpr double rounding = 1e-9;
+  const auto last_within = [&](double unit) {
+    return unit * std::floor((now + interval) / unit + rounding);
+  };
+  const double whole = last_within(interval);
+  return whole - now >= (0.5 - rounding) * interval ? whole : last_within(0.5 * interval);
+}
+
+double next_common_check_time(double now, double interval) {
+  double k = std::floor(now / interval);
+  while (!(k * interval > now)) ++k;
+  return k * interval;
 }
 
 Key group_check_key(const Group& group, double when) {

@@ -1,9 +1,13 @@
 // When group checks happen.
 //
-// At birth + k 2^j / 480 s, j such that no surface point moves more than a twentieth of its body's
-// size in between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do
-// not), within bounds that follow from the sizes of the members: a scene that is scaled is checked
-// at scaled times.  What moves farther between two checks is looked at in between by the end test.
+// At k 2^j / 480 s, j such that no surface point moves more than a twentieth of its body's size in
+// between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do not),
+// within bounds that follow from the sizes of the members: a scene that is scaled is checked at
+// scaled times.  What moves farther between two checks is looked at in between by the end test.
+//
+// The lattice is that of the world, not of each group: neighbours that have nothing to do with each
+// other begin their arcs together, so that a pair of them is looked at once a stretch, and all that
+// is due at one instant can be done at once.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -27,8 +31,12 @@ double bond_check_interval(const Scene& scene, const Body& body);
 // The grid on which checks after calls of that period lie, s: a fraction of it.
 double call_check_grid(double period);
 
-// The first check after `now` of a group born at `birth`.
-double next_check_time(double birth, double now, double interval);
+// The first check after `now`: the last time of the lattice that is no farther than the interval,
+// and no nearer than half of it; else of the lattice of half the interval, from which the one after
+// it gets there.  (Checks at once after a touch made energy rise in twice as many random scenes.)
+double next_check_time(double now, double interval);
+// The same of a group with a border: that of its neighbours, however near.
+double next_common_check_time(double now, double interval);
 
 // The key of a check at `when`, but for its id, which is that of the least member: just before
 // whatever else happens to the group then.

@@ -16,7 +16,6 @@ void for_each_field(const Group& group, Visit&& visit) {
   using enum FieldUse;
   visit("key of the group", motion, group.key);
   visit("members", motion, group.members);
-  visit("birth", motion, group.birth);
   visit("when it was placed", motion, group.placed_at);
   visit("next check", motion, group.next_check);
   std::vector<double> ends;

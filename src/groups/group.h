@@ -4,8 +4,8 @@
 // arc is integrated when it is first needed, which is a function of the group alone; then the end
 // test (end-test.h) says where its members' arcs really end, once.  Nothing else of it changes.
 //
-// Group checks lie at birth + k 2^j / rate.  A group at rest has no next check: its members' arcs
-// are constant until something touches one of them.
+// Group checks lie at k 2^j / rate, those of all groups together.  A group at rest has no next
+// check: its members' arcs are constant until something touches one of them.
 //
 // Not all members of a group need leave it at once: what a blow does to a heap dies away within a
 // few bodies, so only these get new arcs, in a group of their own.  It meets the others at its
@@ -53,7 +53,6 @@ struct ContactTag {
 
 struct Group : Counted<Group> {
   Key key;                    // of the discontinuity that made it
-  double birth = 0;           // when this set of members came together, s
   double placed_at = -never;  // when the last of them was put where it is, s (placed-loads.h)
   double next_check = never;
   bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
@@ -102,6 +101,15 @@ struct Group : Counted<Group> {
 };
 
 using Groups = std::vector<std::shared_ptr<Group>>;
+
+// Each once, in an order that hangs on what they are: of one discontinuity no two have a member in
+// common.
+inline void sort_once(Groups& groups) {
+  std::sort(groups.begin(), groups.end(), [](const auto& x, const auto& y) {
+    return x->key < y->key || (x->key == y->key && x->members.front() < y->members.front());
+  });
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+}
 
 inline void add_once(Groups& groups, const std::shared_ptr<Group>& group) {
   if (group && std::find(groups.begin(), groups.end(), group) == groups.end())

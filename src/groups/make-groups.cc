@@ -205,19 +205,15 @@ double after_next_call(const Regrouping& work, const Group& group) {
   for (const ProcessId member : group.members)
     period = std::min(period, work.successor_of(member)->body->callback_period);
   if (!(period < never)) return never;
-  return next_check_time(group.birth, work.now() + period, call_check_grid(period));
+  return next_check_time(work.now() + period, call_check_grid(period));
 }
 
-// Checks stay on the grid they are on, so that those of neighbours meet; the one that is due stays
-// due where there is something to look at, unless this is it.
+// The check that is due stays due where there is something to look at, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
   const double now = work.now();
-  group.birth = before ? before->birth : now;
-  if (!before && group.has_border)
-    for (const auto& old : work.old)
-      if (!old->at_rest) group.birth = std::min(group.birth, old->birth);
   const double interval = interval_of(work, group);
-  group.next_check = std::min(border_end, next_check_time(group.birth, now, interval));
+  group.next_check = std::min(border_end, group.has_border ? next_common_check_time(now, interval)
+                                                           : next_check_time(now, interval));
   if (group.pairs.empty())
     group.next_check = std::min(group.next_check, after_next_call(work, group));
   else if (before && !finds_contacts(work.cause) && before->next_check >= now)

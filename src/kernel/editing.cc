@@ -50,8 +50,11 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   discontinuities_.enter(key, successors);
   if (body.multibody) return successors[0].placed ? body.multibody->links : std::vector<BodyId>{};
   const PoseTwist& now = successors[0].point;
-  if (now.x == x_before && now.q.coeffs() == q_before.coeffs()) return {};
-  return {id};
+  // what is put where it is may be pressed in; to the body's frame and back costs rounding
+  constexpr double rounding = 1e-12;
+  const bool stays = (now.x - x_before).norm() <= rounding * (x_before.norm() + body.extent()) &&
+                     now.q.angularDistance(q_before) <= rounding;
+  return stays ? std::vector<BodyId>{} : std::vector<BodyId>{id};
 }
 
 void Editing::edit_pair(BodyId a, BodyId b,
