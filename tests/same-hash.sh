@@ -1,5 +1,5 @@
 # One hash of a scene over everything that may not matter: output, frame rate, validators, pieces, GVT,
-# windows, undoing, and adversary schedulers.  Read by tests that set
+# windows, undoing, threads, and adversary schedulers.  Read by tests that set
 #   scene, parameters   the scene's file and its options
 #   seconds, seeds      how long, and how many adversaries of two kinds
 #   ahead, spread       head starts of bodies and of every event, s
@@ -44,6 +44,10 @@ same "GVT every 10,000 events" --gvt-interval=10000
 same "small windows" --window=0.1
 same "large windows" --window=3
 same "undo and redo" --undo-redo
+for threads in 1 2 3 8; do
+  same "threads: $threads" --threads=$threads
+done
+same "threads: 3, undo and redo" --threads=3 --undo-redo
 if "$TIMEWARP" --version | grep -q '^drawing: OSMesa'; then
   same "drawn" --frames="$folder/frames" --fps=5 --size=160x90 --quality=draft
 fi
@@ -53,7 +57,7 @@ rolled_back=0
 while [ $seed -le "$seeds" ]; do
   same "adversary $seed, bodies ahead" --adversary=$seed,$ahead
   rolled_back=$((rolled_back + rollbacks))
-  same "adversary $seed, every event" --adversary=$seed,$spread,every
+  same "adversary $seed, every event" --adversary=$seed,$spread,every --threads=$((seed % 3 + 1))
   rolled_back=$((rolled_back + rollbacks))
   seed=$((seed + 1))
 done

@@ -59,7 +59,7 @@
 ;; ---- the run ----
 
 (define override-keys
-  '(accuracy seed fps size quality part contacts hash check undo-redo gvt-interval window
+  '(accuracy seed threads fps size quality part contacts hash check undo-redo gvt-interval window
     group-check-rate integrator adversary write-states compare-states))
 
 (define (take-overrides! options)

@@ -17,6 +17,10 @@
      (list width height))
     (_ (usage-error "--size is ~s; expected WIDTHxHEIGHT such as 1280x720" text))))
 
+(define (threads name text)
+  (->number name text (lambda (x) (and (exact-integer? x) (<= 1 x 256)))
+            "a whole number from 1 to 256"))
+
 (define (part name text)
   (match (map string->number (string-split text #\/))
     (((? exact-integer? k) (? exact-integer? n))
@@ -79,6 +83,7 @@
     (policy ("policy") "POLICY" ,policy "timewarp; others are not there yet")
     (integrator ("integrator") "NAME" ,integrator "auto, or rk45: Cash and Karp's method even for free flight (auto)")
     (accuracy ("accuracy") "EPS" ,positive "relative accuracy (1e-6)")
+    (threads ("threads") "N" ,threads "threads that work is shared among (as many as there are cores)")
     (seed ("seed") "N" ,natural "seed of random numbers (0)")
     (group-check-rate ("group-check-rate") "HZ" ,positive "finest rate of contact checks (by size)")
     (check ("check") #f #f "run all validators after every event, and watch callbacks for side effects")

@@ -126,6 +126,12 @@
 (define (stopped? status)
   (or (stopping?) (memv (- status 128) (list SIGINT SIGTERM SIGHUP))))
 
+;; Runs beside each other leave each other the cores, unless somebody asks for more.
+(define (own-threads plan)
+  (if (any (lambda (word) (string-prefix? "--threads" word)) (plan-arguments plan))
+      '()
+      '("--threads=1")))
+
 (define (run-task folder number timeout)
   "Run the run of that NUMBER of the plan in FOLDER, for at most TIMEOUT s (#f: as long as it
 takes).  Return its exit status, #f if it was stopped."
@@ -136,9 +142,10 @@ takes).  Return its exit status, #f if it was stopped."
       (unless (null? (plan-outputs plan)) (make-folders (run-folder folder (run-home run))))
       (chdir (plan-directory plan))
       (let* ((command (run-command plan run folder
-                                   #:own (list "--quiet"
-                                               (string-append "--stats="
-                                                              (statistics-file folder number)))))
+                                   #:own (cons* "--quiet"
+                                                (string-append "--stats="
+                                                               (statistics-file folder number))
+                                                (own-threads plan))))
              (started (wall-seconds))
              (cpu-before (children-cpu-seconds))
              (status (run-process command timeout folder number))

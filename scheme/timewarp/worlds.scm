@@ -40,7 +40,7 @@
 
 ;; Settings of the kernel that the command line can override.
 (define kernel-settings
-  '(accuracy seed hash check undo-redo gvt-interval window group-check-rate integrator
+  '(accuracy seed threads hash check undo-redo gvt-interval window group-check-rate integrator
     write-states compare-states))
 
 (define (make-world)

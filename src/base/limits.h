@@ -44,6 +44,9 @@ inline constexpr double least_period = 1e-6;
 // 1/s, of frames and of contact checks: one period a tick.
 inline constexpr double greatest_rate = 1e6;
 
+// Of a run: more would each have next to nothing to do.
+inline constexpr int most_threads = 256;
+
 // N/m of contact stiffness, s/m of damping.
 inline constexpr double least_stiffness = 1e-30, greatest_stiffness = 1e30;
 inline constexpr double greatest_damping = 1e30;

@@ -9,6 +9,8 @@ namespace tw {
 void BroadPhase::place(std::uint32_t id, const Aabb& box, bool stands) {
   if (!stands) {
     moving_.place(id, box);
+    // queries of several bodies may go on at once: each writes to its own zone
+    if (id >= zones_.size()) zones_.resize(id + 1);
     return;
   }
   standing_.place(id, box);
@@ -22,7 +24,6 @@ void BroadPhase::remove(std::uint32_t id) {
 }
 
 const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
-  if (id >= zones_.size()) zones_.resize(id + 1);
   Zone& zone = zones_[id];
   const Aabb& box = moving_.box(id);
   if (zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi))

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/work-count.h"
 #include "collision/manifold-parts.h"
 #include "collision/nearest-to-point.h"
 #include "collision/separation.h"
@@ -75,7 +76,7 @@ void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPar
 void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                    const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
                    std::vector<ManifoldPoint>& out) {
-  ++distance_queries;
+  ++work_count.distance_queries;
   using K = PartKind;
   const auto are = [&](K first, K second) { return a.kind == first && b.kind == second; };
   if (are(K::polyhedron, K::polyhedron))

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/work-count.h"
 #include "collision/clip.h"
 #include "collision/cylinder-point.h"
 #include "collision/gjk.h"
@@ -13,8 +14,6 @@
 #include "collision/round-distance.h"
 
 namespace tw {
-
-thread_local unsigned long long distance_queries = 0;
 
 namespace {
 
@@ -294,7 +293,7 @@ double ball_bound(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b
 
 Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                            const Frame& frame_b, SimplexCache* cache) {
-  ++distance_queries;
+  ++work_count.distance_queries;
   return queries[static_cast<int>(a.kind)][static_cast<int>(b.kind)](a, frame_a, b, frame_b, cache);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/constants.h"
+#include "base/work-count.h"
 #include "collision/clip.h"
 #include "collision/gjk.h"
 #include "collision/manifold-parts.h"
@@ -73,7 +74,7 @@ void half_space_points(const ConvexPart& half_space, const Frame& frame_h,
                        const ConvexPart& polyhedron, const Frame& frame_p, double tolerance,
                        double sign, int pair, std::vector<ContactPoint>& out) {
   thread_local std::vector<ClippedPoint> points;
-  ++distance_queries;
+  ++work_count.distance_queries;
   const Vec3 normal = frame_h.R * half_space.normal;
   const Frame world = frame_p * polyhedron.placement;
   points.clear();
@@ -93,7 +94,7 @@ void cylinder_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart
                      std::vector<ContactPoint>& out) {
   thread_local std::vector<ManifoldPoint> points;
   points.clear();
-  ++distance_queries;
+  ++work_count.distance_queries;
   cylinder_manifold(a, frame_a, b, frame_b, tolerance, pair, points);
   for (const ManifoldPoint& p : points) {
     const Vec3 surface = p.core_point - (p.radius + 0.5 * p.gap) * p.normal;
@@ -104,7 +105,7 @@ void cylinder_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart
 void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                  const Frame& frame_b, double tolerance, int pair, std::vector<ContactPoint>& out) {
   if (a.kind == PartKind::polyhedron && b.kind == PartKind::polyhedron) {
-    ++distance_queries;
+    ++work_count.distance_queries;
     return polyhedra_points(CorePair(a, frame_a, b, frame_b), tolerance, pair, out);
   }
   // two half-spaces touch in a plane, which no few points describe

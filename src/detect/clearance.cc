@@ -7,37 +7,52 @@
 namespace tw {
 namespace {
 
-// Where a body's centre may get to from where it is, and how far turning carries its surface
-// beyond.
+// How a body moves over a window: its centre along the chord of its path, evenly, but for what the
+// path's bend takes it off (|x''| T^2/8 at most), and how far turning carries its surface beyond.
+// Where no accelerations are known, by the box of its path alone.
 struct Travel {
   Vec3 center = Vec3::Zero();
-  Aabb displacement{Vec3::Zero(), Vec3::Zero()};
+  Vec3 chord = Vec3::Zero();
+  Aabb off{Vec3::Zero(), Vec3::Zero()};
   double turning = 0;
 };
 
 Travel travel_of(const Body& body, const Trajectory& trajectory, double from, double to) {
   const MotionBounds bounds = trajectory.bounds(from, to);
+  const double length = to - from;
   Travel t;
   t.center = trajectory.center(from);
-  t.displacement = {bounds.path.lo - t.center, bounds.path.hi - t.center};
-  t.turning = body.sphere_radius >= 0 ? 0 : bounds.turn * (to - from) * body.radius;
+  t.turning = body.sphere_radius >= 0 ? 0 : bounds.turn * length * body.radius;
+  if (bounds.velocity_may_jump() || bounds.valid_until < to) {
+    t.off = {bounds.path.lo - t.center, bounds.path.hi - t.center};
+    return t;
+  }
+  t.chord = trajectory.center(to) - t.center;
+  const Aabb& pull = bounds.acceleration;
+  const Vec3 most = (0.125 * length * length) * pull.lo.cwiseAbs().cwiseMax(pull.hi.cwiseAbs());
+  t.off = {-most, most};
   return t;
 }
 
-// What the centres' displacements may do to the distance of two surface points.
+// What the centres' ways may do to the distance of two surface points: what they have in common
+// does nothing.
 struct RelativeTravel {
-  Vec3 lo, hi;  // of b against a
+  Vec3 chord;   // of b against a
+  Vec3 lo, hi;  // off it
   double turning;
 
   RelativeTravel(const Travel& a, const Travel& b)
-      : lo(b.displacement.lo - a.displacement.hi),
-        hi(b.displacement.hi - a.displacement.lo),
+      : chord(b.chord - a.chord),
+        lo(b.off.lo - a.off.hi),
+        hi(b.off.hi - a.off.lo),
         turning(a.turning + b.turning) {}
   // in any direction
-  double most() const { return lo.cwiseAbs().cwiseMax(hi.cwiseAbs()).norm() + turning; }
+  double most() const {
+    return chord.norm() + lo.cwiseAbs().cwiseMax(hi.cwiseAbs()).norm() + turning;
+  }
   // against the unit normal n from a to b
   double against(const Vec3& n) const {
-    double closing = 0;
+    double closing = std::max(-n.dot(chord), 0.0);
     for (int i = 0; i < 3; ++i) closing += std::max(-n[i] * lo[i], -n[i] * hi[i]);
     return std::max(closing, 0.0) + turning;
   }

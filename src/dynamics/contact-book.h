@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -22,7 +23,8 @@ class ContactBook {
   void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   // A body has come into the world; numbers are dense, from 0.
   void add_body(const Body& body);
-  // Of two bodies that have come into the world; stays valid until the next add.
+  // Of two bodies that have come into the world; stays valid until the next add.  Several threads
+  // may ask.
   const ContactParameters& between(BodyId a, BodyId b) const;
   // Whether some pair may have been told not to collide.
   bool may_disable() const { return may_disable_; }
@@ -35,8 +37,13 @@ class ContactBook {
   std::vector<BodyId> classes_;  // of each body: the first body of its class
   std::unordered_map<std::string, BodyId> class_of_material_;
   bool may_disable_ = false;
-  // what was looked up: only this thread asks
+  const ContactParameters& look_up(std::uint64_t classes, BodyId a, BodyId b) const;
+  static std::uint64_t next_serial();
+
+  // what was looked up; each thread remembers some of it, by the serial number of the rules
   mutable std::unordered_map<std::uint64_t, ContactParameters> known_;
+  mutable std::mutex mutex_;  // of known_
+  std::uint64_t serial_ = next_serial();
 };
 
 }  // namespace tw

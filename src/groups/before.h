@@ -15,6 +15,7 @@
 #include "dynamics/placed-body.h"
 #include "dynamics/scene.h"
 #include "groups/group.h"
+#include "groups/read-log.h"
 #include "timeline/state-graph.h"
 #include "timeline/swept-bounds.h"
 
@@ -28,13 +29,17 @@ const std::shared_ptr<Group>& owner_of(const Body& body_a, const State& a, const
 
 class Before {
  public:
-  Before(const Scene& scene, const StateGraph& graph, const Key& key)
-      : scene_(scene), graph_(graph), key_(key) {}
+  // `log`: notes whose states are read; may be null.
+  Before(const Scene& scene, const StateGraph& graph, const Key& key, ReadLog* log = nullptr)
+      : scene_(scene), graph_(graph), key_(key), log_(log) {}
 
   const Scene& scene() const { return scene_; }
   const Key& key() const { return key_; }
   // The last state below the key; one there must be.
-  const State& state(ProcessId process) const { return *graph_.last_before(process, key_); }
+  const State& state(ProcessId process) const {
+    if (log_) log_->note(process);
+    return *graph_.last_before(process, key_);
+  }
   const State& state_of(BodyId body) const { return state(scene_.process_of(body)); }
   // Where the body is, on the arc before the key, at its time.
   PlacedBody placed(BodyId id) const;
@@ -64,6 +69,7 @@ class Before {
   const Scene& scene_;
   const StateGraph& graph_;
   Key key_;
+  ReadLog* log_;
 };
 
 // Sets of processes are rows, ascending.

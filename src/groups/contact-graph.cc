@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/parallel.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
 
@@ -111,7 +112,8 @@ double released(double offset, double gap) {
 
 // Each new contact takes the stretch and the offset of the nearest old one; equal features count as
 // half as far.
-void match_old(Regrouping& work, const ContactPair& pair, const PairBefore& before_it) {
+void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
+               const PairBefore& before_it) {
   const ContactPair* old = before_it.pair;
   const Group& before = *before_it.owner;
   const GroupArc& arc = *before.arc;
@@ -121,7 +123,7 @@ void match_old(Regrouping& work, const ContactPair& pair, const PairBefore& befo
   const double size = std::min(body_a.least_width, body_b.least_width);
   std::vector<bool> taken(old->count, false);
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-    NewContact& fresh = work.contacts[c];
+    NewContact& fresh = contacts[c];
     double nearest = answer::same_point * size;
     std::uint32_t best = old->count;
     for (std::uint32_t o = 0; o < old->count; ++o) {
@@ -151,14 +153,15 @@ void match_old(Regrouping& work, const ContactPair& pair, const PairBefore& befo
 // A spring that is born unloaded lets a body slide before it holds: so a new contact is given the
 // stretch that holds what pulls along it, or, where that exceeds the cone, far more, which slides
 // at once.
-void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, const PlacedBody& b) {
+void preload(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
+             const PlacedBody& a, const PlacedBody& b) {
   if (pair.count == 0) return;
-  const NewContact& first = work.contacts[pair.first];
+  const NewContact& first = contacts[pair.first];
   if (first.contact.law.law != FrictionLaw::anchored) return;
 
   // the middle of the contact, the pull and the slip there, of b against a
   Vec3 middle = Vec3::Zero();
-  for (std::uint32_t c = 0; c < pair.count; ++c) middle += work.contacts[pair.first + c].point;
+  for (std::uint32_t c = 0; c < pair.count; ++c) middle += contacts[pair.first + c].point;
   middle /= pair.count;
   const bool straight = first.tag.reference == a.body->id();
   const Vec3 n = straight ? first.normal : Vec3(-first.normal);
@@ -192,7 +195,7 @@ void preload(Regrouping& work, const ContactPair& pair, const PlacedBody& a, con
   if (slides || force.norm() > cone) force *= answer::preload_beyond * cone / force.norm();
   const Vec3 stretch = force / law.kt * (straight ? 1 : -1);
   for (std::uint32_t c = 0; c < pair.count; ++c) {
-    NewContact& contact = work.contacts[pair.first + c];
+    NewContact& contact = contacts[pair.first + c];
     const Quat attitude = work.attitude(contact.tag.reference);
     contact.contact.stretch = attitude.conjugate() * turned_into(stretch, contact.normal);
   }
@@ -238,10 +241,21 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
   return before.dot(fresh) < -0.5;
 }
 
-// Adds the pair if it touches or may touch before the next check; `must`: in any case.  `ground`:
-// the fixed bodies around the one that moves.
-void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
-             const std::vector<BodyId>& ground, double interval, bool must) {
+// Two bodies that are to be looked at, and what was found: a pair with its contacts from 0 on.
+struct Look {
+  PlacedBody a, b;
+  const std::vector<BodyId>* ground = nullptr;  // the fixed bodies around the one that moves
+  enum class Found : std::uint8_t { nothing, contact, as_before } found = Found::nothing;
+  ContactPair pair;
+  std::vector<NewContact> contacts;
+  std::uint64_t manifolds = 0;
+};
+
+// Finds the contacts of a pair that touches or may touch before the next check; `must`: of any
+// pair.
+void look(const Regrouping& work, Look& look, double interval, bool must) {
+  const PlacedBody &a = look.a, &b = look.b;
+  const std::vector<BodyId>& ground = *look.ground;
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const std::uint64_t id = pair_id(body_a.id(), body_b.id());
@@ -259,7 +273,7 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
 
   thread_local std::vector<ManifoldPoint> points;
   points.clear();
-  ++work.counters.manifolds;
+  ++look.manifolds;
   // faces of the ground are exact at seams
   const ReferenceChoice choice = !body_a.dynamic()   ? ReferenceChoice::of_a
                                  : !body_b.dynamic() ? ReferenceChoice::of_b
@@ -270,25 +284,35 @@ void connect(Regrouping& work, const PlacedBody& a, const PlacedBody& b,
       near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
   for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
   // it stays on the side that it came from
-  if (before && is_pushed_through(points, *before, a, scales.law, work.now()))
-    return carry(work, *before);
+  if (before && is_pushed_through(points, *before, a, scales.law, work.now())) {
+    look.found = Look::Found::as_before;
+    return;
+  }
   if (!must && !comes_into_contact(points, a, b, before, reach, interval, scales) &&
       !is_ghost(points, a, b, distance))
     return;
 
-  ContactPair fresh{id,
-                    static_cast<std::uint32_t>(work.contacts.size()),
-                    static_cast<std::uint32_t>(points.size()),
-                    false,
-                    {}};
-  for (const ManifoldPoint& p : points) work.contacts.push_back(new_contact(p, a, b, scales.law));
+  look.found = Look::Found::contact;
+  ContactPair& fresh = look.pair;
+  fresh = {id, 0, static_cast<std::uint32_t>(points.size()), false, {}};
+  for (const ManifoldPoint& p : points) look.contacts.push_back(new_contact(p, a, b, scales.law));
   if (before) {
     fresh.has_borne_load = before->pair->has_borne_load;
     fresh.masses = before->pair->masses;
-    match_old(work, fresh, *before);
+    match_old(work, look.contacts, fresh, *before);
   }
-  if (must) preload(work, fresh, a, b);
-  work.pairs.push_back(fresh);
+  if (must) preload(work, look.contacts, fresh, a, b);
+}
+
+// Adds what was found.
+void take(Regrouping& work, Look& look) {
+  work.counters.manifolds += look.manifolds;
+  if (look.found == Look::Found::as_before)
+    carry(work, *work.pair_before(pair_id(look.a.body->id(), look.b.body->id())));
+  if (look.found != Look::Found::contact) return;
+  look.pair.first = static_cast<std::uint32_t>(work.contacts.size());
+  work.contacts.insert(work.contacts.end(), look.contacts.begin(), look.contacts.end());
+  work.pairs.push_back(look.pair);
 }
 
 // Whom a body may have come into contact with; ascending.
@@ -317,18 +341,32 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
 }  // namespace
 
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
+  std::vector<std::vector<BodyId>> grounds;  // of each, as long as somebody looks
+  grounds.reserve(looked_at.size());
+  std::vector<Look> looks;
+  const bool together = Team::current();
   for (const ProcessId process : looked_at) {
     const PlacedBody mine = placed(*work.successor_of(process));
     const Body& body = *mine.body;
     if (!body.shape_P) continue;
-    const std::vector<BodyId> candidates = candidates_of(work, body, looked_at);
-    const std::vector<BodyId> ground = work.surroundings.ground_around(body, {mine.frame});
-    for (const BodyId other : candidates) {
+    const std::vector<BodyId>& ground =
+        grounds.emplace_back(work.surroundings.ground_around(body, {mine.frame}));
+    for (const BodyId other : candidates_of(work, body, looked_at)) {
       const PlacedBody theirs = work.placed(other);
       const bool straight = body.id() < other;
-      connect(work, straight ? mine : theirs, straight ? theirs : mine, ground, interval, false);
+      Look pair{straight ? mine : theirs, straight ? theirs : mine, &ground, {}, {}, {}, 0};
+      if (together) {
+        looks.push_back(std::move(pair));
+        continue;
+      }
+      look(work, pair, interval, false);
+      take(work, pair);
     }
   }
+  constexpr std::size_t grain = 8;
+  each_in_parallel(looks.size(), grain,
+                   [&](std::size_t i) { look(work, looks[i], interval, false); });
+  for (Look& look : looks) take(work, look);
   const auto was_looked_at = [&](BodyId id) {
     return holds(looked_at, work.scene().process_of(id));
   };
@@ -338,10 +376,11 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
 
 void fuse(Regrouping& work, double interval) {
   const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
-  const std::vector<BodyId> ground = a.body->dynamic()
-                                         ? work.surroundings.ground_around(*a.body, {a.frame})
-                                         : work.surroundings.ground_around(*b.body, {b.frame});
-  connect(work, a, b, ground, interval, true);
+  const PlacedBody& mover = a.body->dynamic() ? a : b;
+  const std::vector<BodyId> ground = work.surroundings.ground_around(*mover.body, {mover.frame});
+  Look first{a, b, &ground, {}, {}, {}, 0};
+  look(work, first, interval, true);
+  take(work, first);
   work.tally.fusions = 1;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "base/parallel.h"
 #include "collision/seams/seams.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
@@ -216,11 +217,14 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
     counters.dearest_arc = {effort.steps, effort.rejected, group.arc->start().time, group.members};
   counters.dearest_groups.note({group.members, group.tags.size(), 1, effort.steps, effort.rejected,
                                 group.arc->start().time, group.next_check});
+  constexpr std::size_t grain = 4;
+  std::vector<double> pair_ends(group.pairs.size());
+  each_in_parallel(pair_ends.size(), grain, [&](std::size_t i) {
+    pair_ends[i] = early_end(scene, surroundings, group, group.pairs[i]);
+  });
   std::vector<EarlyEnd> early_ends;
-  for (const ContactPair& pair : group.pairs) {
-    const double end = early_end(scene, surroundings, group, pair);
-    if (end < group.next_check) early_ends.push_back({end, pair.id});
-  }
+  for (std::size_t i = 0; i < pair_ends.size(); ++i)
+    if (pair_ends[i] < group.next_check) early_ends.push_back({pair_ends[i], group.pairs[i].id});
   std::vector<double> at_stops(group.members.size(), group.next_check);
   end_at_stops(group, at_stops);
   const double first_stop = *std::min_element(at_stops.begin(), at_stops.end());

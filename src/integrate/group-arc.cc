@@ -135,6 +135,7 @@ GroupArc::~GroupArc() = default;
 
 const GroupStart& GroupArc::start() const { return data_->start; }
 double GroupArc::reached() const { return data_->record.reached(); }
+bool GroupArc::complete() const { return data_->complete(); }
 const std::string& GroupArc::failure() const { return data_->failure; }
 int GroupArc::failed_contact() const { return data_->failed_contact; }
 double GroupArc::next_step() const { return data_->stepper.next_step(); }

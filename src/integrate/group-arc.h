@@ -166,6 +166,8 @@ class GroupArc : public Counted<GroupArc> {
   // nothing yet.
   bool extend_patiently(double time);
   double reached() const;  // how far it is integrated, s
+  // Whether all that there will ever be of it is there: to look at it changes nothing any more.
+  bool complete() const;
   // Where the members' trajectories end: at the arc's end, or earlier where somebody found out that
   // it does not hold so far.  Told once, before anybody relies on them.
   void lower_ends(std::vector<double> ends);

@@ -33,6 +33,7 @@ class SampledMotion : public Trajectory {
   MotionRates most_rates(double from, double to) const override;
   // The end of the span, or where the motion fails: nothing is sampled beyond.
   double step_end(double time) const override;
+  bool calls_out() const override { return true; }
 
  private:
   const MotionSpan& span_at(double time) const;

@@ -116,6 +116,8 @@ class Trajectory {
     const Parabola* path = ballistic();
     return path ? path->acceleration : Vec3(Vec3::Zero());
   }
+  // Whether a look at it may call a procedure of the user's.
+  virtual bool calls_out() const { return false; }
   // ---- of given motions: what hangs on such a body by a joint asks for ----
   // The rates of the twist; at a corner the right ones.
   virtual Twist twist_rates(double /*time*/) const { return {}; }

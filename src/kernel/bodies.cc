@@ -143,6 +143,7 @@ void Bodies::enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_a
   claims_.make_room_for(id);
   if (body->unbounded) sim_.unbounded.push_back(id);
   if (body->kinematic()) sim_.kinematic.push_back(id);
+  if (body->kinematic() && body->motion->calls_out()) sim_.calls_out = true;
   scene.contacts.add_body(*body);
   scene.bodies.push_back(std::move(body));
 }
@@ -154,7 +155,9 @@ void Bodies::check_newborn() {
 }
 
 void Bodies::claim_newborn() {
-  for (const BodyId id : sim_.present.newborn) claims_.claim_window(sim_.body(id));
+  std::vector<const Body*> newborn;
+  for (const BodyId id : sim_.present.newborn) newborn.push_back(&sim_.body(id));
+  claims_.claim_windows(newborn);
   sim_.present.newborn.clear();
 }
 

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/parallel.h"
 #include "groups/check-times.h"
 #include "groups/end-test.h"
+#include "groups/group.h"
 #include "kernel/active-pairs.h"
 #include "kernel/callback-book.h"
 #include "kernel/pair-checks.h"
@@ -43,8 +45,9 @@ void Claims::schedule_advance(const Body& body) {
     sim_.queue.withdraw(process.advance);
     return;
   }
-  // after callbacks of that instant, which may start a new arc, and before its impacts
-  const Key key{process.claim.time, 0, KeyKind::group_check, body.id()};
+  // after callbacks and checks of that instant, which may start a new arc, and before its impacts
+  constexpr std::uint64_t after_checks = std::uint64_t{1} << 32;
+  const Key key{process.claim.time, 1, KeyKind::group_check, after_checks | body.id()};
   sim_.schedule(process.advance, key, EventKind::advance, body.id(), process.head_start);
 }
 
@@ -138,48 +141,112 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   return box;
 }
 
-void Claims::claim_window(const Body& body) {
+// Where the arcs end is found before anybody relies on them.
+void Claims::test_group_ends(std::span<const Body* const> bodies) {
+  Groups untested;
+  for (const Body* body : bodies) {
+    const State& tail = *sim_.graph.tail(body->process);
+    if (tail.group && !tail.group->end_tested && !tail.group->at_rest)
+      untested.push_back(tail.group);
+  }
+  if (untested.empty()) return;
+  sort_once(untested);
+  std::vector<GroupCounters> counters(untested.size());
+  each_in_parallel(untested.size(), 1, [&](std::size_t i) {
+    test_end(sim_.scene, sim_.surroundings, *untested[i], counters[i]);
+  });
+  for (std::size_t i = 0; i < untested.size(); ++i) {
+    counters_.add(counters[i]);
+    for (const ProcessId id : untested[i]->members)
+      if (sim_.graph.tail(id)->group == untested[i]) schedule_group_check(id);
+  }
+}
+
+// Decides how far the body claims; false: it claims no further.
+bool Claims::begin(const Body& body, Window& window) {
   ++counters_.claims;
   const State& tail = *sim_.graph.tail(body.process);
-  if (tail.group && !tail.group->end_tested) test_group_end(*tail.group);
   Process& process = sim_.process(body);
   if (tail.error || process.claim.time >= tail.arc_end()) {
     // a stopped process moves no further, a member of a group not past the next check
     sim_.queue.withdraw(process.advance);
     // others may have found out already that it cannot be followed
     if (tail.driven() && !tail.error) schedule_group_check(body.process);
-    return;
+    return false;
   }
-
-  const Key before = process.claim;
-  double end = body.fixed() ? never : window_end(body);
+  window.body = &body;
+  window.before = process.claim;
+  window.end = body.fixed() ? never : window_end(body);
   if (tail.driven() && body.dynamic()) {
     // where it fails it stops: found out before anybody relies on this claim
-    static_cast<void>(tail.trajectory().pose(end));
+    static_cast<void>(tail.trajectory().pose(window.end));
     if (tail.arc_end() < never) schedule_group_check(body.process);
-    end = std::min(end, tail.arc_end());
+    window.end = std::min(window.end, tail.arc_end());
   }
-  process.claim = body.fixed() ? last_key : Key{end, 0, KeyKind::birth, 0};
-  if (body.shape_P) {
-    if (!body.unbounded)
-      sim_.grid.place(body.id(), claimed_box(body, body.fixed() ? sim_.present.gvt : end),
-                      body.fixed());
+  return true;
+}
+
+void Claims::claim_windows(std::span<const Body* const> bodies) {
+  test_group_ends(bodies);
+  constexpr std::size_t most = 1024;  // at once: what they need beside each other is not little
+  for (std::size_t i = 0; i < bodies.size(); i += most)
+    claim_some(bodies.subspan(i, std::min(most, bodies.size() - i)));
+}
+
+void Claims::claim_some(std::span<const Body* const> bodies) {
+  if (windows_.size() < bodies.size()) windows_.resize(bodies.size());
+  std::size_t count = 0;
+  for (const Body* body : bodies) count += begin(*body, windows_[count]);
+  const std::span<Window> windows(windows_.data(), count);
+  const auto each_with_shape = [&](std::size_t grain, auto&& work) {
+    each_in_parallel(count, grain, [&](std::size_t i) {
+      if (windows[i].body->shape_P) work(windows[i]);
+    });
+  };
+  each_with_shape(16, [&](Window& w) {
+    if (!w.body->unbounded)
+      w.box = claimed_box(*w.body, w.body->fixed() ? sim_.present.gvt : w.end);
+  });
+  for (const Window& w : windows) {
+    const Body& body = *w.body;
+    sim_.process(body).claim = body.fixed() ? last_key : Key{w.end, 0, KeyKind::birth, 0};
+    if (!body.shape_P) continue;
+    if (!body.unbounded) sim_.grid.place(body.id(), w.box, body.fixed());
     placed_[body.id()] = true;
-    drop_parted_pairs(body);
-    const std::uint64_t candidates = counters_.candidates;
-    try {
-      find_partners(body, before);
-    } catch (...) {
-      // Ctrl-C in a motion's procedure: some may not have been met, so it is claimed anew
-      process.claim = before;
-      schedule_advance(body);
-      throw;
-    }
-    const bool alone = counters_.candidates == candidates;
-    process.lonely_claims =
-        alone ? std::min(process.lonely_claims + 1, cost::patience + cost::most_doublings) : 0;
   }
-  schedule_advance(body);
+  for (const Window& w : windows)
+    if (w.body->shape_P) drop_parted_pairs(*w.body);
+  each_with_shape(16, [&](Window& w) { find_near(*w.body, w.near); });
+  try {
+    meet_all(windows);
+  } catch (...) {
+    // Ctrl-C in a motion's procedure: some may not have been met, so all are claimed anew
+    for (const Window& w : windows) {
+      sim_.process(*w.body).claim = w.before;
+      schedule_advance(*w.body);
+    }
+    throw;
+  }
+  for (const Window& w : windows) {
+    Process& process = sim_.process(*w.body);
+    if (w.body->shape_P)
+      process.lonely_claims = w.near.empty() ? std::min(process.lonely_claims + 1,
+                                                        cost::patience + cost::most_doublings)
+                                             : 0;
+    schedule_advance(*w.body);
+  }
+}
+
+void Claims::claim_due(const Event& event) {
+  due_.clear();
+  due_bodies_.clear();
+  if (event.priority == sim_.queue.top_priority()) sim_.queue.first_ones(due_);
+  std::erase_if(due_, [](const Event& e) { return e.kind != EventKind::advance; });
+  if (due_.empty()) due_.push_back(event);
+  std::sort(due_.begin(), due_.end(),
+            [](const Event& x, const Event& y) { return x.subject < y.subject; });
+  for (const Event& e : due_) due_bodies_.push_back(&sim_.body(e.subject));
+  claim_windows(due_bodies_);
 }
 
 bool Claims::boxes_overlap(const Body& a, const Body& b) const {
@@ -201,11 +268,13 @@ void Claims::drop_parted_pairs(const Body& body) {
   }
 }
 
-void Claims::find_partners(const Body& body, const Key& claimed_before) {
+// All others that may be met where the body's box is.
+void Claims::find_near(const Body& body, std::vector<BodyId>& near) const {
+  near.clear();
   const auto consider = [&](BodyId id) {
-    ++counters_.candidates;
     const Body& other = sim_.body(id);
-    if (body.dynamic() || other.dynamic()) meet(body, other, claimed_before);
+    if (!body.dynamic() && !other.dynamic()) return;
+    if (!sim_.scene.may_disable() || sim_.scene.may_collide(body, other)) near.push_back(id);
   };
   if (body.unbounded) {
     for (const auto& other : sim_.scene.bodies)
@@ -221,9 +290,25 @@ void Claims::find_partners(const Body& body, const Key& claimed_before) {
   }
 }
 
-void Claims::meet(const Body& body, const Body& other, const Key& claimed_before) {
-  if (sim_.scene.may_disable() && !sim_.scene.may_collide(body, other)) return;
-  checks_.meet(body, other, claimed_before);
+// Each pair once: of two that both claim, from the first.
+void Claims::meet_all(std::span<const Window> windows) {
+  place_in_windows_.resize(sim_.scene.bodies.size(), 0);
+  for (std::size_t i = 0; i < windows.size(); ++i) place_in_windows_[windows[i].body->id()] = i + 1;
+  meetings_.clear();
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const Window& w = windows[i];
+    if (!w.body->shape_P) continue;
+    counters_.candidates += w.near.size();
+    for (const BodyId other : w.near) {
+      const std::size_t theirs = place_in_windows_[other];
+      if (theirs > 0 && theirs <= i) continue;
+      const Key& known =
+          theirs > 0 ? windows[theirs - 1].before : sim_.process(sim_.body(other)).claim;
+      meetings_.push_back({w.body->id(), other, std::min(w.before, known), 0, false, {}, {}});
+    }
+  }
+  for (const Window& w : windows) place_in_windows_[w.body->id()] = 0;
+  checks_.meet(meetings_);
 }
 
 // Typical spacing of moving bodies: (volume / number)^(1/3), at least their size.

@@ -13,18 +13,19 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "dynamics/body.h"
 #include "kernel/counters.h"
+#include "kernel/pair-checks.h"
 #include "math/aabb.h"
-#include "timeline/key.h"
+#include "timeline/event-queue.h"
 
 namespace tw {
 
 class ActivePairs;
 class CallbackBook;
-class PairChecks;
 struct Group;
 struct Simulation;
 
@@ -34,7 +35,15 @@ class Claims {
          const CallbackBook& callbacks);
 
   // Claims the body's next window and looks whom it may meet there.
-  void claim_window(const Body& body);
+  void claim_window(const Body& body) {
+    const Body* const one = &body;
+    claim_windows({&one, 1});
+  }
+  // The same of several at once: each pair of them is looked at once, and all by as many threads as
+  // there are.
+  void claim_windows(std::span<const Body* const> bodies);
+  // Of the body of an advance event, and of all that are due with it.
+  void claim_due(const Event& event);
   // Whether nothing that the body has not claimed lies at or before the key.
   bool reach(const Body& body, const Key& key) const;
   // Back to the key, and what follows anew: its arc has changed there.
@@ -59,13 +68,24 @@ class Claims {
   void measure_spacing();
 
  private:
+  // A window that is being claimed.
+  struct Window {
+    const Body* body;
+    Key before;  // what had been claimed
+    double end;  // s; `never`: of a fixed body
+    Aabb box;
+    std::vector<BodyId> near;  // whose boxes overlap
+  };
   void schedule_advance(const Body& body);
   void schedule_group_check(ProcessId process);
+  void test_group_ends(std::span<const Body* const> bodies);
+  void claim_some(std::span<const Body* const> bodies);
+  bool begin(const Body& body, Window& window);
   double window_end(const Body& body) const;
   Aabb claimed_box(const Body& body, double end) const;
   void drop_parted_pairs(const Body& body);
-  void find_partners(const Body& body, const Key& claimed_before);
-  void meet(const Body& body, const Body& other, const Key& claimed_before);
+  void find_near(const Body& body, std::vector<BodyId>& near) const;
+  void meet_all(std::span<const Window> windows);
 
   Simulation& sim_;
   Counters& counters_;
@@ -73,7 +93,13 @@ class Claims {
   PairChecks& checks_;
   const CallbackBook& callbacks_;
   std::vector<char> placed_;  // by body
-  double cell_ = 1;           // typical spacing, m
+  // scratch
+  std::vector<Event> due_;
+  std::vector<const Body*> due_bodies_;
+  std::vector<Window> windows_;
+  std::vector<Meeting> meetings_;
+  std::vector<std::size_t> place_in_windows_;  // by body, + 1; 0: it claims none
+  double cell_ = 1;                            // typical spacing, m
 };
 
 }  // namespace tw

@@ -2,20 +2,37 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "groups/group-counters.h"
 
 namespace tw {
 
-struct Counters : GroupCounters {
-  // events, as processed
-  std::uint64_t events = 0, events_postponed = 0, claims = 0, checks = 0, certificates = 0,
-                predictions = 0;
-  std::uint64_t candidates = 0, pairs_made = 0, gvt_computations = 0;
+// What it takes to follow pairs.
+struct PairCounts {
+  std::uint64_t checks = 0, certificates = 0, predictions = 0;
   // of a pair for as long as its boxes overlap: looks at grid points, and whose they were
   std::uint64_t dearest_pair_checks = 0;
   BodyId dearest_pair[2] = {};
+
+  void add(const PairCounts& other) {
+    checks += other.checks;
+    certificates += other.certificates;
+    predictions += other.predictions;
+    if (other.dearest_pair_checks <= dearest_pair_checks) return;
+    dearest_pair_checks = other.dearest_pair_checks;
+    std::copy_n(other.dearest_pair, 2, dearest_pair);
+  }
+};
+
+struct Counters : GroupCounters, PairCounts {
+  using GroupCounters::add;
+  using PairCounts::add;
+
+  // events, as processed
+  std::uint64_t events = 0, events_postponed = 0, claims = 0;
+  std::uint64_t candidates = 0, pairs_made = 0, gvt_computations = 0;
   double pair_sum = 0;  // live pairs, summed over processed events: for the average
 
   // rollback

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "groups/check-times.h"
+#include "groups/end-test.h"
 #include "groups/group-check.h"
 #include "kernel/claims.h"
 #include "kernel/delivery.h"
@@ -109,6 +111,109 @@ Progress GroupEvents::stop_driven(ProcessId id) {
   return Progress::done;
 }
 
+// Successors and groups that follow a check; a function of what stands before its key.
+GroupEvents::Decided GroupEvents::decide(const Before& before,
+                                         const std::vector<ProcessId>& concerned, Cause cause,
+                                         GroupCounters& counters) const {
+  const Key& key = before.key();
+  std::vector<Successor> successors;
+  successors.reserve(concerned.size());
+  const Group* failed = nullptr;
+  for (const ProcessId member : concerned) {
+    const Group& theirs = *before.state(member).group;
+    theirs.arc->extend(key.time);
+    if (!theirs.arc->failure().empty()) failed = &theirs;
+    successors.push_back(make_successor(before, member, true));
+  }
+  if (failed) {
+    const UserError error(failure_of(sim_.scene, *failed),
+                          sim_.body_of(concerned.front()).info.place);
+    for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
+    return Regrouped{std::move(successors)};
+  }
+  const Known is_known = [&](ProcessId id) { return known(id, key); };
+  return tw::regroup(before, sim_.surroundings, is_known,
+                     {cause, delivery_.observed(CollisionKind::fission), {}}, successors, counters);
+}
+
+// ---- many checks at once ----
+
+// The groups whose checks are due at the queue's first instant, in the order of their members.
+Groups GroupEvents::due_groups(double when) const {
+  std::vector<Event> events;
+  sim_.queue.first_ones(events);
+  Groups groups;
+  for (const Event& event : events) {
+    if (event.kind != EventKind::group_check || event.key.time != when) continue;
+    const State& tail = *sim_.graph.tail(ProcessId{event.subject});
+    const std::shared_ptr<Group>& group = tail.group;
+    if (group && !tail.error && group->end_tested && group->arc->complete() &&
+        group->key.time < when && group->next_check == when)
+      groups.push_back(group);
+  }
+  sort_once(groups);
+  return groups;
+}
+
+// Null: it is for its event to decide.
+std::unique_ptr<GroupEvents::Decision> GroupEvents::decide_ahead(
+    const std::shared_ptr<Group>& group, double when) const {
+  auto decision = std::make_unique<Decision>();
+  Key& key = decision->key = group_check_key(*group, when);
+  decision->concerned = family(sim_.before(key), group);
+  if (decision->concerned.empty()) return nullptr;
+  key.id = number(decision->concerned.front());
+  // each family once
+  const auto is_due = [&](ProcessId member) {
+    const Group& theirs = *sim_.before(key).state(member).group;
+    return theirs.end_tested && theirs.arc->complete() && known(member, key);
+  };
+  if (!group->contains(decision->concerned.front()) ||
+      !std::all_of(decision->concerned.begin(), decision->concerned.end(), is_due))
+    return nullptr;
+  Decided decided = decide(sim_.before(key, &decision->log), decision->concerned, Cause::check,
+                           decision->counters);
+  Regrouped* regrouped = std::get_if<Regrouped>(&decided);
+  if (!regrouped) return nullptr;
+  decision->successors = std::move(regrouped->successors);
+  // (what is redone is compared as it enters, untested)
+  for (const Successor& successor : decision->successors)
+    if (const auto& made = successor.data.group;
+        made && made->key == key && !sim_.options.undo_redo)
+      test_end(sim_.scene, sim_.surroundings, *made, decision->counters);
+  decision->log.close(sim_.graph);
+  return decision;
+}
+
+// Checks of one instant hardly ever concern each other: they are decided side by side, each as if
+// it were the first; what has to do with another one after all is decided anew by its event.
+void GroupEvents::decide_ahead(double when) {
+  if (decided_at_ == when || !Team::current()) return;
+  decided_at_ = when;
+  decisions_.clear();
+  const Groups groups = due_groups(when);
+  if (groups.size() < 2) return;
+  decisions_.resize(groups.size());
+  each_in_parallel(groups.size(), 1,
+                   [&](std::size_t i) { decisions_[i] = decide_ahead(groups[i], when); });
+  std::erase(decisions_, nullptr);
+  std::sort(decisions_.begin(), decisions_.end(),
+            [](const auto& x, const auto& y) { return x->key < y->key; });
+}
+
+// What was decided ahead for this check; null: nothing, or it no longer holds.
+std::unique_ptr<GroupEvents::Decision> GroupEvents::decided(
+    const Key& key, const std::vector<ProcessId>& concerned) {
+  const auto at = std::lower_bound(
+      decisions_.begin(), decisions_.end(), key,
+      [](const auto& decision, const Key& sought) { return decision && decision->key < sought; });
+  if (at == decisions_.end() || !*at || (*at)->key != key) return nullptr;
+  std::unique_ptr<Decision> decision = std::move(*at);
+  decisions_.erase(at);
+  const bool holds = decision->concerned == concerned && decision->log.holds(sim_.graph);
+  return holds ? std::move(decision) : nullptr;
+}
+
 Progress GroupEvents::check(ProcessId id) {
   const State& tail = *sim_.graph.tail(id);
   if (tail.driven()) return stop_driven(id);
@@ -147,24 +252,19 @@ Progress GroupEvents::check(ProcessId id) {
     key.id = number(concerned.front());
     concerned = all_concerned();
   }
-  std::vector<Successor> successors;
-  successors.reserve(concerned.size());
-  const Group* failed = nullptr;
-  for (const ProcessId member : concerned) {
-    const Group& theirs = *sim_.before(key).state(member).group;
-    theirs.arc->extend(key.time);
-    if (!theirs.arc->failure().empty()) failed = &theirs;
-    successors.push_back(make_successor(sim_.before(key), member, true));
+  decide_ahead(when);
+  if (const auto decision = decided(key, concerned)) {
+    counters_.add(decision->counters);
+    discontinuities_.enter(key, decision->successors);
+    return Progress::done;
   }
-  if (failed) {
-    const UserError error(failure_of(sim_.scene, *failed),
-                          sim_.body_of(concerned.front()).info.place);
-    for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
-  } else if (regroup(key, successors, early ? Cause::early_check : Cause::check) ==
-             Progress::try_again) {
+  Decided decision =
+      decide(sim_.before(key), concerned, early ? Cause::early_check : Cause::check, counters_);
+  if (const Waits* waits = std::get_if<Waits>(&decision)) {
+    await(waits->region, key);
     return Progress::try_again;
   }
-  discontinuities_.enter(key, successors);
+  discontinuities_.enter(key, std::get<Regrouped>(decision).successors);
   return Progress::done;
 }
 

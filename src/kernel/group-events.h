@@ -6,7 +6,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "groups/regroup.h"
@@ -43,6 +45,21 @@ class GroupEvents {
   Progress check(ProcessId id);
 
  private:
+  // What a check comes to, decided ahead of its event together with the others of its instant.
+  struct Decision {
+    Key key;
+    std::vector<ProcessId> concerned;
+    std::vector<Successor> successors;
+    GroupCounters counters;
+    ReadLog log;
+  };
+  using Decided = std::variant<Regrouped, Waits>;
+  Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
+                 GroupCounters& counters) const;
+  void decide_ahead(double when);
+  Groups due_groups(double when) const;
+  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
+  std::unique_ptr<Decision> decided(const Key& key, const std::vector<ProcessId>& concerned);
   Progress stop_driven(ProcessId id);
   bool own_check_before(ProcessId id, const Key& key) const;
   bool claims_reach(ProcessId id, const Key& key) const;
@@ -53,6 +70,8 @@ class GroupEvents {
   Claims& claims_;
   Discontinuities& discontinuities_;
   const Delivery& delivery_;
+  double decided_at_ = -never;                        // s
+  std::vector<std::unique_ptr<Decision>> decisions_;  // for that instant, by key
 };
 
 }  // namespace tw

@@ -59,7 +59,7 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
 
 Progress Kernel::process(const Event& event) {
   switch (event.kind) {
-    case EventKind::advance: claims.claim_window(simulation.body(event.subject)); break;
+    case EventKind::advance: claims.claim_due(event); break;
     case EventKind::callback: return callback_events.process(event.subject);
     case EventKind::group_check: return groups.check(ProcessId{event.subject});
     case EventKind::pair:
@@ -144,7 +144,7 @@ bool Kernel::step(double until) {
 std::vector<DearestGroup> Kernel::dearest_groups() const { return dearest_groups_of(simulation); }
 
 StatisticsTable Kernel::statistics() const {
-  return statistics_of(simulation, delivery, distance_queries - queries_before_);
+  return statistics_of(simulation, delivery, work_count.since(before_));
 }
 
 void Kernel::validate_all() const {

@@ -19,6 +19,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/work-count.h"
 #include "kernel/active-pairs.h"
 #include "kernel/bodies.h"
 #include "kernel/callback-book.h"
@@ -78,7 +79,7 @@ class Kernel {
  private:
   Progress process(const Event& event);
 
-  unsigned long long queries_before_ = distance_queries;  // of other worlds in this thread
+  WorkCount before_ = work_count;  // of other worlds in this thread
 };
 
 }  // namespace tw

@@ -64,6 +64,7 @@ void add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> proced
   add_law(kernel, id,
           std::make_shared<ProcedureLaw>(body, kernel.simulation.scene.gravity_scale(),
                                          std::move(procedure)));
+  kernel.simulation.calls_out = true;
 }
 
 }  // namespace tw

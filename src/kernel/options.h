@@ -19,6 +19,7 @@ struct AdversaryOptions {
 
 struct WorldOptions {
   std::uint64_t seed = 0;
+  int threads = 0;            // that loops are shared among; 0: as many as there are cores
   bool hash = false;          // accumulate the hash of the committed history
   bool check = false;         // run every validator after every event
   bool undo_redo = false;     // test mode: undo every discontinuity and redo it

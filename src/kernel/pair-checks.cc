@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/parallel.h"
 #include "detect/approach.h"
 #include "detect/dip.h"
 #include "detect/exact-impact.h"
@@ -68,6 +69,25 @@ bool moves_in_group(const State& state) {
   return state.group && state.trajectory().stepped() && !state.error;
 }
 
+// Whether to look at it may complete it.
+bool is_open(const State& state) {
+  return state.driven() || (state.group && !state.group->at_rest && !state.group->arc->complete());
+}
+
+// ---- outcomes ----
+
+constexpr PairOutcome waits{PairOutcome::Kind::wait, {}};
+
+PairOutcome check_at(const Pair& pair, double when) {
+  return {PairOutcome::Kind::schedule, {when, 0, KeyKind::step, pair_id(pair.a, pair.b)}};
+}
+
+PairOutcome pending_at(Pair& pair, const Key& key) {
+  pair.pending = true;
+  pair.impact = key;
+  return {PairOutcome::Kind::schedule, key};
+}
+
 }  // namespace
 
 PairChecks::PairChecks(Simulation& simulation, ActivePairs& pairs)
@@ -80,9 +100,10 @@ const State& PairChecks::tail_of(BodyId body) const {
   return *sim_.graph.tail(sim_.process_of(body));
 }
 
-std::uint32_t PairChecks::make(const Body& a, const Body& b, const Key& from) {
-  const std::uint32_t index = pairs_.make(a.id(), b.id(), from);
-  pairs_[index].head_start = std::max(sim_.process(a).head_start, sim_.process(b).head_start);
+std::uint32_t PairChecks::make(BodyId a, BodyId b, const Key& from) {
+  const std::uint32_t index = pairs_.make(a, b, from);
+  pairs_[index].head_start =
+      std::max(sim_.process(sim_.body(a)).head_start, sim_.process(sim_.body(b)).head_start);
   ++counters_.pairs_made;
   return index;
 }
@@ -94,17 +115,15 @@ void PairChecks::schedule(std::uint32_t index, const Key& key) {
   sim_.schedule(pair.event, key, EventKind::pair, index, pair.head_start);
 }
 
-void PairChecks::schedule_check(std::uint32_t index, double when) {
-  Pair& pair = pairs_[index];
-  const Key key{when, 0, KeyKind::step, pair_id(pair.a, pair.b)};
-  schedule(index, key);
-}
-
-void PairChecks::set_pending(std::uint32_t index, const Key& key) {
-  Pair& pair = pairs_[index];
-  pair.pending = true;
-  pair.impact = key;
-  schedule(index, key);
+void PairChecks::apply(std::uint32_t index, const PairOutcome& outcome) {
+  using enum PairOutcome::Kind;
+  switch (outcome.kind) {
+    case nothing: break;
+    case wait: sim_.queue.withdraw(pairs_[index].event); break;
+    case schedule: this->schedule(index, outcome.key); break;
+    case drop: pairs_.drop(index); break;
+    case alone: pursue(index); break;
+  }
 }
 
 // After a rollback of one of its bodies to `key`: what was known from there on is forgotten.
@@ -127,49 +146,41 @@ void PairChecks::reset(std::uint32_t index, const Key& key) {
     return;
   }
   const double when = pair.started ? std::min(key.time, pair.next_check) : pair.from.time;
-  schedule_check(index, std::max(pair.from.time, when));
+  apply(index, check_at(pair, std::max(pair.from.time, when)));
 }
 
-// On to what follows the piece; false if that is not known yet.
-bool PairChecks::next_piece(Pair& pair, const Piece& piece) {
+// ---- along the pieces: an outcome ends it, none leads on ----
+
+// On to what follows the piece, where that is known.
+std::optional<PairOutcome> PairChecks::next_piece(Pair& pair, const Piece& piece) const {
   pair.from = piece.end;
-  if (piece.end == last_key || piece.ends_naturally) {
-    sim_.queue.withdraw(pair.event);
-    return false;
-  }
+  if (piece.end == last_key || piece.ends_naturally) return waits;
   pair.started = false;
-  return true;
+  return std::nullopt;
 }
 
-bool PairChecks::pursue_exact(std::uint32_t index, const Piece& piece) {
-  Pair& pair = pairs_[index];
-  ++counters_.predictions;
+std::optional<PairOutcome> PairChecks::follow_exact(Pair& pair, const Piece& piece,
+                                                    PairCounts& counts) const {
+  ++counts.predictions;
   const double impact_time = exact_impact(piece);
   if (impact_time < never) {
     const Key key = pieces_.impact_key(piece, impact_time);
-    if (key < piece.end) {
-      set_pending(index, key);
-      return true;
-    }
+    if (key < piece.end) return pending_at(pair, key);
   }
-  if (piece.end == last_key) {
-    // nothing will happen on these arcs: the next claim asks again
-    pairs_.drop(index);
-    return true;
-  }
+  if (piece.end == last_key) return PairOutcome{PairOutcome::Kind::drop, {}};
   pair.from = piece.end;
   pair.started = false;
-  return false;
+  return std::nullopt;
 }
 
 // ---- pairs on the grid ----
 
 // Overlapping and approaching at the common start is an impact now.  True if one was found.
-bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
+bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const {
   const double start = piece.start_time();
-  ++counters_.checks;
+  ++counts.checks;
   const double clear = certificate(piece, pair.caches, start, 0);
-  counters_.certificates += clear > -never;
+  counts.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
   const Separation s = separation_at(piece, start);
@@ -181,17 +192,18 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece) {
 }
 
 // Looks at one grid point; true if there is an impact at or before it (then pair.impact).
-bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when) {
-  ++counters_.checks;
-  if (++pair.looks > counters_.dearest_pair_checks) {
-    counters_.dearest_pair_checks = pair.looks;
-    counters_.dearest_pair[0] = pair.a;
-    counters_.dearest_pair[1] = pair.b;
+bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when,
+                                  PairCounts& counts) const {
+  ++counts.checks;
+  if (++pair.looks > counts.dearest_pair_checks) {
+    counts.dearest_pair_checks = pair.looks;
+    counts.dearest_pair[0] = pair.a;
+    counts.dearest_pair[1] = pair.b;
   }
   double clear = certificate(piece, pair.caches, when, slack_of(sim_.scene, piece));
   if (!(clear > when))
     clear = certificate(piece, pair.caches, when, depth_at_touch(sim_.scene, pair, piece));
-  counters_.certificates += clear > -never;
+  counts.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
 
@@ -220,10 +232,11 @@ bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, dou
 }
 
 // A dip before the next grid point; true if there is an impact (then pair.impact).
-bool PairChecks::check_between(Pair& pair, const Piece& piece, double from) {
+bool PairChecks::check_between(Pair& pair, const Piece& piece, double from,
+                               PairCounts& counts) const {
   const double to = grid_after(from);
   if (pair.next_check != to) return false;
-  const double dip = first_dip(piece, pair.caches, from, to, counters_.certificates);
+  const double dip = first_dip(piece, pair.caches, from, to, counts.certificates);
   return dip < never && find_crossing(pair, piece, from, dip);
 }
 
@@ -234,31 +247,28 @@ void PairChecks::raise_safe_time(Pair& pair, const Piece& piece, double checked)
   if (pair.from.time < safe && safe < piece.end.time) pair.from = {safe, 0, KeyKind::birth, 0};
 }
 
-// Follows a piece on the grid; true when the pair waits for an event, false: on to the next piece.
-bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double until) {
-  Pair& pair = pairs_[index];
+// Follows a piece on the grid.
+std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& piece, double until,
+                                                      PairCounts& counts) const {
   if (!pair.started || pair.checked_start != piece.start) {
     pair.started = true;
     pair.checked_start = piece.start;
     pair.touch = 0;
     // an impact at the common start that was rolled back is found again from its own key on
     if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
-      if ((check_common_start(pair, piece) || check_between(pair, piece, piece.start_time())) &&
-          pair.impact < piece.end) {
-        set_pending(index, pair.impact);
-        return true;
-      }
+      if ((check_common_start(pair, piece, counts) ||
+           check_between(pair, piece, piece.start_time(), counts)) &&
+          pair.impact < piece.end)
+        return pending_at(pair, pair.impact);
       raise_safe_time(pair, piece, piece.start_time());
     } else {
       pair.next_check = grid_ceil(pair.from.time);
       if (pair.next_check <= piece.start_time()) pair.next_check = grid_after(piece.start_time());
       // taken up between two grid points: a dip belongs to the whole stretch between them
       const double before = std::max(piece.start_time(), grid_floor(pair.from.time));
-      if (before < pair.next_check && check_between(pair, piece, before) &&
-          pair.impact < piece.end) {
-        set_pending(index, pair.impact);
-        return true;
-      }
+      if (before < pair.next_check && check_between(pair, piece, before, counts) &&
+          pair.impact < piece.end)
+        return pending_at(pair, pair.impact);
     }
   }
 
@@ -270,87 +280,107 @@ bool PairChecks::pursue_on_grid(std::uint32_t index, const Piece& piece, double 
       // a root could lie in the step before the next check, not earlier
       const double safe = std::min(when - answer::check_grid, piece.end.time);
       if (safe > pair.from.time) pair.from = {safe, 0, KeyKind::birth, 0};
-      if (moves_in_group(*piece.a) || moves_in_group(*piece.b))
-        sim_.queue.withdraw(pair.event);
-      else
-        schedule_check(index, std::min(when, piece.end.time));
-      return true;
+      if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) return waits;
+      return check_at(pair, std::min(when, piece.end.time));
     }
-    if ((check_grid_point(pair, piece, when) || check_between(pair, piece, when)) &&
-        pair.impact < piece.end) {
-      set_pending(index, pair.impact);
-      return true;
-    }
+    if ((check_grid_point(pair, piece, when, counts) || check_between(pair, piece, when, counts)) &&
+        pair.impact < piece.end)
+      return pending_at(pair, pair.impact);
     raise_safe_time(pair, piece, when);
   }
   // apart for ever: wait until the arcs change or the boxes part
-  return !next_piece(pair, piece);
+  return next_piece(pair, piece);
 }
 
-void PairChecks::meet(const Body& a, const Body& b, const Key& claimed_before) {
-  if (const std::uint32_t known = pairs_.find(a.id(), b.id()); known != ActivePairs::none) {
-    const Pair& pair = pairs_[known];
-    const bool waits = pair.event == EventQueue::none && !pair.pending && !pair.parked;
-    if (waits && pair.from != last_key) pursue(known);
-    return;
-  }
-  const Key from = std::min(claimed_before, sim_.process(b).claim);
-  if (pieces_.in_contact_from(std::min(a.id(), b.id()), std::max(a.id(), b.id()), from)) return;
-
-  // an exact pair gets a record only when it will meet
-  bool all_exact = true;
-  const auto impact = pieces_.first_exact_impact(a.id(), b.id(), from, all_exact);
-  if (all_exact && !impact) return;
-  const std::uint32_t index = make(a, b, from);
-  if (all_exact)
-    set_pending(index, *impact);
-  else
-    pursue(index);
-}
-
-// Moves the safe time up as far as the event's time, over as many pieces as it takes.
-void PairChecks::pursue(std::uint32_t index) {
-  const double now = pairs_[index].event == EventQueue::none
-                         ? pairs_[index].from.time
-                         : sim_.queue.event(pairs_[index].event).key.time;
+// Over as many pieces as it takes, up to the event's time.
+PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper) const {
+  const double now =
+      pair.event == EventQueue::none ? pair.from.time : sim_.queue.event(pair.event).key.time;
   for (;;) {
-    Pair& pair = pairs_[index];
     const Piece piece = pieces_.at(pair.a, pair.b, pair.from);
     if (piece.a->error || piece.b->error) {
       pair.parked = true;
-      sim_.queue.withdraw(pair.event);
-      return;
+      return waits;
     }
     if (in_contact(piece)) {
-      if (!next_piece(pair, piece)) return;
+      if (const auto end = next_piece(pair, piece)) return *end;
       continue;
     }
+    if (as_helper && (is_open(*piece.a) || is_open(*piece.b)))
+      return {PairOutcome::Kind::alone, {}};
     // arcs of moving groups are known as far as both have claimed
     double until = now;
     if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
       until = std::min(sim_.process(sim_.body(pair.a)).claim.time,
                        sim_.process(sim_.body(pair.b)).claim.time);
       if (!(pair.from.time < until)) {
-        sim_.queue.withdraw(pair.event);
-        return;
+        // what an error stopped at this very instant claims no more
+        const auto stopped = [&](const State& tail) {
+          return tail.error && !(pair.from.time < tail.key.time);
+        };
+        pair.parked = stopped(tail_of(pair.a)) || stopped(tail_of(pair.b));
+        return waits;
       }
       const double to = std::min(until, piece.end.time);
       if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to)) {
         if (to == piece.end.time) {
-          if (!next_piece(pair, piece)) return;
+          if (const auto end = next_piece(pair, piece)) return *end;
           continue;
         }
         pair.from = {to, 0, KeyKind::birth, 0};
         pair.started = false;
-        sim_.queue.withdraw(pair.event);
-        return;
+        return waits;
       }
     }
     // what was replaced at the instant at which it began no claim has completed
     for (const State* state : {piece.a, piece.b})
       if (moves_in_group(*state)) state->group->arc->extend(state->group->arc->start().end);
-    const bool exact = predicted_exactly(piece);
-    if (exact ? pursue_exact(index, piece) : pursue_on_grid(index, piece, until)) return;
+    const auto end = predicted_exactly(piece) ? follow_exact(pair, piece, counts)
+                                              : follow_on_grid(pair, piece, until, counts);
+    if (end) return *end;
+  }
+}
+
+void PairChecks::pursue(std::uint32_t index) {
+  apply(index, follow(pairs_[index], counters_, false));
+}
+
+// ---- those that meet ----
+
+// Whether the two have a record, or are to have one.
+void PairChecks::look_up(Meeting& m) const {
+  m.pair = pairs_.find(m.a, m.b);
+  if (m.pair != ActivePairs::none) {
+    const Pair& pair = pairs_[m.pair];
+    const bool has_time = pair.event == EventQueue::none && !pair.pending && !pair.parked;
+    m.outcome.kind =
+        has_time && pair.from != last_key ? PairOutcome::Kind::wait : PairOutcome::Kind::nothing;
+    return;
+  }
+  if (pieces_.in_contact_from(std::min(m.a, m.b), std::max(m.a, m.b), m.from)) return;
+  // an exact pair gets a record only when it will meet
+  bool all_exact = true;
+  const auto impact = pieces_.first_exact_impact(m.a, m.b, m.from, all_exact);
+  m.is_new = impact || !all_exact;
+  if (impact) m.outcome = {PairOutcome::Kind::schedule, *impact};
+}
+
+void PairChecks::meet(std::vector<Meeting>& meetings) {
+  using enum PairOutcome::Kind;
+  constexpr std::size_t grain = 16;
+  each_in_parallel(meetings.size(), grain, [&](std::size_t i) { look_up(meetings[i]); });
+  for (Meeting& m : meetings)
+    if (m.is_new) m.pair = make(m.a, m.b, m.from);
+  each_in_parallel(meetings.size(), grain, [&](std::size_t i) {
+    Meeting& m = meetings[i];
+    if (m.outcome.kind == schedule)
+      m.outcome = pending_at(pairs_[m.pair], m.outcome.key);
+    else if (m.is_new || m.outcome.kind == wait)
+      m.outcome = follow(pairs_[m.pair], m.counts, true);
+  });
+  for (const Meeting& m : meetings) {
+    counters_.add(m.counts);
+    apply(m.pair, m.outcome);
   }
 }
 

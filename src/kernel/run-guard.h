@@ -12,7 +12,8 @@ class RunGuard {
   explicit RunGuard(Simulation& simulation)
       : sim_(simulation),
         cpu_(thread_cpu_seconds()),
-        output_(simulation.present.counters.output_cpu_seconds) {
+        output_(simulation.present.counters.output_cpu_seconds),
+        scope_(team_of(simulation)) {
     sim_.running = true;
   }
   ~RunGuard() {
@@ -24,8 +25,16 @@ class RunGuard {
   RunGuard& operator=(const RunGuard&) = delete;
 
  private:
+  static Team* team_of(Simulation& simulation) {
+    const int wanted = simulation.options.threads, threads = wanted > 0 ? wanted : Team::cores();
+    if (threads < 2 || simulation.calls_out) return nullptr;
+    if (!simulation.team) simulation.team = std::make_unique<Team>(threads);
+    return simulation.team.get();
+  }
+
   Simulation& sim_;
   double cpu_, output_;
+  Team::Scope scope_;
 };
 
 }  // namespace tw

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/parallel.h"
 #include "collision/broad-phase.h"
 #include "groups/before.h"
 #include "groups/surroundings.h"
@@ -35,6 +36,9 @@ struct Simulation {
   std::vector<BodyId> kinematic;  // bodies that move by a given function of time
   Surroundings surroundings{scene, grid, unbounded};
   bool running = false;
+  // Procedures of users are called while arcs are looked at: all is done in their thread.
+  bool calls_out = false;
+  std::unique_ptr<Team> team;  // that shares loops; null until the first run
 
   Simulation() = default;
   Simulation(const Simulation&) = delete;
@@ -47,7 +51,9 @@ struct Simulation {
   Process& process(const Body& body) { return processes[number(body.process)]; }
   const Process& process(const Body& body) const { return processes[number(body.process)]; }
   // What stands before a key, and what groups are decided by.
-  Before before(const Key& key) const { return Before(scene, graph, key); }
+  Before before(const Key& key, ReadLog* log = nullptr) const {
+    return Before(scene, graph, key, log);
+  }
 
   void schedule(EventQueue::Handle& handle, const Key& key, EventKind kind, std::uint32_t subject,
                 double head_start) {

@@ -62,7 +62,7 @@ std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation) {
 }
 
 StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
-                              std::uint64_t distance_queries_made) {
+                              const WorkCount& work) {
   const Scene& scene = simulation.scene;
   const StateGraph& graph = simulation.graph;
   const Present& present = simulation.present;
@@ -132,6 +132,9 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"largest_cascade", whole(counters.deepest_cascade)},
       {"cpu_seconds", counters.cpu_seconds},
       {"cpu_seconds_per_frame", counters.cpu_seconds / frames},
+      {"threads",
+       whole(simulation.options.threads > 0 ? simulation.options.threads : Team::cores())},
+      {"helper_cpu_seconds", work.helper_seconds},
       {"events", whole(counters.events)},
       {"events_postponed", whole(counters.events_postponed)},
       {"claims", whole(counters.claims)},
@@ -140,7 +143,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"checks", whole(counters.checks)},
       {"certificates", whole(counters.certificates)},
       {"active_pairs_avg", ratio(counters.pair_sum, static_cast<double>(counters.events))},
-      {"distance_queries", whole(distance_queries_made)},
+      {"distance_queries", whole(work.distance_queries)},
       {"callbacks_run", whole(counters.callbacks_run)},
       {"groups", whole(counters.groups)},
       {"group_checks", whole(counters.group_checks)},

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/work-count.h"
+
 namespace tw {
 
 // Name and value in the order in which they are shown; numbers are SI.
@@ -26,8 +28,8 @@ struct DearestGroup {
 };
 std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation);
 
-// `distance_queries_made`: by this world.
+// `work`: for this world.
 StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
-                              std::uint64_t distance_queries_made);
+                              const WorkCount& work);
 
 }  // namespace tw

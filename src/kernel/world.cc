@@ -56,6 +56,16 @@ void World::set_compare_states(const std::string& file) {
 }
 void World::set_gvt_interval(long events) { kernel_->simulation.options.gvt_interval = events; }
 
+void World::set_threads(int threads) {
+  TW_REQUIRE(threads >= 0 && threads <= most_threads,
+             "threads is " + std::to_string(threads) +
+                 "; expected a whole number from 0 (as many as " + "there are cores) to " +
+                 std::to_string(most_threads));
+  kernel_->simulation.require_between_runs("the number of threads was set");
+  kernel_->simulation.options.threads = threads;
+  kernel_->simulation.team.reset();
+}
+
 void World::set_window_cells(double cells) {
   TW_REQUIRE(cells > 0 && std::isfinite(cells),
              "window is " + show(cells) + " cells; expected a positive number");

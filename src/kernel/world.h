@@ -57,6 +57,8 @@ class World {
   void set_write_states(const std::string& file);    // before the first run
   void set_compare_states(const std::string& file);  // before the first run
   void set_gvt_interval(long events);
+  // Loops are shared among so many threads; 0: as many as there are cores.  The answer is the same.
+  void set_threads(int threads);
   void set_window_cells(double cells);
   void set_group_check_rate(double rate);                         // before the first run
   void set_adversary(std::optional<AdversaryOptions> adversary);  // before the first run

@@ -100,6 +100,8 @@ constexpr WorldSetting world_settings[] = {
     {"compare-states",
      [](World& w, SCM v, const char* n) { w.set_compare_states(to_file_name(v, n)); }},
     {"gvt-interval", [](World& w, SCM v, const char* n) { w.set_gvt_interval(to_integer(v, n)); }},
+    {"threads",
+     [](World& w, SCM v, const char* n) { w.set_threads(static_cast<int>(to_integer(v, n))); }},
     {"window", [](World& w, SCM v, const char* n) { w.set_window_cells(to_real(v, n)); }},
 };
 

@@ -58,6 +58,18 @@ void EventQueue::withdraw(Handle& handle) {
 
 // Priorities are key times or earlier: below a slot whose priority is not earlier than the least
 // time known there is none.  In order that ends at once.
+void EventQueue::first_ones(std::vector<Event>& events) const {
+  std::vector<std::size_t> open;
+  if (!heap_.empty()) open.push_back(0);
+  while (!open.empty()) {
+    const std::size_t at = open.back();
+    open.pop_back();
+    if (heap_[at].priority > heap_[0].priority) continue;
+    events.push_back(events_[heap_[at].handle]);
+    for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c) open.push_back(c);
+  }
+}
+
 double EventQueue::least_time() const {
   double least = never;
   std::vector<std::size_t> open;

@@ -35,6 +35,8 @@ class EventQueue {
   const Event& top() const { return events_[heap_[0].handle]; }
   double top_priority() const { return heap_[0].priority; }
   const Event& event(Handle handle) const { return events_[handle]; }
+  // Appends all events of that priority, in no order; nothing comes before.
+  void first_ones(std::vector<Event>& events) const;
   // The least time of all events' keys; never before the priority of the top.  `never` if empty.
   double least_time() const;
   // All that are scheduled, in no order: for validators.

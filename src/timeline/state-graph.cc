@@ -44,6 +44,7 @@ State* StateGraph::append(ProcessId process, const Key& key) {
   state->prev = queue.tail;
   (queue.tail ? queue.tail->next : queue.head) = state;
   queue.tail = state;
+  ++queue.version;
   if (!queue.busy) busy_.push_back(process);
   queue.busy = true;
   return state;
@@ -103,6 +104,7 @@ std::size_t StateGraph::rollback(ProcessId process, const Key& key, std::vector<
     const Work item = work.back();
     work.pop_back();
     Queue& queue = queues_[number(item.process)];
+    ++queue.version;
     Key least = last_key;
 
     // newest first

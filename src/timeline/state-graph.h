@@ -35,6 +35,9 @@ class StateGraph {
   State* head(ProcessId process) const { return queues_[number(process)].head; }
   State* tail(ProcessId process) const { return queues_[number(process)].tail; }
 
+  // Another number whenever a state came to the queue's end or went from there.
+  std::uint64_t version(ProcessId process) const { return queues_[number(process)].version; }
+
   // Appends a fresh state with `key` to the queue.  The key must be later than the tail's.
   State* append(ProcessId process, const Key& key);
   // Closes the states of one discontinuity into a ring.
@@ -75,6 +78,7 @@ class StateGraph {
   struct Queue {
     State* head = nullptr;
     State* tail = nullptr;
+    std::uint64_t version = 0;
     bool busy = false;  // stands in busy_
   };
   State* allocate();

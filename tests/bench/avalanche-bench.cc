@@ -50,7 +50,7 @@ struct Outcome {
 
 class AvalancheRun {
  public:
-  AvalancheRun(const OtherScene& scene, double accuracy);
+  AvalancheRun(const OtherScene& scene, double accuracy, int threads);
   // Goes on to `until` or to the first error, frame by frame.
   Outcome run(double until);
   const World& world() const { return world_; }
@@ -67,8 +67,10 @@ class AvalancheRun {
   Outcome outcome_;
 };
 
-AvalancheRun::AvalancheRun(const OtherScene& scene, double accuracy)
+AvalancheRun::AvalancheRun(const OtherScene& scene, double accuracy, int threads)
     : scene_(scene), meter_(scene), states_(first_states(scene)) {
+  world_.set_threads(threads);
+  world_.set_hash(true);
   world_.set_accuracy(accuracy);
   world_.set_gravity(scene.gravity);
   ContactSettings contact;
@@ -172,9 +174,9 @@ std::string verdict(const Outcome& o, double beyond, double rollback) {
 }
 
 // Returns whether all is well.
-bool run_row(const std::string& file, double until, double accuracy) {
+bool run_row(const std::string& file, double until, double accuracy, int threads) {
   const OtherScene scene = read_scene(file);
-  AvalancheRun run(scene, accuracy);
+  AvalancheRun run(scene, accuracy, threads);
   const Outcome o = run.run(until);
   const auto value = [&](const char* name) { return statistic(run.world(), name); };
   const double duration = o.reached > 0 ? o.reached : 1;
@@ -192,6 +194,7 @@ bool run_row(const std::string& file, double until, double accuracy) {
       seed_of(file).c_str(), cpu, 1e3 * cpu / (duration * frames_per_second), 1e3 * o.worst_frame,
       value("collisions"), value("fusions"), value("fissions"), 100 * beyond, 100 * rollback, step,
       1e3 * o.depth, o.lost, o.rise, rest.c_str(), o.measuring, judged.c_str());
+  std::fprintf(stderr, "hash %s\n", run.world().history_hash().c_str());
   std::fflush(stdout);
   return judged == "ok";
 }
@@ -211,6 +214,7 @@ int main(int argc, char** argv) {
   using namespace tw::bench;
   double until = 45;  // s
   double accuracy = scene_accuracy;
+  int threads = 1;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -218,6 +222,8 @@ int main(int argc, char** argv) {
       until = std::atof(argument.c_str() + 8);
     else if (argument.rfind("--accuracy=", 0) == 0)
       accuracy = std::atof(argument.c_str() + 11);
+    else if (argument.rfind("--threads=", 0) == 0)
+      threads = std::atoi(argument.c_str() + 10);
     else if (argument[0] == '-')
       usage(argv[0]);
     else
@@ -235,7 +241,7 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   bool good = true;
   try {
-    for (const std::string& file : files) good = run_row(file, until, accuracy) && good;
+    for (const std::string& file : files) good = run_row(file, until, accuracy, threads) && good;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

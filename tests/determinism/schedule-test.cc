@@ -110,6 +110,7 @@ TEST(Schedule, everything_at_once_has_no_influence) {
     s.check = random.below(3) == 0;
     s.undo_redo = random.below(2) == 0;
     s.observe = random.below(2) == 0;
+    s.threads = static_cast<int>(1 + random.below(4));
   }
   schedules.insert(schedules.begin(), Schedule());
   for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 10);

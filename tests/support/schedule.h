@@ -27,6 +27,7 @@ struct Schedule {
   bool check = false;
   bool undo_redo = false;
   bool observe = false;
+  int threads = 1;
 };
 
 // Head starts from 0.2 to 2 s; even seeds: bodies, odd seeds: every event, every fourth: both.
@@ -47,6 +48,7 @@ inline std::string describe(const Schedule& s) {
                      " pieces " + std::to_string(s.pieces) + " fps " + show(s.fps);
   if (s.check) text += " check";
   if (s.undo_redo) text += " undo";
+  if (s.threads > 1) text += " threads " + std::to_string(s.threads);
   if (s.adversary)
     text += " adversary " + std::to_string(s.adversary->seed) + " head start " +
             show(s.adversary->head_start) + (s.adversary->every_event ? " events" : "") +
@@ -111,6 +113,7 @@ inline void apply(World& world, const Schedule& schedule) {
   world.set_window_cells(schedule.window_cells);
   world.set_check(schedule.check);
   world.set_undo_redo(schedule.undo_redo);
+  world.set_threads(schedule.threads);
 }
 
 // Cut at times that are no round numbers.

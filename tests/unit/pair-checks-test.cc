@@ -17,7 +17,8 @@ struct PairChecksTest : testing::Test {
 
   void meet(BodyId a, BodyId b) {
     pairs.make_room_for(std::max(a, b));
-    checks.meet(simulation.body(a), simulation.body(b), Key{});
+    std::vector<Meeting> meetings{{a, b, Key{}, 0, false, {}, {}}};
+    checks.meet(meetings);
   }
 };
 

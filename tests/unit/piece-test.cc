@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/constants.h"
+#include "base/work-count.h"
 #include "detect/approach.h"
 #include "detect/clearance.h"
 #include "detect/dip.h"
@@ -111,16 +112,16 @@ TEST(Pieces, a_clearance_once_measured_answers_again_until_something_changes) {
   const Piece piece = between(a, b);
   Clearance known;
   SimplexCaches caches;
-  const unsigned long long before = distance_queries;
+  const unsigned long long before = work_count.distance_queries;
   EXPECT_TRUE(apart_throughout(piece, known, caches, 0, 0.1));
   EXPECT_EQ(known.until, 0.1);
-  const unsigned long long asked = distance_queries;
+  const unsigned long long asked = work_count.distance_queries;
   EXPECT_GT(asked, before);
   EXPECT_TRUE(apart_throughout(piece, known, caches, 0.1, 0.2));
-  EXPECT_EQ(distance_queries, asked) << "remembered";
+  EXPECT_EQ(work_count.distance_queries, asked) << "remembered";
   known.forget_from(0.15);
   EXPECT_TRUE(apart_throughout(piece, known, caches, 0.2, 0.3));
-  EXPECT_GT(distance_queries, asked) << "what was remembered no longer holds";
+  EXPECT_GT(work_count.distance_queries, asked) << "what was remembered no longer holds";
   EXPECT_FALSE(apart_throughout(piece, known, caches, 0.3, 8));
 }
 

@@ -1,6 +1,7 @@
 // Signed distance against feature enumeration, libccd and closed forms.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/separation.h"
+#include "base/work-count.h"
 
 #include <gtest/gtest.h>
 
@@ -379,9 +380,9 @@ TEST(Separation, of_unions_is_the_least_over_parts_and_skips_distant_ones) {
         s.part_b = static_cast<int>(q);
         if (s.distance < truth.distance) truth = s;
       }
-    const unsigned long long before = distance_queries;
+    const unsigned long long before = work_count.distance_queries;
     const Separation s = separation(*shape, frame_a, *shape, frame_b);
-    queries += distance_queries - before;
+    queries += work_count.distance_queries - before;
     // to the last bit
     ASSERT_EQ(s.distance, truth.distance);
     ASSERT_EQ(s.part_a, truth.part_a);

@@ -1,0 +1,74 @@
+// Loops over independent items, on several threads where that pays.
+//
+// An item writes to its own slot alone and reads what no other item writes; whatever else follows
+// is done afterwards by the caller, in the order of the items.  So the result is that of an
+// ordinary loop, bit for bit, whoever did which item.
+//
+// The team belongs to the thread that works for a world: Team::Scope lends it to that thread's
+// loops, and to the loops within its loops.  Without one, or in a team of one, a loop is a loop.
+//
+// Source of the pool: oneTBB.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace tw {
+
+// Threads that share loops: the caller's and helpers, which come with the first loop and sleep
+// while there is nothing to do.
+class Team {
+ public:
+  // `threads` >= 1, the caller's included.
+  explicit Team(int threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  int threads() const { return threads_; }
+  // The cores that this process may use.
+  static int cores();
+
+  // For as long as it lives this thread's loops are shared with the team.
+  class Scope {
+   public:
+    explicit Scope(Team* team);
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Team* outer_;
+  };
+  // This thread's; null: its loops are its own.
+  static Team* current();
+
+  using Item = void (*)(void* loop, std::size_t item);
+  // Items at a time: `grain` at least.
+  void run(std::size_t items, std::size_t grain, Item item, void* loop);
+
+ private:
+  struct Pool;
+  int threads_;
+  std::unique_ptr<Pool> pool_;
+};
+
+// Calls item(i) for each i < items, once.  `grain`: so many items are worth a helper, 10 us of work
+// or more; fewer than twice as many stay together.  Where items throw, one of their exceptions
+// comes out, and the others need not have been called.
+template <class Function>
+void each_in_parallel(std::size_t items, std::size_t grain, Function&& item) {
+  Team* team = items >= 2 * grain ? Team::current() : nullptr;
+  if (!team) {
+    for (std::size_t i = 0; i < items; ++i) item(i);
+    return;
+  }
+  using Loop = std::remove_reference_t<Function>;
+  team->run(
+      items, grain, [](void* loop, std::size_t i) { (*static_cast<Loop*>(loop))(i); }, &item);
+}
+
+}  // namespace tw
