@@ -57,9 +57,9 @@ TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
   if (theirs.at_rest) return successor.data.follows;
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
-  theirs.arc->extend_patiently(theirs.next_check);
-  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(),
-                             theirs.next_check);
+  const double end = theirs.next_check_at(work.now());
+  theirs.arc->extend_patiently(end);
+  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(), end);
 }
 
 void start_members(const Regrouping& work, const Group& group, StartOfMembers& members) {
@@ -164,7 +164,7 @@ double take_pairs(const Regrouping& work, Group& group) {
     if (!successor) continue;
     group.has_border = true;
     if (!work.changes(successor))
-      border_end = std::min(border_end, successor->data.group->next_check);
+      border_end = std::min(border_end, successor->data.group->next_check_at(work.now()));
   }
   index_pairs(work.scene(), group);
   for (const ProcessId member : group.members)
@@ -216,8 +216,8 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
                                                            : next_check_time(now, interval));
   if (group.pairs.empty())
     group.next_check = std::min(group.next_check, after_next_call(work, group));
-  else if (before && !finds_contacts(work.cause) && before->next_check >= now)
-    group.next_check = std::min(group.next_check, before->next_check);
+  else if (before && !finds_contacts(work.cause) && before->next_check_at(now) >= now)
+    group.next_check = std::min(group.next_check, before->next_check_at(now));
 }
 
 // The step to be tried first: that which the arc before would have gone on with, if the same bodies

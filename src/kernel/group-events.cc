@@ -114,7 +114,7 @@ Progress GroupEvents::stop_driven(ProcessId id) {
 // Successors and groups that follow a check; a function of what stands before its key.
 GroupEvents::Decided GroupEvents::decide(const Before& before,
                                          const std::vector<ProcessId>& concerned, Cause cause,
-                                         GroupCounters& counters) const {
+                                         const Known& is_known, GroupCounters& counters) const {
   const Key& key = before.key();
   std::vector<Successor> successors;
   successors.reserve(concerned.size());
@@ -131,7 +131,6 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
     for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
     return Regrouped{std::move(successors)};
   }
-  const Known is_known = [&](ProcessId id) { return known(id, key); };
   return tw::regroup(before, sim_.surroundings, is_known,
                      {cause, delivery_.observed(CollisionKind::fission), {}}, successors, counters);
 }
@@ -163,16 +162,17 @@ std::unique_ptr<GroupEvents::Decision> GroupEvents::decide_ahead(
   decision->concerned = family(sim_.before(key), group);
   if (decision->concerned.empty()) return nullptr;
   key.id = number(decision->concerned.front());
-  // each family once
-  const auto is_due = [&](ProcessId member) {
-    const Group& theirs = *sim_.before(key).state(member).group;
-    return theirs.end_tested && theirs.arc->complete() && known(member, key);
+  // nothing may be completed here: others look at it, too
+  const Known is_known = [&](ProcessId member) {
+    const Group* theirs = sim_.before(key).state(member).group.get();
+    return (!theirs || theirs->at_rest || theirs->arc->complete()) && known(member, key);
   };
+  // each family once
   if (!group->contains(decision->concerned.front()) ||
-      !std::all_of(decision->concerned.begin(), decision->concerned.end(), is_due))
+      !std::all_of(decision->concerned.begin(), decision->concerned.end(), is_known))
     return nullptr;
   Decided decided = decide(sim_.before(key, &decision->log), decision->concerned, Cause::check,
-                           decision->counters);
+                           is_known, decision->counters);
   Regrouped* regrouped = std::get_if<Regrouped>(&decided);
   if (!regrouped) return nullptr;
   decision->successors = std::move(regrouped->successors);
@@ -258,8 +258,9 @@ Progress GroupEvents::check(ProcessId id) {
     discontinuities_.enter(key, decision->successors);
     return Progress::done;
   }
-  Decided decision =
-      decide(sim_.before(key), concerned, early ? Cause::early_check : Cause::check, counters_);
+  const Known is_known = [&](ProcessId member) { return known(member, key); };
+  Decided decision = decide(sim_.before(key), concerned, early ? Cause::early_check : Cause::check,
+                            is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decision)) {
     await(waits->region, key);
     return Progress::try_again;

@@ -55,7 +55,7 @@ class GroupEvents {
   };
   using Decided = std::variant<Regrouped, Waits>;
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
-                 GroupCounters& counters) const;
+                 const Known& is_known, GroupCounters& counters) const;
   void decide_ahead(double when);
   Groups due_groups(double when) const;
   std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
