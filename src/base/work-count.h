@@ -18,6 +18,6 @@ struct WorkCount {
   }
 };
 
-inline thread_local WorkCount work_count;
+inline constinit thread_local WorkCount work_count;
 
 }  // namespace tw

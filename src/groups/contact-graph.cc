@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "base/constants.h"
 #include "base/parallel.h"
@@ -243,7 +244,7 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
 
 // Two bodies that are to be looked at, and what was found: a pair with its contacts from 0 on.
 struct Look {
-  PlacedBody a, b;
+  const PlacedBody *a, *b;
   const std::vector<BodyId>* ground = nullptr;  // the fixed bodies around the one that moves
   enum class Found : std::uint8_t { nothing, contact, as_before } found = Found::nothing;
   ContactPair pair;
@@ -254,7 +255,7 @@ struct Look {
 // Finds the contacts of a pair that touches or may touch before the next check; `must`: of any
 // pair.
 void look(const Regrouping& work, Look& look, double interval, bool must) {
-  const PlacedBody &a = look.a, &b = look.b;
+  const PlacedBody &a = *look.a, &b = *look.b;
   const std::vector<BodyId>& ground = *look.ground;
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
@@ -308,7 +309,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
 void take(Regrouping& work, Look& look) {
   work.counters.manifolds += look.manifolds;
   if (look.found == Look::Found::as_before)
-    carry(work, *work.pair_before(pair_id(look.a.body->id(), look.b.body->id())));
+    carry(work, *work.pair_before(pair_id(look.a->body->id(), look.b->body->id())));
   if (look.found != Look::Found::contact) return;
   look.pair.first = static_cast<std::uint32_t>(work.contacts.size());
   work.contacts.insert(work.contacts.end(), look.contacts.begin(), look.contacts.end());
@@ -344,17 +345,20 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
   std::vector<std::vector<BodyId>> grounds;  // of each, as long as somebody looks
   grounds.reserve(looked_at.size());
   std::vector<Look> looks;
+  std::deque<PlacedBody> places;  // of those looked at together
   const bool together = Team::current();
   for (const ProcessId process : looked_at) {
-    const PlacedBody mine = placed(*work.successor_of(process));
-    const Body& body = *mine.body;
+    const PlacedBody here = placed(*work.successor_of(process));
+    const Body& body = *here.body;
     if (!body.shape_P) continue;
+    const PlacedBody& mine = together ? places.emplace_back(here) : here;
     const std::vector<BodyId>& ground =
         grounds.emplace_back(work.surroundings.ground_around(body, {mine.frame}));
     for (const BodyId other : candidates_of(work, body, looked_at)) {
-      const PlacedBody theirs = work.placed(other);
+      const PlacedBody there = work.placed(other);
+      const PlacedBody& theirs = together ? places.emplace_back(there) : there;
       const bool straight = body.id() < other;
-      Look pair{straight ? mine : theirs, straight ? theirs : mine, &ground, {}, {}, {}, 0};
+      Look pair{straight ? &mine : &theirs, straight ? &theirs : &mine, &ground, {}, {}, {}, 0};
       if (together) {
         looks.push_back(std::move(pair));
         continue;
@@ -378,7 +382,7 @@ void fuse(Regrouping& work, double interval) {
   const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
   const PlacedBody& mover = a.body->dynamic() ? a : b;
   const std::vector<BodyId> ground = work.surroundings.ground_around(*mover.body, {mover.frame});
-  Look first{a, b, &ground, {}, {}, {}, 0};
+  Look first{&a, &b, &ground, {}, {}, {}, 0};
   look(work, first, interval, true);
   take(work, first);
   work.tally.fusions = 1;

@@ -33,7 +33,7 @@ class Commit {
   // A run to `until`, s; what is committed in it is delivered until the wall clock passes
   // `wall_end`.
   void begin_run(double until, double wall_end);
-  void note_event() { ++events_since_gvt_; }
+  void note_events(std::uint64_t count) { events_since_gvt_ += static_cast<long>(count); }
   bool gvt_is_due() const;
   // Moves GVT up and commits what it passes, but nothing later than the run's end.
   void update_gvt();

@@ -73,10 +73,12 @@ Progress Kernel::process(const Event& event) {
 void Kernel::process_next() {
   const Event event = simulation.policy->next(simulation.queue);
   Counters& counters = simulation.present.counters;
+  const std::uint64_t claims_before = counters.claims;
   if (process(event) == Progress::try_again) ++counters.events_postponed;
   ++counters.events;
   counters.pair_sum += static_cast<double>(pairs.live());
-  commit.note_event();
+  // one event may claim for many
+  commit.note_events(std::max<std::uint64_t>(1, counters.claims - claims_before));
   if (simulation.options.check) validate_all();
 }
 
