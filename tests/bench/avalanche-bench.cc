@@ -1,7 +1,9 @@
 // Avalanches to their ends: one row of a Markdown table for each scene written by dump-bodies.scm.
 //
-//   avalanche-bench FILE... [--until=SECONDS] [--accuracy=EPS]    default 45 s, as the scene;
-//                                                 fails where a row has a verdict but ok
+//   avalanche-bench FILE... [--until=SECONDS] [--accuracy=EPS] [--threads=N] [--brief]
+//
+// Default 45 s, as the scene; fails where a row has a verdict but ok.  --brief: only what other
+// engines are compared by (frame-row.h), no heading, no verdict.
 //
 // - CPU: of the kernel (`cpu_seconds`); reading states and measuring depths is not in it
 // - integration, rollback: a moving body's, over the duration; integration beyond the duration
@@ -21,6 +23,7 @@
 #include <vector>
 
 #include "bench-tools.h"
+#include "frame-row.h"
 #include "other-scene.h"
 
 namespace tw::bench {
@@ -39,6 +42,7 @@ struct Outcome {
   double reached = 0;        // s
   double worst_frame = 0;    // s of CPU
   double measuring = 0;      // s of CPU, outside the kernel
+  double wall = 0;           // s, in the kernel
   double depth = 0;          // m
   double depth_time = 0;     // s
   std::string deepest;       // who
@@ -95,8 +99,9 @@ AvalancheRun::AvalancheRun(const OtherScene& scene, double accuracy, int threads
 }
 
 void AvalancheRun::advance(double when) {
-  const double before = statistic(world_, "cpu_seconds");
+  const double before = statistic(world_, "cpu_seconds"), begun = wall_seconds();
   world_.advance(when);
+  outcome_.wall += wall_seconds() - begun;
   outcome_.worst_frame = std::max(outcome_.worst_frame, statistic(world_, "cpu_seconds") - before);
 }
 
@@ -173,6 +178,17 @@ std::string verdict(const Outcome& o, double beyond, double rollback) {
   return wrong.empty() ? "ok" : wrong;
 }
 
+void print_heading(double until) {
+  std::printf("%g s; depths at every frame\n\n", until);
+  std::puts(
+      "| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
+      " integration, % | rollback, % | step | depth, mm | lost | rise | at rest |"
+      " measuring, s | verdict |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+      " --- | --- |");
+  std::fflush(stdout);
+}
+
 // Returns whether all is well.
 bool run_row(const std::string& file, double until, double accuracy, int threads) {
   const OtherScene scene = read_scene(file);
@@ -199,10 +215,30 @@ bool run_row(const std::string& file, double until, double accuracy, int threads
   return judged == "ok";
 }
 
+void run_brief_row(const std::string& file, double until, double accuracy, int threads) {
+  const OtherScene scene = read_scene(file);
+  AvalancheRun run(scene, accuracy, threads);
+  const Outcome o = run.run(until);
+  if (!o.error.empty()) throw std::runtime_error(o.error);
+  const auto a_frame = [&](double seconds) { return seconds / (until * frames_per_second); };
+  const int used = static_cast<int>(statistic(run.world(), "threads"));
+  FrameRow row;
+  row.scene = scene_name(file);
+  row.engine = "timewarp, " + number("%.0e", accuracy) +
+               (used > 1 ? ", " + std::to_string(used) + " threads" : "");
+  row.cpu = a_frame(statistic(run.world(), "cpu_seconds"));
+  row.helpers = a_frame(statistic(run.world(), "helper_cpu_seconds"));
+  row.wall = a_frame(o.wall);
+  row.depth = o.depth;
+  row.lost = o.lost;
+  row.rise = o.rise;
+  print(row);
+}
+
 [[noreturn]] void usage(const char* program) {
   std::fprintf(stderr,
-               "usage: %s FILE... [--until=SECONDS] [--accuracy=EPS]     FILE is written by "
-               "dump-bodies.scm\n",
+               "usage: %s FILE... [--until=SECONDS] [--accuracy=EPS] [--threads=N] [--brief]\n"
+               "       FILE is written by dump-bodies.scm; --threads=0: all cores\n",
                program);
   std::exit(2);
 }
@@ -215,6 +251,7 @@ int main(int argc, char** argv) {
   double until = 45;  // s
   double accuracy = scene_accuracy;
   int threads = 1;
+  bool brief = false;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -224,6 +261,8 @@ int main(int argc, char** argv) {
       accuracy = std::atof(argument.c_str() + 11);
     else if (argument.rfind("--threads=", 0) == 0)
       threads = std::atoi(argument.c_str() + 10);
+    else if (argument == "--brief")
+      brief = true;
     else if (argument[0] == '-')
       usage(argv[0]);
     else
@@ -231,17 +270,14 @@ int main(int argc, char** argv) {
   }
   if (files.empty() || !(until > 0) || !(accuracy > 0)) usage(argv[0]);
 
-  std::printf("%g s; depths at every frame\n\n", until);
-  std::puts(
-      "| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
-      " integration, % | rollback, % | step | depth, mm | lost | rise | at rest |"
-      " measuring, s | verdict |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-      " --- | --- |");
-  std::fflush(stdout);
   bool good = true;
   try {
-    for (const std::string& file : files) good = run_row(file, until, accuracy, threads) && good;
+    if (!brief) print_heading(until);
+    for (const std::string& file : files)
+      if (brief)
+        run_brief_row(file, until, accuracy, threads);
+      else
+        good = run_row(file, until, accuracy, threads) && good;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -6,10 +6,9 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <Eigen/Eigenvalues>
-#include <cstdio>
 #include <deque>
-#include <exception>
 #include <memory>
+#include <string>
 
 #include "other-engine.h"
 
@@ -131,16 +130,10 @@ OtherState BulletEngine::state(std::size_t index) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  const OtherOptions options = parse_options(argc, argv);
-  try {
-    const OtherScene scene = read_scene(options.file);
-    BulletEngine engine(scene, options);
-    std::printf("Bullet %d, %s precision, dt 1/%ld s\n", btGetVersion(),
-                sizeof(btScalar) == sizeof(float) ? "single" : "double", options.rate);
-    run_other_engine(engine, scene, options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
-  return 0;
+  const std::string name = std::string("Bullet ") + std::to_string(btGetVersion()) +
+                           (sizeof(btScalar) == sizeof(float) ? ", single" : ", double");
+  const auto make = [](const OtherScene& scene, const OtherOptions& options) {
+    return std::make_unique<BulletEngine>(scene, options);
+  };
+  return run_other_engine({name, make}, argc, argv);
 }

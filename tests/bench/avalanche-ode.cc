@@ -5,9 +5,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <ode/ode.h>
 
-#include <cstdio>
 #include <deque>
-#include <exception>
+#include <memory>
+#include <string>
 
 #include "other-engine.h"
 
@@ -150,16 +150,10 @@ OtherState OdeEngine::state(std::size_t index) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  const OtherOptions options = parse_options(argc, argv);
-  try {
-    const OtherScene scene = read_scene(options.file);
-    OdeEngine engine(scene, options);
-    std::printf("ODE, %s precision, dt 1/%ld s\n",
-                sizeof(dReal) == sizeof(double) ? "double" : "single", options.rate);
-    run_other_engine(engine, scene, options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
-  return 0;
+  const std::string name =
+      std::string("ODE, ") + (sizeof(dReal) == sizeof(double) ? "double" : "single");
+  const auto make = [](const OtherScene& scene, const OtherOptions& options) {
+    return std::make_unique<OdeEngine>(scene, options);
+  };
+  return run_other_engine({name, make}, argc, argv);
 }

@@ -1,11 +1,13 @@
-// Runs the avalanche in another engine: reads the bodies that dump-bodies.scm wrote, steps,
-// measures.
+// Runs a scene in another engine: reads the bodies that dump-bodies.scm wrote, steps, measures.
 //
 // Depths are measured at the frames and are not part of an engine's CPU time.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <limits>
+#include <memory>
 #include <string>
 
 #include "other-scene.h"
@@ -29,11 +31,19 @@ struct OtherOptions {
   bool sleep = false;  // the engine may put bodies to sleep
   int iterations = 0;  // of the solver; 0: the engine's default
   std::string poses;   // a CSV file like that of `timewarp --poses`, or none
+  bool brief = false;  // one row a rate (frame-row.h), no others
+  // m: the rate is doubled until nothing overlaps deeper
+  double depth = std::numeric_limits<double>::infinity();
 };
 
-// Prints how to use the program and exits with 2 where the command line makes no sense.
-OtherOptions parse_options(int argc, char** argv);
-// Steps to the end, frame by frame at 30 Hz, and prints a Markdown table with a row every 5 s.
-void run_other_engine(OtherEngine& engine, const OtherScene& scene, const OtherOptions& options);
+// How to make an engine: its name with its precision, and a new one with the scene in it.
+struct EngineKind {
+  std::string name;
+  std::function<std::unique_ptr<OtherEngine>(const OtherScene&, const OtherOptions&)> make;
+};
+
+// The program: steps to the end, frame by frame at 30 Hz, and prints a Markdown table with a row
+// every 5 s.  Returns the exit status; prints how to use it where the command line makes no sense.
+int run_other_engine(const EngineKind& kind, int argc, char** argv);
 
 }  // namespace tw::bench
