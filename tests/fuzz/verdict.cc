@@ -34,7 +34,10 @@ test::Schedule adversary(const DescribedScene& scene, bool every_event) {
 std::vector<NamedSchedule> schedules(const DescribedScene& scene) {
   test::Schedule undo;
   undo.undo_redo = true;
+  test::Schedule threads;
+  threads.threads = 3;
   return {{"pieces", {}},
+          {"threads", threads},
           {"bodies", adversary(scene, false)},
           {"events", adversary(scene, true)},
           {"undo", undo}};
