@@ -43,6 +43,11 @@ class GroupEvents {
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.
   Progress check(ProcessId id);
+  // Between runs anything may have changed: what was decided ahead no longer holds.
+  void begin_run() {
+    decided_at_ = -never;
+    decisions_.clear();
+  }
 
  private:
   // What a check comes to, decided ahead of its event together with the others of its instant.

@@ -84,6 +84,7 @@ void Kernel::process_next() {
 
 // Those that came since the last run claim first; what stopped somebody is tried again.
 void Kernel::begin_run() {
+  groups.begin_run();
   discontinuities.retry_errors();
   Present& present = simulation.present;
   if (bodies.any_newborn()) {
