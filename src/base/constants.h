@@ -22,6 +22,9 @@ namespace tw::answer {
 // ---- the contact law ----
 // Static depth over size, and depth of doubled stiffness over static depth: columns of 20 stand.
 inline constexpr double depth_share = 2.5e-4, hardening_depths = 2;
+// Gaps are measured by the static depth, but of a contact that was made as soft as a cushion by no
+// more than this share of the size: else the far side of a body counts as about to touch.
+inline constexpr double widest_gap_scale = 0.125;
 // The same in groups of unequal masses: 1000 : 1 stands on nine cubes.
 inline constexpr double unequal_depth_share = 0.2 * depth_share, unequal_hardening_depths = 1;
 // Masses are unequal from this ratio on.

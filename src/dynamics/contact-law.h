@@ -19,6 +19,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+
+#include "base/constants.h"
 #include "dynamics/contact-parameters.h"
 #include "math/vec.h"
 
@@ -33,8 +36,11 @@ struct ContactConstants {
   double kt = 0;     // N/m, 0.8 k
   double ct = 0;     // N s/m, sqrt(kt m)
   double size = 0;   // m: least width of the smaller one
-  double depth = 0;  // d0, m: under the lighter body's own weight; scale of gaps
+  double depth = 0;  // d0, m: under the lighter body's own weight
   FrictionLaw law = FrictionLaw::anchored;
+
+  // m: gaps are small or large beside this.
+  double gap_scale() const { return std::min(depth, answer::widest_gap_scale * size); }
 };
 
 // `mass`: of the lighter dynamic body of the pair, kg; `size`: least width of the smaller one, m;

@@ -32,6 +32,11 @@ double fusion_speed(const Scene& scene, const Body& a, const Body& b) {
                     smaller_size(a, b));
 }
 
+double borne_speed(double fusion_speed, double depth, double gravity) {
+  return std::max(fusion_speed,
+                  answer::fusion_share * std::sqrt(gravity * depth / answer::depth_share));
+}
+
 ContactScales contact_scales(const Scene& scene, const Body& a, const Body& b,
                              const MassRange& masses) {
   const ContactParameters& parameters = scene.contacts.between(a.id(), b.id());
@@ -44,6 +49,7 @@ ContactScales contact_scales(const Scene& scene, const Body& a, const Body& b,
       parameters,
       std::clamp(masses.heaviest / answer::most_unequal, mass, answer::most_unequal * mass),
       scales.size, scales.gravity, masses.heaviest > answer::unequal_masses * masses.lightest);
+  scales.borne_speed = borne_speed(scales.fusion_speed, scales.law.depth, scales.gravity);
   return scales;
 }
 

@@ -3,6 +3,8 @@
 // All follow from the pair's own law, its size and gravity.  With d0 the static depth, at which the
 // contact carries the lighter body (contact-law.h), and g the scale of gravity:
 //   fusion speed  0.07 sqrt(g size) unless set: what comes down slower stays
+//   borne speed   that or, if more, what it would be by default of a body whose contact is as soft
+//                 by default: a spring that presses stops what comes slower, without an impulse
 //   bounce time   pi sqrt(d0/g): half a period of the small oscillation about d0
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -32,14 +34,17 @@ struct ContactScales {
   ContactConstants law;
   double size = 0;          // least width of the smaller body, m
   double fusion_speed = 0;  // m/s
+  double borne_speed = 0;   // m/s
   double gravity = 0;       // g, m/s^2
 
-  double depth() const { return law.depth; }  // d0, m
-  double bounce_time() const;                 // s
+  double bounce_time() const;  // s
 };
 
 // m/s: what approaches slower than this stays in contact.
 double fusion_speed(const Scene& scene, const Body& a, const Body& b);
+
+// m/s: the approach that a spring of that static depth bears (m; gravity's scale in m/s^2).
+double borne_speed(double fusion_speed, double depth, double gravity);
 
 // Of a pair among bodies of these masses.
 ContactScales contact_scales(const Scene& scene, const Body& a, const Body& b,

@@ -96,7 +96,7 @@ bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBo
     touches = touches || p.gap <= reach;
     fast = fast || (parting < -slow && comes);
     if (before)
-      wanted = wanted || p.gap <= reach + scales.depth() || comes;
+      wanted = wanted || p.gap <= reach + scales.law.gap_scale() || comes;
     else
       wanted = wanted || (comes && std::abs(parting) < slow) || (p.gap <= 0 && parting > -slow);
   }
@@ -265,7 +265,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
   if (before) masses.add(before->pair->masses);
   const ContactScales scales = contact_scales(work.scene(), body_a, body_b, masses);
   const double reach = before ? reach_of(*before) : 0;
-  const double size = scales.size, depth = reach + scales.depth();
+  const double size = scales.size, depth = reach + scales.law.gap_scale();
   const double travel =
       2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
   const double margin = std::max(answer::contact_margin * size, depth);

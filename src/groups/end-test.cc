@@ -121,7 +121,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
   PairOnArc along{group, pair, a, b, {}, {}};
   const ContactScales scales = contact_scales(scene, a, b, pair.masses);
-  const double allowed = answer::unseen_depth * scales.depth();
+  const double allowed = answer::unseen_depth * scales.law.gap_scale();
   const double travel = along.travel(), size = std::min(a.least_width, b.least_width);
   if (travel <= allowed) return group.next_check;
 
@@ -142,7 +142,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
       known = std::min(known, last);
       if (first > 0 && last < 0)
         end = std::min(end,
-                       fast_touch(*group.arc, contact, from, to, first, last, scales.fusion_speed));
+                       fast_touch(*group.arc, contact, from, to, first, last, scales.borne_speed));
     });
     if (known - along.deepest(to, false) > allowed) {
       if (a.fixed() || b.fixed()) {

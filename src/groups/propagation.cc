@@ -13,14 +13,17 @@ namespace tw {
 namespace {
 
 bool touches(const NewContact& c) {
-  return c.gap <= c.reach() + answer::touching * c.contact.law.depth;
+  return c.gap <= c.reach() + answer::touching * c.contact.law.gap_scale();
 }
 
 // Beyond the depth where it hardens no more a spring bears any speed: it stops what comes within
 // sqrt(d0/g)/2000.  Impulses on a body that is squeezed there would go to and fro between the walls
 // without end, and leave it with a velocity that it does not have.
-double borne_speed(const NewContact& c, double slow) {
-  return -c.gap > answer::hardest_ratio * c.contact.law.hardening ? never : slow;
+double borne_by(const Scene& scene, const NewContact& c) {
+  const ContactConstants& law = c.contact.law;
+  if (-c.gap > answer::hardest_ratio * law.hardening) return never;
+  const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
+  return borne_speed(slow, law.depth, scene.gravity_scale());
 }
 
 }  // namespace
@@ -42,9 +45,8 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
                                                 : ImpulseSlot::of(scene.body(id), point));
   };
   const auto impulse_contact = [&](const NewContact& c) {
-    const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
     return ImpulseContact{slot_of(c.tag.reference), slot_of(c.tag.other), c.normal, c.point, 0,
-                          c.contact.law.mu,         borne_speed(c, slow)};
+                          c.contact.law.mu,         borne_by(scene, c)};
   };
 
   std::vector<ImpulseContact> touching_now;  // last of all where the two struck each other

@@ -15,7 +15,7 @@ namespace {
 // that part would otherwise leave all the springs to the others at once.
 double participation(const NewContact& c, double deepest) {
   const double beyond = std::max(0.0, deepest - answer::hardest_ratio * c.contact.law.hardening);
-  return std::clamp(2 - c.gap / (c.contact.law.depth + beyond), 0.0, 1.0);
+  return std::clamp(2 - c.gap / (c.contact.law.gap_scale() + beyond), 0.0, 1.0);
 }
 
 // Of the contacts of one dynamic body with the ground.
