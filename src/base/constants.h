@@ -269,6 +269,12 @@ inline constexpr double longest_window = 8;
 // or hardly ever asks: its ball at once.
 inline constexpr double hardly_turns = 0.5;
 
+// ---- impacts ----
+// So many pending impacts are decided at once, of so many events that come soon, if they are so
+// many radii apart: of those nearer to each other every tenth is taken back.
+inline constexpr std::size_t impacts_at_once = 4, events_looked_ahead = 341;
+inline constexpr double felt_in_radii = 3;
+
 // ---- broad phase ----
 // A zone reaches beyond its box by this share of the longest edge.
 inline constexpr double zone_margin = 0.5;

@@ -80,7 +80,7 @@ Progress CallbackEvents::process(std::uint32_t number) {
   }
   for (Successor& successor : successors) successor.data.changed = any_changed;
   if (successors.front().data.error)
-    discontinuities_.stop_group_mates(key, successors);
+    discontinuities_.stop_group_mates(sim_.before(key), successors);
   else if (touches_groups(successors) &&
            groups_.regroup(key, successors, Cause::callback) == Progress::try_again)
     return Progress::try_again;

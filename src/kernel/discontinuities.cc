@@ -46,17 +46,18 @@ Discontinuities::Discontinuities(Simulation& simulation, ActivePairs& pairs, Pai
 
 // An error stops whole groups: adds the group mates of the successors, and gives all the first
 // one's error.
-void Discontinuities::stop_group_mates(const Key& key, std::vector<Successor>& successors) const {
+void Discontinuities::stop_group_mates(const Before& before,
+                                       std::vector<Successor>& successors) const {
   const std::exception_ptr error = successors.front().data.error;
   std::vector<ProcessId> stopped;
   for (const Successor& successor : successors)
     if (successor.body->dynamic()) insert(stopped, successor.process());
-  const Region region = region_of(sim_.before(key), stopped, true);
+  const Region region = region_of(before, stopped, true);
   for (const std::vector<ProcessId>* part : {&region.inside, &region.border})
     for (const ProcessId process : *part)
       if (std::none_of(successors.begin(), successors.end(),
                        [&](const Successor& s) { return s.process() == process; }))
-        successors.push_back(make_successor(sim_.before(key), process, false));
+        successors.push_back(make_successor(before, process, false));
   for (Successor& successor : successors) successor.data.error = error;
 }
 

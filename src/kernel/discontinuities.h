@@ -18,6 +18,7 @@
 namespace tw {
 
 class ActivePairs;
+class Before;
 class CallbackBook;
 class Claims;
 class PairChecks;
@@ -32,7 +33,7 @@ class Discontinuities {
   void enter(const Key& key, std::vector<Successor>& successors);
   // An error stops whole groups: adds the group mates of the successors, and gives all the first
   // one's error.
-  void stop_group_mates(const Key& key, std::vector<Successor>& successors) const;
+  void stop_group_mates(const Before& before, std::vector<Successor>& successors) const;
 
   // Removes the states of a process from the key on, and all that hangs on them.  Returns how many
   // went.

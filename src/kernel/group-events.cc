@@ -43,7 +43,6 @@ bool GroupEvents::claims_reach(ProcessId id, const Key& key) const {
          (at_time ? sim_.process(body).claim.time >= key.time : claims_.reach(body, key));
 }
 
-// Whether the arcs of the process are known as far as the key: nothing can come before it.
 bool GroupEvents::known(ProcessId id, const Key& key) const {
   // its own check of this instant would be forgotten if its arc were changed by a greater key
   const bool at_time = key.kind == KeyKind::group_check || key.kind == KeyKind::callback;
@@ -71,22 +70,30 @@ bool GroupEvents::await(const Region& region, const Key& key) {
 bool GroupEvents::await_struck(std::span<const BodyId> bodies, const Key& key) {
   bool all_known = true;
   for (const BodyId id : bodies) all_known = await(sim_.process_of(id), key) && all_known;
-  if (!all_known) return false;
-  // who is in no group concerns nobody else
-  const Before before = sim_.before(key);
+  return all_known && await(region_struck(bodies, sim_.before(key)), key);
+}
+
+// Of all that a discontinuity of these bodies may concern; who is in no group concerns nobody else.
+Region GroupEvents::region_struck(std::span<const BodyId> bodies, const Before& before) const {
   std::vector<ProcessId> members;
   for (const BodyId id : bodies)
     if (sim_.body(id).dynamic() && before.state_of(id).group) insert(members, sim_.process_of(id));
-  return members.empty() || await(region_of(before, members, false), key);
+  return members.empty() ? Region{} : region_of(before, members, false);
 }
 
-Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause,
-                              std::span<const ContactPoint> struck_at) {
+GroupEvents::Decided GroupEvents::regrouped(const Before& before, const Known& is_known,
+                                            const Struck& struck,
+                                            const std::vector<Successor>& successors,
+                                            GroupCounters& counters) const {
+  return tw::regroup(before, sim_.surroundings, is_known,
+                     {struck.cause, delivery_.observed(CollisionKind::fission), struck.at},
+                     successors, counters);
+}
+
+Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause) {
   const bool between_runs = is_edit(key);
   const Known is_known = [&](ProcessId id) { return between_runs || known(id, key); };
-  auto result = tw::regroup(sim_.before(key), sim_.surroundings, is_known,
-                            {cause, delivery_.observed(CollisionKind::fission), struck_at},
-                            successors, counters_);
+  Decided result = regrouped(sim_.before(key), is_known, {cause, {}}, successors, counters_);
   if (const Waits* waits = std::get_if<Waits>(&result)) {
     await(waits->region, key);
     return Progress::try_again;
@@ -131,8 +138,7 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
     for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
     return Regrouped{std::move(successors)};
   }
-  return tw::regroup(before, sim_.surroundings, is_known,
-                     {cause, delivery_.observed(CollisionKind::fission), {}}, successors, counters);
+  return regrouped(before, is_known, {cause, {}}, successors, counters);
 }
 
 // ---- many checks at once ----
@@ -162,11 +168,7 @@ std::unique_ptr<GroupEvents::Decision> GroupEvents::decide_ahead(
   decision->concerned = family(sim_.before(key), group);
   if (decision->concerned.empty()) return nullptr;
   key.id = number(decision->concerned.front());
-  // nothing may be completed here: others look at it, too
-  const Known is_known = [&](ProcessId member) {
-    const Group* theirs = sim_.before(key).state(member).group.get();
-    return (!theirs || theirs->at_rest || theirs->arc->complete()) && known(member, key);
-  };
+  const Known is_known = [&](ProcessId member) { return may_be_read(member, sim_.before(key)); };
   // each family once
   if (!group->contains(decision->concerned.front()) ||
       !std::all_of(decision->concerned.begin(), decision->concerned.end(), is_known))
@@ -189,16 +191,21 @@ std::unique_ptr<GroupEvents::Decision> GroupEvents::decide_ahead(
 // it were the first; what has to do with another one after all is decided anew by its event.
 void GroupEvents::decide_ahead(double when) {
   if (decided_at_ == when || !Team::current()) return;
+  const Groups groups = due_groups(when);
+  // (a single one in between, an early end, forgets nothing)
+  if (groups.size() < 2) return;
   decided_at_ = when;
   decisions_.clear();
-  const Groups groups = due_groups(when);
-  if (groups.size() < 2) return;
   decisions_.resize(groups.size());
   each_in_parallel(groups.size(), 1,
                    [&](std::size_t i) { decisions_[i] = decide_ahead(groups[i], when); });
   std::erase(decisions_, nullptr);
   std::sort(decisions_.begin(), decisions_.end(),
             [](const auto& x, const auto& y) { return x->key < y->key; });
+}
+
+bool GroupEvents::amid_decisions() const {
+  return !decisions_.empty() && !sim_.queue.empty() && sim_.queue.top().key.time == decided_at_;
 }
 
 // What was decided ahead for this check; null: nothing, or it no longer holds.
@@ -212,6 +219,20 @@ std::unique_ptr<GroupEvents::Decision> GroupEvents::decided(
   decisions_.erase(at);
   const bool holds = decision->concerned == concerned && decision->log.holds(sim_.graph);
   return holds ? std::move(decision) : nullptr;
+}
+
+bool GroupEvents::may_be_read(ProcessId id, const Before& before) const {
+  const Group* group = before.state(id).group.get();
+  return (!group || group->at_rest || group->arc->complete()) && known(id, before.key());
+}
+
+bool GroupEvents::may_be_struck(std::span<const BodyId> bodies, const Before& before) const {
+  const auto may = [&](ProcessId id) { return may_be_read(id, before); };
+  const auto may_body = [&](BodyId id) { return may(sim_.process_of(id)); };
+  if (!std::all_of(bodies.begin(), bodies.end(), may_body)) return false;
+  const Region region = region_struck(bodies, before);
+  return std::all_of(region.inside.begin(), region.inside.end(), may) &&
+         std::all_of(region.border.begin(), region.border.end(), may);
 }
 
 Progress GroupEvents::check(ProcessId id) {

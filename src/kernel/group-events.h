@@ -17,6 +17,7 @@
 
 namespace tw {
 
+class Before;
 class Claims;
 class Delivery;
 class Discontinuities;
@@ -34,15 +35,30 @@ class GroupEvents {
   bool await(const Region& region, const Key& key);
   // The same of all that a discontinuity of these bodies may concern.
   bool await_struck(std::span<const BodyId> bodies, const Key& key);
+  // Whether several threads may look at the process's arc before the key at once: it is known, and
+  // complete.
+  bool may_be_read(ProcessId id, const Before& before) const;
+  // Whether that holds of all that a discontinuity of these bodies may concern.
+  bool may_be_struck(std::span<const BodyId> bodies, const Before& before) const;
   // The groups that follow a discontinuity that changed some of the successors; adds those of all
   // others that take part.
-  // `struck_at`: see RegroupRequest.
-  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause,
-                   std::span<const ContactPoint> struck_at = {});
+  Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
+  // The same as a function of what stands; `is_known`: whose arcs may be relied on.
+  struct Struck {
+    Cause cause;
+    std::span<const ContactPoint> at;  // see RegroupRequest
+  };
+  using Decided = std::variant<Regrouped, Waits>;
+  Decided regrouped(const Before& before, const Known& is_known, const Struck& struck,
+                    const std::vector<Successor>& successors, GroupCounters& counters) const;
+  // Whether the arcs of the process are known as far as the key: nothing can come before it.
+  bool known(ProcessId id, const Key& key) const;
   // After an edit between runs.
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.
   Progress check(ProcessId id);
+  // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
+  bool amid_decisions() const;
   // Between runs anything may have changed: what was decided ahead no longer holds.
   void begin_run() {
     decided_at_ = -never;
@@ -58,7 +74,6 @@ class GroupEvents {
     GroupCounters counters;
     ReadLog log;
   };
-  using Decided = std::variant<Regrouped, Waits>;
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
                  const Known& is_known, GroupCounters& counters) const;
   void decide_ahead(double when);
@@ -66,9 +81,9 @@ class GroupEvents {
   std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
   std::unique_ptr<Decision> decided(const Key& key, const std::vector<ProcessId>& concerned);
   Progress stop_driven(ProcessId id);
+  Region region_struck(std::span<const BodyId> bodies, const Before& before) const;
   bool own_check_before(ProcessId id, const Key& key) const;
   bool claims_reach(ProcessId id, const Key& key) const;
-  bool known(ProcessId id, const Key& key) const;
 
   Simulation& sim_;
   Counters& counters_;

@@ -121,7 +121,8 @@ RunStatus Kernel::advance(double until, double slice) {
   while (!commit.finished()) {
     process_next();
     if (commit.gvt_is_due()) commit.update_gvt();
-    if (slice < never && (++events & 7) == 0 && wall_seconds() > wall_end)
+    if (slice < never && (++events & 7) == 0 && !groups.amid_decisions() &&
+        wall_seconds() > wall_end)
       return RunStatus::slice_over;
   }
   commit.update_gvt();
