@@ -60,7 +60,7 @@
 
 (define override-keys
   '(accuracy seed threads fps size quality part contacts hash check undo-redo gvt-interval window
-    group-check-rate integrator adversary write-states compare-states))
+    group-check-rate integrator policy adversary write-states compare-states))
 
 (define (take-overrides! options)
   (set-overrides! (filter (lambda (pair) (memq (car pair) override-keys)) options))

@@ -35,10 +35,14 @@
   (string->symbol text))
 
 (define (policy name text)
-  (cond ((string=? text "timewarp") 'timewarp)
-        ((or (string=? text "conservative") (string-prefix? "retroactive:" text))
-         (usage-error "--policy=~a is not there yet; expected timewarp" text))
-        (else (usage-error "--policy is ~s; expected timewarp" text))))
+  (unless (or (member text '("timewarp" "conservative"))
+              (and (string-prefix? "retroactive:" text)
+                   (let ((step (string->number (substring text 12))))
+                     (and step (real? step) (<= 1e-6 step 1e9)))))
+    (usage-error
+     "--policy is ~s; expected timewarp, conservative or retroactive:STEP, such as retroactive:0.01"
+     text))
+  text)
 
 (define (integrator name text)
   (unless (member text '("auto" "rk45"))
@@ -80,7 +84,7 @@
     (stats ("stats") ("FILE.json") ,optional-text "statistics after the run, printed or as a JSON file")
     (hash ("hash") #f #f "print the SHA-256 of the whole committed history as the last line")
     (define (#\D "define") "NAME=VALUE" ,definition "set a scene parameter (repeatable)")
-    (policy ("policy") "POLICY" ,policy "timewarp; others are not there yet")
+    (policy ("policy") "POLICY" ,policy "timewarp; to compare: conservative, or retroactive:STEP, s (timewarp)")
     (integrator ("integrator") "NAME" ,integrator "auto, or rk45: Cash and Karp's method even for free flight (auto)")
     (accuracy ("accuracy") "EPS" ,positive "relative accuracy (1e-6)")
     (threads ("threads") "N" ,threads "threads that work is shared among (as many as there are cores)")

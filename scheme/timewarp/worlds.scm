@@ -41,7 +41,7 @@
 ;; Settings of the kernel that the command line can override.
 (define kernel-settings
   '(accuracy seed threads hash check undo-redo gvt-interval window group-check-rate integrator
-    write-states compare-states))
+    policy write-states compare-states))
 
 (define (make-world)
   "Return a new, empty world."
@@ -119,7 +119,9 @@ first.
             take about half the time at 1e-4; looser makes nothing faster
 #:fps       frames per second of pictures, poses and frame observers, positive; 30 (--fps)
 #:seed      of random numbers, an integer, 0 or more, before bodies are added; 0 (--seed)
-#:policy    'timewarp, the only one that is there yet; 'timewarp (--policy)
+#:policy    'timewarp, 'conservative or '(retroactive STEP), STEP in seconds: how the main loop
+            goes forward, before the first run; the answer is the same, the work is not
+            (doc/policies.md); 'timewarp (--policy)
 #:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
             the first run; otherwise it follows from the sizes of the bodies in contact:
             480 for 0.14 to 0.55 m (--group-check-rate)"
@@ -138,7 +140,8 @@ first.
     (when gravity (%set-world! world 'gravity gravity))
     (when (and accuracy (not (override 'accuracy))) (%set-world! world 'accuracy accuracy))
     (when (and seed (not (override 'seed))) (%set-world! world 'seed seed))
-    (when policy (%set-world! world 'policy (policy->string policy)))
+    (when (and policy (not (override 'policy)))
+      (%set-world! world 'policy (policy->string policy)))
     (when (and group-check-rate (not (override 'group-check-rate)))
       (%set-world! world 'group-check-rate group-check-rate))))
 

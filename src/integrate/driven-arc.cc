@@ -125,8 +125,8 @@ DrivenArc::DrivenArc(const DrivenStart& s)
       solution_(method_of(s), std::make_unique<DrivenEquations>(s), s.time, starting_row(s),
                 {s.q.w(), s.q.x(), s.q.y(), s.q.z()}) {}
 
-const DenseStep* DrivenArc::step_at(double time) const {
-  if (!failure_ && !(time < solution_.reached())) {
+const DenseStep* DrivenArc::step_at(double time, bool beyond) const {
+  if (!failure_ && !(time < solution_.reached()) && (beyond || time != solution_.halted())) {
     try {
       solution_.extend(time);
       if (solution_.failure())
@@ -154,7 +154,7 @@ Pose DrivenArc::pose(double time) const {
   if (!step) {
     if (solution_.reached() == solution_.start()) return {start_.x, start_.q};
     step = &solution_.at(solution_.reached());
-    time = step->end();
+    time = solution_.reached();
   }
   return {step->vector(x_at, time), attitude(*step, step->vector(theta_at, time))};
 }
@@ -181,16 +181,20 @@ Vec3 DrivenArc::free_acceleration(double time) const {
   return acceleration_ + forces_->wrench(time, at(time)).force / mass_;
 }
 
+void DrivenArc::halt(double time) const {
+  if (!failure_) solution_.halt(time);
+}
+
 double DrivenArc::end() const { return failure_ ? solution_.reached() : never; }
 
 double DrivenArc::step_end(double time) const {
-  const DenseStep* step = step_at(time);
-  return step ? step->end() : never;
+  return step_at(time, true) ? solution_.step_end(time) : never;
 }
 
 Effort DrivenArc::effort() const {
   Effort effort;
   effort.length = solution_.reached() - solution_.start();
+  effort.forgotten = solution_.forgotten();
   effort.steps = solution_.counts().steps;
   effort.rejected = solution_.counts().rejected;
   effort.evaluations = solution_.counts().evaluations;
@@ -231,9 +235,9 @@ MotionBounds DrivenArc::bounds(double from, double to) const {
     bounds.acceleration.add(Vec3(Vec3::Zero()));
   }
   for (double t = from; t < reached;) {
-    const DenseStep& step = solution_.at(t);
-    add_step_bounds(step, t, std::min(to, step.end()), bounds);
-    t = step.end();
+    const double end = solution_.step_end(t);
+    add_step_bounds(solution_.at(t), t, std::min(to, end), bounds);
+    t = end;
     if (!(t < to)) break;
   }
   // rounding

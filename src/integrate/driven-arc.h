@@ -60,11 +60,13 @@ class DrivenArc final : public Trajectory {
   bool stepped() const override { return true; }
   Effort effort() const override;
   Vec3 free_acceleration(double time) const override;
+  void halt(double time) const override;
   std::exception_ptr failure() const override { return failure_; }
 
  private:
-  // The step that holds the time; null: it failed before, and stands.
-  const DenseStep* step_at(double time) const;
+  // The step that holds the time; null: it failed before, and stands.  Where it was halted that is
+  // the one before, or `beyond`, the next.
+  const DenseStep* step_at(double time, bool beyond = false) const;
   Quat attitude(const DenseStep& step, const Vec3& theta) const;
   void add_step_bounds(const DenseStep& step, double from, double to, MotionBounds& bounds) const;
 

@@ -40,16 +40,49 @@ bool Solution::extend(double time) {
   return !failure_ || time <= reached_;
 }
 
-const DenseStep& Solution::at(double time) {
+// By steps that end where the stretches end that somebody knows.
+void Solution::halt(double time) {
+  if (time < reached_) cut(time);
+  while (reached_ < time && !failure_) step(time);
+  halted_ = reached_;
+}
+
+void Solution::cut(double time) {
+  forgotten_ += std::max(0.0, std::min(reached_, halted_) - time);
+  const DenseStep& last = at(time);
+  for (int e = 0; e < size_; ++e) y_[index(e)] = last.value(e, time);
+  std::copy(last.chart(), last.chart() + chart_.size(), chart_.begin());
+  equations_->slope(time, y_.data(), chart_.data(), slope_.data());
+  ++counts_.evaluations;
+  equations_->recentre(y_.data(), slope_.data(), chart_.data());
+  const double from = last.start();
+  while (steps_.size() > 1 && steps_[steps_.size() - 2].end > time) steps_.pop_back();
+  if (from < time)
+    steps_.back().end = time;
+  else
+    steps_.pop_back();
+  reached_ = time;
+  error_before_ = 1;
+  failure_ = nullptr;
+}
+
+Solution::Step& Solution::step_at(double time) {
   TW_ASSERT(!steps_.empty() && time >= start_ && time <= reached_,
             "a solution from " + show(start_) + " s to " + show(reached_) + " s was asked for " +
                 show(time) + " s");
   auto found = std::upper_bound(steps_.begin(), steps_.end(), time,
                                 [](double t, const Step& step) { return t < step.end; });
   if (found == steps_.end()) --found;
-  if (!found->dense) complete(*found);
-  return *found->dense;
+  return *found;
 }
+
+const DenseStep& Solution::at(double time) {
+  Step& step = step_at(time);
+  if (!step.dense) complete(step);
+  return *step.dense;
+}
+
+double Solution::step_end(double time) { return step_at(time).end; }
 
 void Solution::combine(std::span<const double> weights, double h, const double* slopes,
                        double* sum) const {
@@ -116,7 +149,7 @@ double Solution::first_step() {
 }
 
 // One accepted step; false: it failed.
-bool Solution::step() {
+bool Solution::step(double latest) {
   if (numbers_ > guard::most_arc_numbers) return failure_ = "too many steps", false;
   if (slope_.empty()) {
     slope_.resize(index(size_));
@@ -130,6 +163,7 @@ bool Solution::step() {
   if (steps_.empty()) next_step_ = first_step();
   double h =
       std::min(next_step_, equations_->longest_step(y_.data(), slope_.data(), chart_.data()));
+  const double natural = h;
 
   auto stages = std::make_unique<Stages>();
   stages->start = reached_;
@@ -142,8 +176,11 @@ bool Solution::step() {
   const double beta = method_.memory;
   const double alpha = 1.0 / method_.error_order - 0.75 * beta;
   for (bool rejected = false;; rejected = true) {
-    stages->end = reached_ + h;
-    if (!(reached_ + 0.1 * h > reached_))
+    const bool is_last = reached_ + h >= latest;
+    stages->end = is_last ? latest : reached_ + h;
+    if (is_last)
+      h = latest - reached_;
+    else if (!(reached_ + 0.1 * h > reached_))
       return failure_ = "step size under the spacing of doubles", false;
     const int before_end = method_.stages;
     set_stages(*stages, 1, before_end + (method_.error_needs_end() ? 1 : 0));
@@ -166,7 +203,7 @@ bool Solution::step() {
         std::clamp(0.9 * std::pow(error, -alpha) * std::pow(error_before_, beta), 0.2, 6.0);
     if (rejected) change = std::min(change, 1.0);
     error_before_ = std::max(error, 1e-4);
-    next_step_ = h * change;
+    next_step_ = is_last && !rejected ? std::max(natural, h * change) : h * change;
     break;
   }
 

@@ -22,6 +22,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/never.h"
 #include "integrate/dense-step.h"
 #include "integrate/equations.h"
 
@@ -35,11 +36,20 @@ class Solution {
 
   // Makes steps until one ends beyond `time`.  False: it stopped before; see failure().
   bool extend(double time);
+  // Ends a step at `time` >= start, as who stands there and knows no further does: steps that
+  // reach beyond are forgotten, and the next starts there.  What it gives depends on who asked.
+  void halt(double time);
   double start() const { return start_; }
   // The end of the last step; the start where there is none.
   double reached() const { return reached_; }
+  // Where a step was last ended by halt.
+  double halted() const { return halted_; }
+  // The length of what was asked for by halt and forgotten, s.
+  double forgotten() const { return forgotten_; }
   // The step with start <= time < end, of what was reached; at reached() itself the last one.
   const DenseStep& at(double time);
+  // Where that step ends.
+  double step_end(double time);
   // Why it stopped, or null: a state that is not finite, a step under the spacing of doubles, more
   // steps than are kept.
   const char* failure() const { return failure_; }
@@ -65,7 +75,10 @@ class Solution {
     std::unique_ptr<Stages> stages;  // null where `dense` stands
   };
 
-  bool step();
+  // Not beyond `latest`.
+  bool step(double latest = never);
+  void cut(double time);
+  Step& step_at(double time);
   double first_step();
   // Slopes of the stages [from, to) after y0, into rows of `slopes`.
   void set_stages(Stages& stages, int from, int to) const;
@@ -78,7 +91,7 @@ class Solution {
   const RungeKutta& method_;
   std::unique_ptr<const Equations> equations_;
   int size_;
-  double start_, reached_;
+  double start_, reached_, halted_ = -never, forgotten_ = 0;
   std::vector<double> y_, chart_, slope_;  // where it has come to
   std::vector<double> allowed_;
   double next_step_ = 0, error_before_ = 1;

@@ -84,7 +84,8 @@ struct Parabola {
 
 // What it took to compute, for statistics.
 struct Effort {
-  double length = 0;  // s, of the stretch that was computed
+  double length = 0;     // s, of the stretch that was computed
+  double forgotten = 0;  // s, of what was computed besides, and taken back by halt
   // of the integrator: those of a whole group, told by its first member
   std::uint64_t steps = 0, rejected = 0, factorizations = 0, evaluations = 0;
   bool implicit = false;
@@ -109,6 +110,9 @@ class Trajectory {
   virtual double step_end(double /*time*/) const { return never; }
   // The origin's path in closed form; null where other things act.
   virtual const Parabola* ballistic() const { return nullptr; }
+  // What is integrated by itself ends a step there, and forgets what lies beyond: where everybody
+  // is to stand at the same time (kernel/policy.h).
+  virtual void halt(double /*time*/) const {}
   // Whether it is computed step by step.
   virtual bool stepped() const { return false; }
   // What would move it if nothing held it: none of what is carried, or moves as it was given.

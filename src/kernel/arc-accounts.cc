@@ -11,18 +11,25 @@
 namespace tw {
 namespace {
 
-// A stepped arc counts as far as it was computed, and every step as an integration, once a group.
-double count_steps(Counters& counters, const Trajectory& trajectory) {
+// Every step counts as an integration, once a group.
+Effort count_steps(Counters& counters, const Trajectory& trajectory) {
   const Effort effort = trajectory.effort();
   counters.integrations += effort.steps;
   if (effort.implicit) counters.implicit_steps += effort.steps;
   counters.rejected_steps += effort.rejected;
   counters.factorizations += effort.factorizations;
   counters.force_evaluations += effort.evaluations;
-  return effort.length;
+  return effort;
 }
 
 }  // namespace
+
+double integrated_length(const State& state, double until) {
+  const double length = until - state.key.time;
+  if (!state.trajectory().stepped()) return length;
+  const Effort effort = state.trajectory().effort();
+  return (state.group ? effort.length : std::min(effort.length, length)) + effort.forgotten;
+}
 
 StateGraph::OnRelease count_discarded(Simulation& simulation) {
   return [&simulation](State& state) {
@@ -31,10 +38,10 @@ StateGraph::OnRelease count_discarded(Simulation& simulation) {
     if (!body.dynamic() || !state.starts_arc()) return;
     const double end =
         std::min(simulation.process(body).claim.time, state.next ? state.next->key.time : never);
-    double length = std::max(0.0, end - state.key.time);
     // a body at rest claims for ever
-    if (!std::isfinite(length)) length = 0;
-    if (state.trajectory().stepped()) length = count_steps(counters, state.trajectory());
+    const double until = std::isfinite(end) ? std::max(end, state.key.time) : state.key.time;
+    const double length = integrated_length(state, until);
+    if (state.trajectory().stepped()) count_steps(counters, state.trajectory());
     counters.integration_length += length;
     counters.rollback_length += length;
     counters.deepest_rollback = std::max(counters.deepest_rollback, length);
@@ -49,9 +56,9 @@ StateGraph::OnRelease count_used(Simulation& simulation) {
     while (next && !next->starts_arc()) next = next->next;
     if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
     if (state.trajectory().stepped())
-      counters.integration_length += count_steps(counters, state.trajectory());
-    else if (next)
-      counters.integration_length += next->key.time - state.key.time;
+      counters.rollback_length += count_steps(counters, state.trajectory()).forgotten;
+    if (next || state.trajectory().stepped())
+      counters.integration_length += integrated_length(state, next ? next->key.time : never);
   };
 }
 

@@ -13,6 +13,9 @@ struct Simulation;
 StateGraph::OnRelease count_discarded(Simulation& simulation);
 // For states that GVT has passed: an arc was used up to the next one.
 StateGraph::OnRelease count_used(Simulation& simulation);
+// What was integrated of the state's arc, s, if it is used up to a time: of a group what was
+// computed, of others what was used, and what was forgotten where they halted.
+double integrated_length(const State& state, double until);
 // By kinematic bodies on the state's process along its arc up to a time, J.
 double kinematic_work_of(const Simulation& simulation, const State& state, double until);
 

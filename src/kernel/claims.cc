@@ -58,6 +58,10 @@ bool Claims::reach(const Body& body, const Key& key) const {
 void Claims::fall_back(ProcessId id, const Key& key) {
   Process& process = sim_.processes[number(id)];
   process.claim = std::min(process.claim, key);
+  if (sim_.policy->synchronous()) {
+    const State& tail = *sim_.graph.tail(id);
+    if (tail.driven() && tail.key.time < key.time) tail.trajectory().halt(key.time);
+  }
   schedule(id);
 }
 
@@ -100,6 +104,13 @@ double Claims::window_end(const Body& body) const {
   const Trajectory& trajectory = tail.trajectory();
   const Parabola* path = tail.ballistic();
   if (!path && tail.group) return std::max(std::min(trajectory.end(), limit), least);
+  // the next callback ends the arc as we know it
+  double called = limit;
+  for (const std::uint32_t number : process.callbacks) {
+    const double next = callbacks_[number].next.time;
+    if (next > start) called = std::min(called, next);
+  }
+  if (sim_.policy->synchronous() && limit < never) return std::max(called, least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - cost::patience));
@@ -113,14 +124,8 @@ double Claims::window_end(const Body& body) const {
     speed = trajectory.bounds(start, farthest).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
-  double end = std::min(farthest, start + 2 * distance / std::max(speed + root, 1e-300));
-
-  // the next callback ends the arc as we know it
-  for (const std::uint32_t number : process.callbacks) {
-    const double next = callbacks_[number].next.time;
-    if (next > start) end = std::min(end, next);
-  }
-  return std::max(std::min(end, limit), least);
+  const double end = std::min(farthest, start + 2 * distance / std::max(speed + root, 1e-300));
+  return std::max(std::min(end, called), least);
 }
 
 Aabb Claims::claimed_box(const Body& body, double end) const {
@@ -178,6 +183,7 @@ bool Claims::begin(const Body& body, Window& window) {
   window.before = process.claim;
   window.end = body.fixed() ? never : window_end(body);
   if (tail.driven() && body.dynamic()) {
+    if (sim_.policy->synchronous()) tail.trajectory().halt(window.end);
     // where it fails it stops: found out before anybody relies on this claim
     static_cast<void>(tail.trajectory().pose(window.end));
     if (tail.arc_end() < never) schedule_group_check(body.process);

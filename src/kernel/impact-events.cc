@@ -168,8 +168,10 @@ void ImpactEvents::enter_next() {
 
 // False: the first one is still to be processed.
 bool ImpactEvents::process_together(std::uint32_t first) {
-  // procedures run on one thread, and what is undone and redone is looked at one by one
-  if (!Team::current() || !callbacks_.empty() || sim_.options.undo_redo) return false;
+  // procedures run on one thread; what is undone and redone is looked at one by one
+  if (!Team::current() || !callbacks_.empty() || sim_.options.undo_redo ||
+      sim_.policy->synchronous())
+    return false;
   const Key key = pairs_[first].impact;
   const BodyId struck[] = {pairs_[first].a, pairs_[first].b};
   if (!groups_.may_be_struck(struck, sim_.before(key))) return false;

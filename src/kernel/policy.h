@@ -5,13 +5,18 @@
 // rollback, GVT and commit are shared, and no policy changes the answer: the committed history is
 // by definition the one found by always processing the least key (timeline/key.h).
 //
-//   timewarp                   next: least key      reach: never          widen: nobody
-//   retroactive detection      next: least key      reach: step end       widen: everybody
-//   conservative advancement   next: least key      reach: least check    widen: nobody
+//   timewarp            next: least key      reach: never          widen: nobody
+//   retroactive:STEP    next: least key      reach: step end       widen: everybody
+//   conservative        next: least key      reach: least check    widen: nobody
+//
+// In the last two all stand at the same time.  Their integrators halt there: with dense output they
+// would not have to, but it is what the paper compares.  Where flight is closed-form nothing is
+// integrated and the histories are the same, bit for bit; with rk45 they differ by its tolerance.
+// Arcs of contact groups end at their checks under each.
 //
 // It is an object chosen at run time, so that one program can compare them.
 //
-// Source: the paper, section 6 (the loops it compares timewarp with).
+// Source: the paper, sections 2.1, 2.2 and 5.2.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -45,19 +50,23 @@ class RollbackScope {
 class Policy {
  public:
   virtual ~Policy() = default;
-  virtual const char* name() const = 0;
+  virtual std::string name() const = 0;
   // The event that is processed next.  The queue is not empty: something is left to do before the
   // run's end.
   virtual const Event& next(const EventQueue& queue) = 0;
   // The time that the process's next window may reach at most, s.  A window is never empty: where
   // this is not after the present claim, it is the shortest there is.
   virtual double may_reach(const EventQueue& queue, const Process& process) = 0;
+  // Whether all stand at the same time: windows go as far as they may, and integrators halt where
+  // they end and where a process is rolled back to.
+  virtual bool synchronous() const { return false; }
   // Adds whom else the discontinuity at `key` rolls back.
   virtual void widen(RollbackScope& scope, const Key& key) = 0;
 };
 
 // "timewarp": the event with the least priority, each process at its own time, and nobody is rolled
-// back who has nothing to do with it.  Errors: UserError for any other name.
+// back who has nothing to do with it; "retroactive:STEP", s; "conservative".  Errors: UserError for
+// any other name.
 std::unique_ptr<Policy> make_policy(const std::string& name);
 
 }  // namespace tw

@@ -87,15 +87,13 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       while (next && !next->starts_arc()) next = next->next;
       const double until = std::min(present.time, next ? next->key.time : present.time);
       kinematic_work += kinematic_work_of(simulation, *s, until);
+      length += integrated_length(*s, until);
       if (s->trajectory().stepped()) {
         const Effort effort = s->trajectory().effort();
-        length += effort.length;
         steps += effort.steps;
         if (effort.implicit) implicit += effort.steps;
         factorizations += effort.factorizations;
-        continue;
       }
-      length += until - s->key.time;
     }
   }
 
@@ -181,7 +179,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"energy_start",
        counters.energy_known ? counters.energy_start : total_energy(simulation, present.time)},
       {"energy_end", total_energy(simulation, present.time)},
-      {"policy", std::string(simulation.policy->name())},
+      {"policy", simulation.policy->name()},
       {"accuracy", present.settings.accuracy},
       {"seed", static_cast<std::int64_t>(simulation.options.seed)},
   };

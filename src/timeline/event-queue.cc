@@ -56,31 +56,46 @@ void EventQueue::withdraw(Handle& handle) {
   if (at < heap_.size()) settle(at, last);
 }
 
-// Priorities are key times or earlier: below a slot whose priority is not earlier than the least
-// time known there is none.  In order that ends at once.
-void EventQueue::first_ones(std::vector<Event>& events) const {
+// Priorities are key times or earlier: below a slot whose priority is later than what is sought
+// there is nothing.  In order that ends at once.
+template <class Visit>
+void EventQueue::visit_from_top(Visit&& visit) const {
   std::vector<std::size_t> open;
   if (!heap_.empty()) open.push_back(0);
   while (!open.empty()) {
     const std::size_t at = open.back();
     open.pop_back();
-    if (heap_[at].priority > heap_[0].priority) continue;
-    events.push_back(events_[heap_[at].handle]);
+    if (!visit(heap_[at])) continue;
     for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c) open.push_back(c);
   }
 }
 
+void EventQueue::first_ones(std::vector<Event>& events) const {
+  visit_from_top([&](const Slot& slot) {
+    if (slot.priority > heap_[0].priority) return false;
+    events.push_back(events_[slot.handle]);
+    return true;
+  });
+}
+
 double EventQueue::least_time() const {
   double least = never;
-  std::vector<std::size_t> open;
-  if (!heap_.empty()) open.push_back(0);
-  while (!open.empty()) {
-    const std::size_t at = open.back();
-    open.pop_back();
-    if (heap_[at].priority >= least) continue;
-    least = std::min(least, events_[heap_[at].handle].key.time);
-    for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c) open.push_back(c);
-  }
+  visit_from_top([&](const Slot& slot) {
+    if (slot.priority >= least) return false;
+    least = std::min(least, events_[slot.handle].key.time);
+    return true;
+  });
+  return least;
+}
+
+double EventQueue::least_time_but(EventKind kind) const {
+  double least = never;
+  visit_from_top([&](const Slot& slot) {
+    if (slot.priority >= least) return false;
+    const Event& event = events_[slot.handle];
+    if (event.kind != kind) least = std::min(least, event.key.time);
+    return true;
+  });
   return least;
 }
 

@@ -46,6 +46,8 @@ class EventQueue {
   }
   // The least time of all events' keys; never before the priority of the top.  `never` if empty.
   double least_time() const;
+  // The least time of the keys of all events but those of one kind; `never`: there is none.
+  double least_time_but(EventKind kind) const;
   // All that are scheduled, in no order: for validators.
   std::vector<Handle> handles() const;
 
@@ -65,6 +67,9 @@ class EventQueue {
     if (a.priority != b.priority) return a.priority < b.priority;
     return events_[a.handle].key < events_[b.handle].key;
   }
+  // Calls visit(slot) from the top down, and below a slot only where it answers true.
+  template <class Visit>
+  void visit_from_top(Visit&& visit) const;
   // Puts the slot where it belongs, from place `at` on, which is free.
   void settle(std::size_t at, const Slot& slot);
   void put(std::size_t at, const Slot& slot) {

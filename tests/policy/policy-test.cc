@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/callback-scenes.h"
 #include "support/heap-scenes.h"
 #include "support/schedule.h"
@@ -15,7 +17,7 @@ namespace {
 // Timewarp but for what a test changes, counting what it decided.
 class Toy : public Policy {
  public:
-  const char* name() const override { return "toy"; }
+  std::string name() const override { return "toy"; }
   const Event& next(const EventQueue& queue) override { return queue.top(); }
   double may_reach(const EventQueue&, const Process&) override { return never; }
   void widen(RollbackScope&, const Key&) override {}
@@ -85,6 +87,72 @@ struct Finished {
   long decisions = 0;
 };
 
+Finished run_under(const std::string& policy, const Scene& scene) {
+  World world;
+  Schedule schedule;
+  schedule.check = true;
+  apply(world, schedule);
+  world.set_policy(policy);
+  scene.fill(world);
+  advance_in_pieces(world, scene.duration, 2);
+  const StatisticsTable table = world.statistics();
+  return {world.history_hash(), count_of(table, "collisions"), count_of(table, "claims"),
+          count_of(table, "states_rolled_back"), 0};
+}
+
+// Cubes that turn, in a box without gravity; no two impacts at one time.
+Scene tumbling_cubes(double duration) {
+  const auto fill_world = [](World& world) {
+    world.set_gravity(Vec3::Zero());
+    set_contact_for_all(world, 1, 0);
+    add_walls(world, -0.9, 2.7);
+    for (int i = 0; i < 8; ++i) {
+      BodyDef cube = body_of(make_box({0.5, 0.5, 0.5}), 1.8 * Vec3(i & 1, i >> 1 & 1, i >> 2),
+                             2 * Vec3(std::sin(3 * i + 1), std::sin(5 * i + 2), std::cos(7 * i)));
+      cube.angular_velocity = 2 * Vec3(std::cos(2 * i), std::sin(4 * i), 1);
+      world.add_body(cube);
+    }
+  };
+  return {"tumbling cubes", duration, fill_world};
+}
+
+// Who struck whom, and when, by Cash and Karp's method.
+struct Impacts {
+  std::vector<std::pair<BodyId, BodyId>> partners;
+  std::vector<double> times;  // s
+};
+
+Impacts impacts_under(const std::string& policy, const Scene& scene) {
+  World world;
+  world.set_integrator("rk45");
+  world.set_accuracy(1e-10);
+  world.set_policy(policy);
+  Impacts impacts;
+  world.add_collision_observer([&](const Collision& collision) {
+    impacts.partners.emplace_back(collision.body1, collision.body2);
+    impacts.times.push_back(collision.time);
+  });
+  scene.fill(world);
+  world.advance(scene.duration);
+  return impacts;
+}
+
+// Of a moving body: what was integrated, and in what steps, s.
+struct Effort {
+  double length = 0, step = 0;
+};
+
+Effort effort_under(const std::string& policy, const Scene& scene) {
+  World world;
+  world.set_integrator("rk45");
+  world.set_policy(policy);
+  scene.fill(world);
+  world.advance(scene.duration);
+  const StatisticsTable table = world.statistics();
+  return {number_of(table, "integration_per_moving_body"),
+          number_of(table, "avg_integration_step")};
+}
+
 template <class Chosen>
 Finished run_under(const Scene& scene) {
   World world;
@@ -146,11 +214,58 @@ TEST(Policy, what_it_decides_is_done) {
   EXPECT_GT(run_under<Backwards>(scene).removed, timewarp.removed);
 }
 
-TEST(Policy, only_timewarp_is_offered) {
+// The paper's loops (sections 2.1 and 2.2), as users get them: where nothing is integrated the
+// history is timewarp's, bit for bit.
+TEST(Policy, those_of_the_paper_give_the_same_history) {
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const Finished expected = run_under("timewarp", scene);
+    for (const char* name : {"conservative", "retroactive:0.001", "retroactive:0.0333"}) {
+      SCOPED_TRACE(name);
+      const Finished run = run_under(name, scene);
+      EXPECT_EQ(run.hash, expected.hash);
+      EXPECT_GT(run.claims, expected.claims);
+    }
+  }
+}
+
+// With a method of steps they stop where all stand at the same time, and agree to its tolerance:
+// the same impacts in the same order, until chaos takes over.
+TEST(Policy, those_of_the_paper_agree_with_steps) {
+  const Scene scene = tumbling_cubes(1.6);
+  const Impacts expected = impacts_under("timewarp", scene);
+  ASSERT_GT(expected.partners.size(), 8u);
+  for (const char* name : {"conservative", "retroactive:0.001", "retroactive:0.0333"}) {
+    SCOPED_TRACE(name);
+    const Impacts run = impacts_under(name, scene);
+    ASSERT_EQ(run.partners, expected.partners);
+    for (std::size_t i = 0; i < run.times.size(); ++i)
+      EXPECT_NEAR(run.times[i], expected.times[i], 1e-6) << i;
+  }
+}
+
+// What the paper compares them by (figure 6): conservative advancement never integrates in vain,
+// but in small steps; retroactive detection wastes more, the longer its step.
+TEST(Policy, cost_what_the_paper_says) {
+  const Scene scene = cube_lattice_scene(2, 1.1, 1);
+  const Effort timewarp = effort_under("timewarp", scene);
+  const Effort conservative = effort_under("conservative", scene);
+  const Effort fine = effort_under("retroactive:0.001", scene);
+  const Effort coarse = effort_under("retroactive:0.0333", scene);
+  EXPECT_LT(conservative.length, 1.01 * scene.duration);
+  EXPECT_GT(coarse.length, 1.1 * scene.duration);
+  EXPECT_GT(coarse.length, fine.length);
+  EXPECT_LT(fine.step, coarse.step);
+  EXPECT_LT(conservative.step, timewarp.step);
+}
+
+TEST(Policy, are_checked) {
   World world;
-  EXPECT_NO_THROW(world.set_policy("timewarp"));
-  EXPECT_THROW(world.set_policy("retroactive:0.01"), UserError);
-  EXPECT_THROW(world.set_policy("conservative"), UserError);
+  for (const char* good : {"conservative", "retroactive:0.01", "timewarp"})
+    EXPECT_NO_THROW(world.set_policy(good));
+  for (const char* bad : {"retroactive", "retroactive:", "retroactive:0", "retroactive:x",
+                          "retroactive:1s", "retroactive:inf", "eager", ""})
+    EXPECT_THROW(world.set_policy(bad), UserError) << bad;
   world.advance(1);
   EXPECT_THROW(world.set_policy(std::make_unique<Toy>()), UserError);
 }

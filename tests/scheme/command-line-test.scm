@@ -156,13 +156,16 @@
 
 ;; what is not there yet says so
 (for-each (lambda (args) (apply refused "not there yet" "ball.scm" args))
-          '(("--movie=x.mp4") ("-m" "x.mp4") ("--record=x.twr") ("-o" "x.twr") ("--listen") ("--listen=sock") ("--policy=conservative")
-            ("--policy=retroactive:0.01")))
+          '(("--movie=x.mp4") ("-m" "x.mp4") ("--record=x.twr") ("-o" "x.twr") ("--listen") ("--listen=sock")))
 (refused "not there yet" "x.twr")
 (refused "--integrator is \"euler\"; expected auto or rk45" "ball.scm" "--integrator=euler")
 (test-equal "--integrator=rk45 is" 0 (run-status (run "ball.scm" "--integrator=rk45")))
-(test-equal "--policy=timewarp --integrator=auto are" 0
-            (run-status (run "ball.scm" "--policy=timewarp" "--integrator=auto")))
+(for-each
+ (lambda (policy)
+   (test-equal (string-append policy " is") 0 (run-status (run "ball.scm" policy))))
+ '("--policy=timewarp" "--policy=conservative" "--policy=retroactive:0.01"))
+(refused "--policy is \"eager\"; expected timewarp, conservative or retroactive:STEP" "ball.scm" "--policy=eager")
+(refused "--policy is \"retroactive:0\"" "ball.scm" "--policy=retroactive:0")
 
 ;; ---- --check ----
 
