@@ -265,10 +265,13 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
   if (before) masses.add(before->pair->masses);
   const ContactScales scales = contact_scales(work.scene(), body_a, body_b, masses);
   const double reach = before ? reach_of(*before) : 0;
-  const double size = scales.size, depth = reach + scales.law.gap_scale();
+  const double size = scales.size, wanted = reach + scales.law.gap_scale();
   const double travel =
       2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
-  const double margin = std::max(answer::contact_margin * size, depth);
+  // new contacts no farther than boxes are sure to hold who is there
+  const double held = answer::contact_margin * size;
+  const double margin = before || must ? std::max(held, wanted) : held;
+  const double depth = std::min(wanted, margin);
   const double search_distance = depth + std::min(travel, margin - depth);
   if (!must && far_apart(a, b, search_distance)) return;
 
@@ -316,13 +319,30 @@ void take(Regrouping& work, Look& look) {
   work.pairs.push_back(look.pair);
 }
 
-// Whom a body may have come into contact with; ascending.
+// Who was in contact with whom, from either side; ascending.
+using Partners = std::vector<std::pair<BodyId, BodyId>>;
+
+Partners partners_before(const Regrouping& work) {
+  Partners partners;
+  partners.reserve(2 * work.pairs_before.size());
+  for (const PairBefore& old : work.pairs_before) {
+    partners.push_back({old.pair->a(), old.pair->b()});
+    partners.push_back({old.pair->b(), old.pair->a()});
+  }
+  std::sort(partners.begin(), partners.end());
+  return partners;
+}
+
+// Whom a body touches or may have come to touch; ascending.  Boxes hold whoever is as near as a new
+// contact is looked for (what is in them beyond that hangs on the claims, and is found apart); an
+// old one may reach farther, as a cushion's does that was pressed deep: it is looked at anyhow.
 std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
-                                  const std::vector<ProcessId>& looked_at) {
+                                  const std::vector<ProcessId>& looked_at,
+                                  const Partners& partners) {
   const Scene& scene = work.scene();
   const bool may_disable = scene.may_disable();
   std::vector<BodyId> candidates;
-  work.surroundings.visit_near(body.id(), [&](BodyId other) {
+  const auto consider = [&](BodyId other) {
     const Body& partner = scene.body(other);
     if (partner.dynamic()) {
       // once, from the body that was added first
@@ -334,8 +354,14 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
     }
     if (may_disable && !scene.may_collide(body, partner)) return;
     candidates.push_back(other);
-  });
+  };
+  work.surroundings.visit_near(body.id(), consider);
+  for (auto at =
+           std::lower_bound(partners.begin(), partners.end(), std::pair{body.id(), BodyId{0}});
+       at != partners.end() && at->first == body.id(); ++at)
+    consider(at->second);
   std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   return candidates;
 }
 
@@ -344,6 +370,7 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
   std::vector<std::vector<BodyId>> grounds;  // of each, as long as somebody looks
   grounds.reserve(looked_at.size());
+  const Partners partners = partners_before(work);
   std::vector<Look> looks;
   std::deque<PlacedBody> places;  // of those looked at together
   const bool together = Team::current();
@@ -354,7 +381,7 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
     const PlacedBody& mine = together ? places.emplace_back(here) : here;
     const std::vector<BodyId>& ground =
         grounds.emplace_back(work.surroundings.ground_around(body, {mine.frame}));
-    for (const BodyId other : candidates_of(work, body, looked_at)) {
+    for (const BodyId other : candidates_of(work, body, looked_at, partners)) {
       const PlacedBody there = work.placed(other);
       const PlacedBody& theirs = together ? places.emplace_back(there) : there;
       const bool straight = body.id() < other;

@@ -2,8 +2,9 @@
 // friction stretches.
 //
 // Whether a pair is in contact is a function of the poses and velocities at the discontinuity, of
-// whether it was before, and of the interval until the next check; candidates come from the spatial
-// hash, whose boxes are grown so that none is missed.
+// whether it was before, and of the interval until the next check; candidates are who was in
+// contact before, and whom the spatial hash has near: new contacts are looked for no farther than
+// its boxes are grown, so none is missed, however small claims and GVT make them.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

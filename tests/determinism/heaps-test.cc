@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "determinism/compare-schedules.h"
+#include "support/counter.h"
 #include "support/heap-scenes.h"
 
 namespace tw::test {
@@ -102,6 +103,36 @@ TEST(Heaps, single_steps_and_slices_have_no_influence) {
     while (world.advance(scene.duration, 0) == RunStatus::slice_over) continue;
     EXPECT_EQ(world.history_hash(), expected.hash) << scene.name;
   }
+}
+
+// What is so soft that its contacts press from farther than boxes are grown is in contact for as
+// long, whether or not its box, as GVT and the windows have it, still meets the floor's.
+TEST(Heaps, cushions_that_are_thrown_up_have_one_history) {
+  const auto fill = [](World& world) {
+    ContactSettings soft;
+    soft.stiffness = 3e4;  // a static depth of 0.3 m
+    world.set_contact({}, {}, soft);
+    BodyDef floor = body_of(make_box({10, 10, 1}), {0, 0, -0.5}, Vec3::Zero());
+    floor.fixed = true;
+    world.add_body(floor);
+    for (int i = 0; i < 6; ++i) {
+      const BodyId box =
+          world.add_body(body_of(make_box({1, 1, 1}), {1.6 * (i - 3), 0, 0.5}, Vec3::Zero()));
+      add_callback(world, {box}, 0.1, std::nullopt,
+                   [i](double, std::span<StateView* const> targets) {
+                     targets[0]->set_velocity({0.3, 0, 3.0 + 4 * i});
+                     return std::optional<double>();
+                   });
+    }
+  };
+  std::vector<Schedule> schedules = short_adversaries(6);
+  for (const double window : {0.05, 0.2, 0.7, 3.0}) {
+    Schedule narrow;
+    narrow.gvt_interval = 1;
+    narrow.window_cells = window;
+    schedules.push_back(narrow);
+  }
+  expect_one_history({"cushions", 0.4, fill}, schedules, 0);
 }
 
 // Fusions and fissions reach their observers in the same order, each once.

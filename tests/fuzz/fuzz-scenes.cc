@@ -40,10 +40,9 @@ void print_help() {
       "2 % of the smaller body's least width); energy (above its least so far by 1e-3 of what is "
       "at\n"
       "play); slow (more than 0.16 s of CPU per time unit and body, or than the budget); hash\n"
-      "(another history in one piece, by 3 threads, under an adversary, or with undo-redo).  Dear: "
-      "a schedule "
-      "that\n"
-      "took more than 5 times as long and 1 s, and was not waited for.\n"
+      "(another history in one piece, by 3 threads, by narrow windows, under an adversary, or\n"
+      "with undo-redo).  Dear: a schedule that took more than 5 times as long and 1 s, and was\n"
+      "not waited for.\n"
       "Status: 0 if no scene has a fault, else 1; 2 for wrong usage.\n"
       "Kinds:");
   for (const Kind& kind : kinds()) std::printf("  %-10s %s\n", kind.name, kind.what);

@@ -36,8 +36,13 @@ std::vector<NamedSchedule> schedules(const DescribedScene& scene) {
   undo.undo_redo = true;
   test::Schedule threads;
   threads.threads = 3;
+  // boxes as small as they get: nobody is found in them by chance
+  test::Schedule narrow;
+  narrow.gvt_interval = 1;
+  narrow.window_cells = 0.1;
   return {{"pieces", {}},
           {"threads", threads},
+          {"narrow", narrow},
           {"bodies", adversary(scene, false)},
           {"events", adversary(scene, true)},
           {"undo", undo}};
