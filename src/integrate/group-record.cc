@@ -163,36 +163,38 @@ GroupRecord::Cubic GroupRecord::rotation(int i, int member) const {
   return hermite(Vec3::Zero(), vec(a + w_at), vec(s + theta_at), vec(s + rate_at), length(i));
 }
 
-Vec3 GroupRecord::position(int member, double t) const {
+GroupRecord::Place GroupRecord::place(double t) const {
   const int i = step_from(t);
-  if (i < 0) return vec(member_node(steps(), member) + x_at);
-  return path(i, member).value(fraction(i, t));
+  return i < 0 ? Place{steps(), 0} : Place{i, fraction(i, t)};
+}
+
+Vec3 GroupRecord::position(int member, double t) const {
+  const auto [i, r] = place(t);
+  return r > 0 ? path(i, member).value(r) : vec(member_node(i, member) + x_at);
 }
 
 Quat GroupRecord::attitude(int member, double t) const {
-  const int i = step_from(t);
-  if (i < 0) return quat(member_node(steps(), member) + q_at);
-  return short_rotation(rotation(i, member).value(fraction(i, t))) *
-         quat(member_node(i, member) + q_at);
+  const auto [i, r] = place(t);
+  const Quat begin = quat(member_node(i, member) + q_at);
+  return r > 0 ? Quat(short_rotation(rotation(i, member).value(r)) * begin) : begin;
 }
 
 void GroupRecord::velocities(int member, double t, Vec3& v, Vec3& L) const {
-  const int i = step_from(t);
-  const double* a = member_node(i < 0 ? steps() : i, member);
+  const auto [i, r] = place(t);
+  const double* a = member_node(i, member);
   v = vec(a + v_at);
   L = vec(a + L_at);
-  if (i < 0) return;
+  if (!(r > 0)) return;
   const double *b = member_node(i + 1, member), *s = member_step(i, member);
-  const double r = fraction(i, t);
   v = Cubic{v, vec(b + v_at), vec(s + d3_at), vec(s + d4_at)}.value(r);
   L = Cubic{L, vec(b + L_at), vec(s + d3_at + 3), vec(s + d4_at + 3)}.value(r);
 }
 
 LaneVec GroupRecord::stretch(int pack, double t) const {
-  const int i = step_from(t), at = node_numbers * members_ + pack_node * pack;
-  if (i < 0) return load(node(steps()) + at);
+  const auto [i, r] = place(t);
+  const int at = node_numbers * members_ + pack_node * pack;
+  if (!(r > 0)) return load(node(i) + at);
   const double* d = step(i) + step_numbers * members_ + pack_step * pack;
-  const double r = fraction(i, t);
   const LaneVec y0 = load(node(i) + at), y1 = load(node(i + 1) + at), d3 = load(d),
                 d4 = load(d + 12);
   return lanes(1 - r) * y0 + lanes(r) * (y1 + lanes(1 - r) * (d3 + lanes(r) * d4));

@@ -80,6 +80,14 @@ class GroupRecord {
     return steps_.data() + step_size_ * static_cast<std::size_t>(i);
   }
   GroupRecord() = default;
+  // The fraction r of the step that follows a node.  At r = 0 what stands at the node is taken as
+  // it is, so that it makes no difference whether there is a next step already: of a cubic a -0
+  // would become 0.
+  struct Place {
+    int node;
+    double r;
+  };
+  Place place(double time) const;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
   static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,
