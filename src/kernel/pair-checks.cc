@@ -131,7 +131,9 @@ void PairChecks::reset(std::uint32_t index, const Key& key) {
   Pair& pair = pairs_[index];
   if (pair.pending && pair.impact < key) return;
   pair.clearance.forget_from(key.time);
-  if (pair.pending || key < pair.from || pair.parked) {
+  // (a state that is removed and found again may have the key that it had, and another arc: what
+  // was checked of a piece that begins there, its touch included, is no longer so)
+  if (pair.pending || key <= pair.from || pair.parked) {
     pair.from = pair.pending ? key : std::min(pair.from, key);
     pair.started = false;
   }
