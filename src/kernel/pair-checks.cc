@@ -249,6 +249,14 @@ void PairChecks::raise_safe_time(Pair& pair, const Piece& piece, double checked)
   if (pair.from.time < safe && safe < piece.end.time) pair.from = {safe, 0, KeyKind::birth, 0};
 }
 
+// What follows from the first impact of the two arcs: beyond the piece's end there is none on the
+// piece.  To look on would be to find another root in another bracket, where the two touch for a
+// while: that of a piece which was cut before it was looked at, and not of one that is cut later.
+std::optional<PairOutcome> PairChecks::decided(Pair& pair, const Piece& piece) const {
+  if (pair.impact < piece.end) return pending_at(pair, pair.impact);
+  return next_piece(pair, piece);
+}
+
 // Follows a piece on the grid.
 std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& piece, double until,
                                                       PairCounts& counts) const {
@@ -258,19 +266,17 @@ std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& p
     pair.touch = 0;
     // an impact at the common start that was rolled back is found again from its own key on
     if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
-      if ((check_common_start(pair, piece, counts) ||
-           check_between(pair, piece, piece.start_time(), counts)) &&
-          pair.impact < piece.end)
-        return pending_at(pair, pair.impact);
+      if (check_common_start(pair, piece, counts) ||
+          check_between(pair, piece, piece.start_time(), counts))
+        return decided(pair, piece);
       raise_safe_time(pair, piece, piece.start_time());
     } else {
       pair.next_check = grid_ceil(pair.from.time);
       if (pair.next_check <= piece.start_time()) pair.next_check = grid_after(piece.start_time());
       // taken up between two grid points: a dip belongs to the whole stretch between them
       const double before = std::max(piece.start_time(), grid_floor(pair.from.time));
-      if (before < pair.next_check && check_between(pair, piece, before, counts) &&
-          pair.impact < piece.end)
-        return pending_at(pair, pair.impact);
+      if (before < pair.next_check && check_between(pair, piece, before, counts))
+        return decided(pair, piece);
     }
   }
 
@@ -285,9 +291,8 @@ std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& p
       if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) return waits;
       return check_at(pair, std::min(when, piece.end.time));
     }
-    if ((check_grid_point(pair, piece, when, counts) || check_between(pair, piece, when, counts)) &&
-        pair.impact < piece.end)
-      return pending_at(pair, pair.impact);
+    if (check_grid_point(pair, piece, when, counts) || check_between(pair, piece, when, counts))
+      return decided(pair, piece);
     raise_safe_time(pair, piece, when);
   }
   // apart for ever: wait until the arcs change or the boxes part

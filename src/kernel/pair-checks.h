@@ -64,6 +64,7 @@ class PairChecks {
   std::optional<PairOutcome> follow_exact(Pair& pair, const Piece& piece, PairCounts& counts) const;
   std::optional<PairOutcome> follow_on_grid(Pair& pair, const Piece& piece, double until,
                                             PairCounts& counts) const;
+  std::optional<PairOutcome> decided(Pair& pair, const Piece& piece) const;
   std::optional<PairOutcome> next_piece(Pair& pair, const Piece& piece) const;
   bool check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const;
   bool check_grid_point(Pair& pair, const Piece& piece, double when, PairCounts& counts) const;

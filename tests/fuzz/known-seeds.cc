@@ -28,6 +28,7 @@ const MendedSeed mended[] = {
     {"lattice", 3417, "what got deeper while its witness points parted was looked at for ever"},
     {"shaker", 1910, "in the crease between the ball and the bar of a dumbbell nothing held"},
     {"lattice", 267, "a warm query found what touched apart by its last digit: another history"},
+    {"cards", 1090, "a piece cut before it was looked at had another root than one cut later"},
     {"lattice", 1289, "an arc found again under its old key was not looked at from its start"},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
     {"thin", 17, "where rods cross a fixed point missed the gap, and arcs ended for it"},
