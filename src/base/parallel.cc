@@ -38,12 +38,12 @@ void take_up(void* object) {
 
 struct Team::Pool {
   explicit Pool(int threads)
-      : arena(threads, 1), most(most_threads, static_cast<std::size_t>(threads)) {}
+      : arena(threads, 1), allowed(parallelism, static_cast<std::size_t>(threads)) {}
 
   // tests run more threads than there are cores
-  static constexpr auto most_threads = oneapi::tbb::global_control::max_allowed_parallelism;
+  static constexpr auto parallelism = oneapi::tbb::global_control::max_allowed_parallelism;
   oneapi::tbb::task_arena arena;
-  oneapi::tbb::global_control most;
+  oneapi::tbb::global_control allowed;
 };
 
 Team::Team(int threads) : threads_(threads) {}

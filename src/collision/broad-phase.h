@@ -26,9 +26,8 @@ class BroadPhase {
     return moving_.contains(id) ? moving_.box(id) : standing_.box(id);
   }
 
-  // Queries may go on at once if no two are for the same `id`.
   // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The
-  // visit must not place boxes.
+  // visit must not place boxes.  Queries may go on at once if no two are for the same `id`.
   template <class Visit>
   void overlapping(std::uint32_t id, Visit&& visit) const {
     if (!moving_.contains(id)) {

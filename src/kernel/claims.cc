@@ -88,11 +88,16 @@ void Claims::schedule_group_check(ProcessId id) {
   sim_.schedule(waiting.group_check, key, EventKind::group_check, number(id), waiting.head_start);
 }
 
-// Finds where the arcs of the group end, before anybody relies on them.
-void Claims::test_group_end(Group& group) {
-  test_end(sim_.scene, sim_.surroundings, group, counters_);
-  for (const ProcessId id : group.members)
-    if (sim_.graph.tail(id)->group.get() == &group) schedule_group_check(id);
+void Claims::test_ends(std::span<const std::shared_ptr<Group>> groups) {
+  std::vector<GroupCounters> counters(groups.size());
+  each_in_parallel(groups.size(), 1, [&](std::size_t i) {
+    test_end(sim_.scene, sim_.surroundings, *groups[i], counters[i]);
+  });
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    counters_.add(counters[i]);
+    for (const ProcessId id : groups[i]->members)
+      if (sim_.graph.tail(id)->group == groups[i]) schedule_group_check(id);
+  }
 }
 
 double Claims::window_end(const Body& body) const {
@@ -156,15 +161,7 @@ void Claims::test_group_ends(std::span<const Body* const> bodies) {
   }
   if (untested.empty()) return;
   sort_once(untested);
-  std::vector<GroupCounters> counters(untested.size());
-  each_in_parallel(untested.size(), 1, [&](std::size_t i) {
-    test_end(sim_.scene, sim_.surroundings, *untested[i], counters[i]);
-  });
-  for (std::size_t i = 0; i < untested.size(); ++i) {
-    counters_.add(counters[i]);
-    for (const ProcessId id : untested[i]->members)
-      if (sim_.graph.tail(id)->group == untested[i]) schedule_group_check(id);
-  }
+  test_ends(untested);
 }
 
 // Decides how far the body claims; false: it claims no further.

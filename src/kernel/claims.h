@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -51,8 +52,8 @@ class Claims {
   // The events by which it goes on.
   void schedule(ProcessId process);
   void withdraw(ProcessId process);
-  // Finds where the arcs of the group end, before anybody relies on them.
-  void test_group_end(Group& group);
+  // Finds where the arcs of these groups end, before anybody relies on them; each once.
+  void test_ends(std::span<const std::shared_ptr<Group>> groups);
 
   // A body has come.
   void make_room_for(BodyId id) { placed_.resize(std::max<std::size_t>(placed_.size(), id + 1)); }

@@ -241,7 +241,7 @@ Progress GroupEvents::check(ProcessId id) {
   TW_ASSERT(tail.group && !tail.group->at_rest, "group check of nobody");
   const std::shared_ptr<Group> group = tail.group;
   if (!group->end_tested) {
-    claims_.test_group_end(*group);
+    claims_.test_ends({&group, 1});
     return Progress::try_again;
   }
   const double when = tail.arc_end();

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/policy.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -27,9 +26,9 @@ class Retroactive : public Timewarp {
   std::string name() const override { return "retroactive:" + show(step_); }
   double may_reach(const EventQueue&, const Process& process) override {
     const double now = process.claim.time;
-    double end = std::ceil(now / step_) * step_;
-    if (!(end > now)) end = (std::floor(now / step_) + 1) * step_;
-    return end > now ? end : now + step_;
+    double count = std::floor(now / step_);
+    while (!(count * step_ > now)) ++count;
+    return count * step_;
   }
   bool synchronous() const override { return true; }
   void widen(RollbackScope& scope, const Key&) override { scope.add_all(); }

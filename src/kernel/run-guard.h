@@ -26,7 +26,7 @@ class RunGuard {
 
  private:
   static Team* team_of(Simulation& simulation) {
-    const int wanted = simulation.options.threads, threads = wanted > 0 ? wanted : Team::cores();
+    const int threads = simulation.threads();
     if (threads < 2 || simulation.calls_out) return nullptr;
     if (!simulation.team) simulation.team = std::make_unique<Team>(threads);
     return simulation.team.get();

@@ -51,6 +51,8 @@ struct Simulation {
   Process& process(const Body& body) { return processes[number(body.process)]; }
   const Process& process(const Body& body) const { return processes[number(body.process)]; }
   // What stands before a key, and what groups are decided by.
+  // As many as a run may take.
+  int threads() const { return options.threads > 0 ? options.threads : Team::cores(); }
   Before before(const Key& key, ReadLog* log = nullptr) const {
     return Before(scene, graph, key, log);
   }

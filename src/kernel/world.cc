@@ -59,7 +59,7 @@ void World::set_gvt_interval(long events) { kernel_->simulation.options.gvt_inte
 void World::set_threads(int threads) {
   TW_REQUIRE(threads >= 0 && threads <= most_threads,
              "threads is " + std::to_string(threads) +
-                 "; expected a whole number from 0 (as many as " + "there are cores) to " +
+                 "; expected a whole number from 0 (as many as there are cores) to " +
                  std::to_string(most_threads));
   kernel_->simulation.require_between_runs("the number of threads was set");
   kernel_->simulation.options.threads = threads;

@@ -1,0 +1,93 @@
+#!/bin/sh
+# The paper's comparisons: figure 2, the cost of a tumbling brick by integration step; figure 6, the
+# main loops on 2 s of atoms.  Tables on standard output; where gnuplot is installed, the plots
+# policies-brick.png, policies-step.png, policies-total.png and policies-cost.png in the current folder.
+#
+#   policies.sh SOURCE TIMEWARP... [-- N...]     N: atoms; 25 50 100 200 400 by default
+#
+# All fly by Cash and Karp's method, on one thread: in closed form nothing would be integrated.
+# SPDX-License-Identifier: LGPL-3.0-or-later
+source=$1
+shift
+command=
+while [ $# -gt 0 ] && [ "$1" != -- ]; do
+  command="$command $1"
+  shift
+done
+[ $# -gt 0 ] && shift
+sizes=${*:-25 50 100 200 400}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# run OPTION...: the statistics go to $folder/stats
+run() {
+  $command --quiet --stats --threads=1 --integrator=rk45 "$@" </dev/null >"$folder/stats" || exit 1
+}
+statistic() { awk -v name="$1" '$1 == name { print $2 }' "$folder/stats"; }
+
+echo "## A brick in flight, 10 s"
+echo
+echo "| integration step, s | accuracy | CPU, ms | steps |"
+echo "| --- | --- | --- | --- |"
+for accuracy in 1e-4 1e-8; do
+  for step in 0.0001 0.0003 0.001 0.003 0.01 0.03 0.1 0.3 1 3 10; do
+    run --accuracy=$accuracy --policy=retroactive:$step "$source/tests/bench/brick.scm"
+    cpu=$(statistic cpu_seconds | awk '{ printf "%.3f", 1000 * $1 }')
+    echo "| $step | $accuracy | $cpu | $(statistic integrations) |"
+    echo "$step $cpu" >>"$folder/brick-$accuracy"
+  done
+done
+
+echo
+echo "## Atoms, 2 s, the divider at rest"
+echo
+echo "| atoms | policy | CPU, ms a frame | average integration step, ms | integrated a body, s | impacts |"
+echo "| --- | --- | --- | --- | --- | --- |"
+for atoms in $sizes; do
+  molecules=$((atoms / 3))
+  for policy in timewarp retroactive:0.0333333 retroactive:0.01 retroactive:0.001 conservative; do
+    run --until=2 --policy=$policy "$source/scenes/atoms.scm" \
+      -D spheres=$((atoms - molecules)) -D molecules=$molecules
+    cpu=$(statistic cpu_seconds_per_frame | awk '{ printf "%.3f", 1000 * $1 }')
+    step=$(statistic avg_integration_step | awk '{ printf "%.3f", 1000 * $1 }')
+    total=$(statistic integration_per_moving_body | awk '{ printf "%.2f", $1 }')
+    echo "| $atoms | $policy | $cpu | $step | $total | $(statistic collisions) |"
+    echo "$atoms $step $total $cpu" >>"$folder/$policy"
+  done
+done
+
+command -v gnuplot >/dev/null || exit 0
+here=$(pwd)
+cd "$folder" || exit 1
+gnuplot <<END
+set terminal pngcairo size 720,480
+set linetype 1 lc rgb "#c0392b" lw 2
+set linetype 2 lc rgb "#7f8c8d" lw 2
+set linetype 3 lc rgb "#2980b9" lw 2
+set linetype 4 lc rgb "#27ae60" lw 2
+set linetype 5 lc rgb "#000000" lw 2
+set key left top
+set logscale xy
+set grid
+set output "$here/policies-brick.png"
+set xlabel "integration step, s"
+set ylabel "CPU, ms, for 10 s of a tumbling brick"
+set key right top
+plot "brick-1e-4" with linespoints title "accuracy 1e-4", \
+     "brick-1e-8" with linespoints title "accuracy 1e-8"
+set xlabel "atoms"
+set key left top
+all = "conservative retroactive:0.001 retroactive:0.01 retroactive:0.0333333 timewarp"
+names = "CA RD-0.001 RD-0.01 RD-1/30 TW"
+set output "$here/policies-step.png"
+set ylabel "average integration step, ms"
+set key left bottom
+plot for [i=1:5] word(all, i) using 1:2 with linespoints title word(names, i)
+set key left top
+set output "$here/policies-total.png"
+set ylabel "total integration a body, s"
+plot for [i=1:5] word(all, i) using 1:3 with linespoints title word(names, i)
+set output "$here/policies-cost.png"
+set ylabel "CPU, ms a frame"
+plot for [i=1:5] word(all, i) using 1:4 with linespoints title word(names, i)
+END
