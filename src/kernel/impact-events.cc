@@ -92,6 +92,14 @@ GroupEvents::Decided ImpactEvents::decide(std::uint32_t pair, const Before& befo
 
 // ---- several at once ----
 
+// Two in flight are done with sooner than a helper is told of them.
+bool ImpactEvents::concerns_group(std::uint32_t pair) const {
+  const auto in_group = [&](BodyId id) {
+    return sim_.body(id).dynamic() && sim_.graph.tail(sim_.process_of(id))->group;
+  };
+  return in_group(pairs_[pair].a) || in_group(pairs_[pair].b);
+}
+
 // Where an impact may soon be felt.
 Aabb ImpactEvents::room_of(std::uint32_t pair) const {
   Aabb room;
@@ -108,7 +116,8 @@ Aabb ImpactEvents::room_of(std::uint32_t pair) const {
 void ImpactEvents::find_next(std::uint32_t first) {
   soon_.clear();
   sim_.queue.visit_soon(cost::events_looked_ahead, [&](const Event& event) {
-    if (event.kind == EventKind::pair && event.subject != first && pairs_[event.subject].pending)
+    if (event.kind == EventKind::pair && event.subject != first && pairs_[event.subject].pending &&
+        concerns_group(event.subject))
       soon_.push_back(event.subject);
   });
   std::sort(soon_.begin(), soon_.end(),
@@ -170,7 +179,7 @@ void ImpactEvents::enter_next() {
 bool ImpactEvents::process_together(std::uint32_t first) {
   // procedures run on one thread; what is undone and redone is looked at one by one
   if (!Team::current() || !callbacks_.empty() || sim_.options.undo_redo ||
-      sim_.policy->synchronous())
+      sim_.policy->synchronous() || !concerns_group(first))
     return false;
   const Key key = pairs_[first].impact;
   const BodyId struck[] = {pairs_[first].a, pairs_[first].b};

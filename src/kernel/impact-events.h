@@ -1,9 +1,10 @@
 // What the loop does for impacts, and the callbacks that see them.
 //
-// On several threads the next few that are pending at some distance from each other are decided at
-// once, each as if it were the first; those whose decision still holds when the ones before have
-// entered enter, too, and all who have new arcs claim together.  What should have come in between
-// finds them entered, and takes them back if it concerns them, as under any other schedule.
+// On several threads the next few of groups that are pending at some distance from each other are
+// decided at once, each as if it were the first; those whose decision still holds when the ones
+// before have entered enter, too, and all who have new arcs claim together.  What should have come
+// in between finds them entered, and takes them back if it concerns them, as under any other
+// schedule.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -47,6 +48,7 @@ class ImpactEvents {
   };
   GroupEvents::Decided decide(std::uint32_t pair, const Before& before, const Known& is_known,
                               GroupCounters& counters) const;
+  bool concerns_group(std::uint32_t pair) const;
   Aabb room_of(std::uint32_t pair) const;
   void find_next(std::uint32_t first);
   void decide_ahead(Decision& decision) const;
