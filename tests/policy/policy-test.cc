@@ -9,6 +9,7 @@
 
 #include "support/callback-scenes.h"
 #include "support/heap-scenes.h"
+#include "support/multibody-scenes.h"
 #include "support/schedule.h"
 
 namespace tw::test {
@@ -169,10 +170,20 @@ Finished run_under(const Scene& scene) {
           count_of(table, "states_rolled_back"), toy->decisions};
 }
 
-// Exact pairs, pairs on the grid, callbacks, contact groups.
+// A chain that falls from its hinge onto a floor where a ball rolls.
+Scene chain_scene(double duration) {
+  const auto fill_world = [](World& world) {
+    add_floor(world);
+    world.add_multibody(chain(4, 0.3, {0, 0, 1}));
+    add_ball(world, 0.1, {0.5, 0, 0.3}, {0, 0.1, 0});
+  };
+  return {"chain", duration, fill_world};
+}
+
+// Exact pairs, pairs on the grid, callbacks, contact groups, a multibody.
 std::vector<Scene> scenes() {
-  return {lattice_scene(3, 1.1, 2), cube_lattice_scene(2, 1.1, 1), floor_scene(0.6),
-          callback_on_pairs_scene(3, 1.1, 1), tower_scene(3, 0.7)};
+  return {lattice_scene(3, 1.1, 2),           cube_lattice_scene(2, 1.1, 1), floor_scene(0.6),
+          callback_on_pairs_scene(3, 1.1, 1), tower_scene(3, 0.7),           chain_scene(0.8)};
 }
 
 template <class Chosen>
