@@ -181,11 +181,11 @@ bool ImpactEvents::process_together(std::uint32_t first) {
   if (!Team::current() || !callbacks_.empty() || sim_.options.undo_redo ||
       sim_.policy->synchronous() || !concerns_group(first))
     return false;
+  find_next(first);
+  if (next_.size() < 2) return false;
   const Key key = pairs_[first].impact;
   const BodyId struck[] = {pairs_[first].a, pairs_[first].b};
   if (!groups_.may_be_struck(struck, sim_.before(key))) return false;
-  find_next(first);
-  if (next_.size() < 2) return false;
   each_in_parallel(next_.size(), 1, [&](std::size_t i) { decide_ahead(*next_[i]); });
   enter_next();
   return !pairs_[first].pending || pairs_[first].impact != key;

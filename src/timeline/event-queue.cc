@@ -78,25 +78,24 @@ void EventQueue::first_ones(std::vector<Event>& events) const {
   });
 }
 
-double EventQueue::least_time() const {
+template <class Wanted>
+double EventQueue::least_time_of(Wanted&& wanted) const {
   double least = never;
   visit_from_top([&](const Slot& slot) {
     if (slot.priority >= least) return false;
-    least = std::min(least, events_[slot.handle].key.time);
+    const Event& event = events_[slot.handle];
+    if (wanted(event)) least = std::min(least, event.key.time);
     return true;
   });
   return least;
 }
 
+double EventQueue::least_time() const {
+  return least_time_of([](const Event&) { return true; });
+}
+
 double EventQueue::least_time_but(EventKind kind) const {
-  double least = never;
-  visit_from_top([&](const Slot& slot) {
-    if (slot.priority >= least) return false;
-    const Event& event = events_[slot.handle];
-    if (event.kind != kind) least = std::min(least, event.key.time);
-    return true;
-  });
-  return least;
+  return least_time_of([kind](const Event& event) { return event.kind != kind; });
 }
 
 std::vector<EventQueue::Handle> EventQueue::handles() const {

@@ -70,6 +70,9 @@ class EventQueue {
   // Calls visit(slot) from the top down, and below a slot only where it answers true.
   template <class Visit>
   void visit_from_top(Visit&& visit) const;
+  // The least time of the keys of all events that are wanted; `never`: there is none.
+  template <class Wanted>
+  double least_time_of(Wanted&& wanted) const;
   // Puts the slot where it belongs, from place `at` on, which is free.
   void settle(std::size_t at, const Slot& slot);
   void put(std::size_t at, const Slot& slot) {

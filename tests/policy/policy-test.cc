@@ -88,17 +88,22 @@ struct Finished {
   long decisions = 0;
 };
 
-Finished run_under(const std::string& policy, const Scene& scene) {
-  World world;
+// (without the decisions, which only toys count)
+Finished run_with(std::unique_ptr<Policy> policy, const Scene& scene, World& world) {
   Schedule schedule;
   schedule.check = true;
   apply(world, schedule);
-  world.set_policy(policy);
+  world.set_policy(std::move(policy));
   scene.fill(world);
   advance_in_pieces(world, scene.duration, 2);
   const StatisticsTable table = world.statistics();
   return {world.history_hash(), count_of(table, "collisions"), count_of(table, "claims"),
           count_of(table, "states_rolled_back"), 0};
+}
+
+Finished run_under(const std::string& policy, const Scene& scene) {
+  World world;
+  return run_with(make_policy(policy), scene, world);
 }
 
 // Cubes that turn, in a box without gravity; no two impacts at one time.
@@ -139,11 +144,11 @@ Impacts impacts_under(const std::string& policy, const Scene& scene) {
 }
 
 // Of a moving body: what was integrated, and in what steps, s.
-struct Effort {
+struct Integrated {
   double length = 0, step = 0;
 };
 
-Effort effort_under(const std::string& policy, const Scene& scene) {
+Integrated integrated_under(const std::string& policy, const Scene& scene) {
   World world;
   world.set_integrator("rk45");
   world.set_policy(policy);
@@ -157,17 +162,11 @@ Effort effort_under(const std::string& policy, const Scene& scene) {
 template <class Chosen>
 Finished run_under(const Scene& scene) {
   World world;
-  Schedule schedule;
-  schedule.check = true;
-  apply(world, schedule);
   auto policy = std::make_unique<Chosen>();
   const Toy* toy = policy.get();
-  world.set_policy(std::move(policy));
-  scene.fill(world);
-  advance_in_pieces(world, scene.duration, 2);
-  const StatisticsTable table = world.statistics();
-  return {world.history_hash(), count_of(table, "collisions"), count_of(table, "claims"),
-          count_of(table, "states_rolled_back"), toy->decisions};
+  Finished finished = run_with(std::move(policy), scene, world);
+  finished.decisions = toy->decisions;
+  return finished;
 }
 
 // A chain that falls from its hinge onto a floor where a ball rolls.
@@ -259,10 +258,10 @@ TEST(Policy, those_of_the_paper_agree_with_steps) {
 // but in small steps; retroactive detection wastes more, the longer its step.
 TEST(Policy, cost_what_the_paper_says) {
   const Scene scene = cube_lattice_scene(2, 1.1, 1);
-  const Effort timewarp = effort_under("timewarp", scene);
-  const Effort conservative = effort_under("conservative", scene);
-  const Effort fine = effort_under("retroactive:0.001", scene);
-  const Effort coarse = effort_under("retroactive:0.0333", scene);
+  const Integrated timewarp = integrated_under("timewarp", scene);
+  const Integrated conservative = integrated_under("conservative", scene);
+  const Integrated fine = integrated_under("retroactive:0.001", scene);
+  const Integrated coarse = integrated_under("retroactive:0.0333", scene);
   EXPECT_LT(conservative.length, 1.01 * scene.duration);
   EXPECT_GT(coarse.length, 1.1 * scene.duration);
   EXPECT_GT(coarse.length, fine.length);
