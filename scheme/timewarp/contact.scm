@@ -11,14 +11,17 @@
             contact-friction contact-slipping?))
 
 (define-keyword-procedure
-  (set-contact-parameters! a b #:key restitution friction stiffness damping fusion-speed
-                           friction-law impact-law)
+  (set-contact-parameters! a b #:key restitution friction rolling-friction spinning-friction
+                           stiffness damping fusion-speed friction-law impact-law)
   "Set what holds where A and B touch; each is a body, a multibody (for each of its links), a material
 (a symbol), or #t for all.  Looked up keyword by keyword: a body goes before a material, a material before #t, the later call before
 the earlier.
 
 #:restitution   the share of the approach speed that is left after an impact, 0 to 1; 0.3
 #:friction      Coulomb's coefficient, 0 or more; 0.5
+#:rolling-friction   m, 0 or more: lasting contacts resist rolling by the normal force times this; 0
+#:spinning-friction  m, 0 or more: likewise spinning about the normal, beside what the friction of
+                several points does; 0
 #:stiffness     N/m of a lasting contact, positive; such that the weight of the lighter body
                 compresses it by 2.5e-4 of the smaller size (less in groups of unequal masses)
 #:damping       s/m of a lasting contact, 0 or more; such that it oscillates at half the critical
@@ -29,6 +32,8 @@ the earlier.
 #:impact-law    'chatterjee-ruina, the only one that is there yet"
   (check-impact-law impact-law)
   (let ((settings (filter cdr `((restitution . ,restitution) (friction . ,friction)
+                                (rolling-friction . ,rolling-friction)
+                                (spinning-friction . ,spinning-friction)
                                 (stiffness . ,stiffness) (damping . ,damping)
                                 (fusion-speed . ,fusion-speed) (friction-law . ,friction-law)))))
     (set-contact! a b settings)))

@@ -2,7 +2,7 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp files)
   #:use-module (timewarp errors)
-  #:export (current-scene-directory scene-file))
+  #:export (current-scene-directory scene-file beside-caller))
 
 ;; The folder of the scene that is being loaded, or #f: the current folder.
 (define current-scene-directory (make-parameter #f))
@@ -13,3 +13,9 @@
   (if (or (absolute-file-name? name) (not (current-scene-directory)))
       name
       (in-vicinity (current-scene-directory) name)))
+
+(define (beside-caller file place)
+  "Return FILE, or, where there is none of that name in the current folder, that beside the file of PLACE."
+  (let ((beside (and place (string? file) (not (absolute-file-name? file))
+                     (in-vicinity (dirname (car place)) file))))
+    (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file)))

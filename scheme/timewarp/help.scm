@@ -14,7 +14,8 @@
      scene define-scene-parameter scene-random-state world-time world-bodies find-body reset!
      load-scene make-world current-world)
     ("Shapes" "what bodies are made of"
-     sphere box cylinder convex half-space union placed rock rotation shape-volume shape-inertia
+     sphere box capsule cylinder cone ellipsoid convex half-space union placed rock load-shape rotation
+     shape-volume shape-inertia
      shape-centroid shape-radius shape?)
     ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
      add-body! remove-body! keyframes position orientation velocity angular-velocity applied-force

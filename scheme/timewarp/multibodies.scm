@@ -3,6 +3,7 @@
 (define-module (timewarp multibodies)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp files)
   #:use-module (timewarp worlds)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
@@ -254,10 +255,7 @@ floating and planar joints, <mimic>, moving links without mass.
 #:position  m, of the first link's frame, in that of the base's body if there is one; #(0 0 0)
 #:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
   (let* ((place (caller-place))
-         (beside (and place (string? file) (not (absolute-file-name? file))
-                      (in-vicinity (dirname (car place)) file)))
-         (found (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file))
-         (made (%load-urdf (current-world) found name (or base 'fixed) position orientation place)))
+         (made (%load-urdf (current-world) (beside-caller file place) name (or base 'fixed) position orientation place)))
     (set! (given-names (car made)) (cdr made))
     (car made)))
 

@@ -5,7 +5,8 @@
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp vectors)
-  #:export (sphere box cylinder convex half-space union placed rock rotation
+  #:use-module (timewarp files)
+  #:export (sphere box capsule cylinder cone ellipsoid convex half-space union placed rock load-shape rotation
             shape-volume shape-inertia shape-centroid shape-radius shape?))
 
 (define (sphere radius)
@@ -19,6 +20,20 @@
 (define (cylinder radius length)
   "Return a cylinder of RADIUS and LENGTH metres about the z axis, centred at the origin."
   (%cylinder radius length))
+
+(define (capsule radius length)
+  "Return a capsule about the z axis: all points within RADIUS metres of a segment of LENGTH metres,
+centred at the origin.  It is LENGTH + 2 RADIUS long over all."
+  (%capsule radius length))
+
+(define (cone radius height)
+  "Return a cone about the z axis with a base of RADIUS metres, HEIGHT metres high.  The origin is
+its centroid: the base is at -HEIGHT/4, the tip at 3/4 HEIGHT."
+  (%cone radius height))
+
+(define (ellipsoid a b c)
+  "Return an ellipsoid with the semi-axes A, B, C metres along x, y and z, centred at the origin."
+  (%ellipsoid a b c))
 
 (define (convex points)
   "Return the convex hull of POINTS, a list or vector of #(x y z) in metres.  The origin is that of
@@ -41,6 +56,18 @@ count the overlap twice."
 #:position     m, the shift; #(0 0 0)
 #:orientation  a quaternion #(w x y z), as rotation returns; #(1 0 0 0)"
   (%placed shape position orientation))
+
+(define-keyword-procedure (load-shape file #:key scale convex-hull?)
+  "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for in
+the current folder, then beside the file that the call stands in.
+
+What hangs together in it by common vertices is a convex part, several make a union; the frame is
+that of the file.  A part that isn't convex is an error that names its object: split it in a
+modelling program, or take the hull.
+
+#:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
+#:convex-hull?  whether the hull is taken of parts that are not convex; #f"
+  (%load-shape (beside-caller file (caller-place)) (or scale 1) convex-hull?))
 
 ;; ---- rocks ----
 

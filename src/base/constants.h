@@ -39,6 +39,8 @@ inline constexpr double damping_ratio = 0.5;
 inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
 // Smooth friction reaches three quarters of the cone at about this speed, m/s.
 inline constexpr double smooth_speed = 1e-4;
+// Rolling friction reaches seven tenths of its most at this share of sqrt(g/size).
+inline constexpr double slow_turn_share = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
 inline constexpr double tangential_share = 0.8;
 // m/s^2: stands in for gravity where there is none.
@@ -192,6 +194,8 @@ inline constexpr double settling = 0.25;
 // It trembles in its place if the second peak exceeds the first by no more, and the way made is at
 // most this share of peak times time.
 inline constexpr double growth = 1.1, drift = 0.1;
+// What rolling friction holds creeps at up to this share, at 0.95 of the slope that it holds on.
+inline constexpr double creep_share = 3 * slow_turn_share;
 // What was always slower than this share has stopped, up to rounding.
 inline constexpr double rounding_share = 1e-7;
 // What touches nothing has stopped below this one, or where it settles below that.
@@ -314,7 +318,7 @@ inline constexpr std::size_t most_points = 8;
 // Normals this near to that of a face are taken for it: cos 2 degrees of polyhedra, cos 0.2 degrees
 // of what is round, where a degree would make a depth wrong by r/6600.
 inline constexpr double aligned = 0.99939082701909573, aligned_round = 0.99999390765779;
-// Directions of a cylinder this near to each other are parallel, this near to square are square:
+// Directions of a frustum this near to each other are parallel, this near to square are square:
 // sin 0.2 degrees.
 inline constexpr double level = 0.0034906514152237;
 // Of two faces the one with this much more area is the reference; else that of A.  Areas do not
@@ -325,7 +329,7 @@ inline constexpr double clearly_larger = 1.01;
 // a rim that stands flat miss r tilt (1 - cos(pi/8)) < 2.3e-5 r; the nearest point in the place of
 // one of them would make it rock for ever.
 inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_round = 2.5e-5;
-// Sine of the angle between axis and normal below which a cylinder stands, 20 degrees; and below
+// Sine of the angle between axis and normal below which a frustum stands, 20 degrees; and below
 // which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
 inline constexpr double standing = 0.342, standing_flat = 3e-4;
 // Sine of the angle from which on two lines cross, 6 degrees: their nearest points run along them
@@ -365,7 +369,7 @@ inline constexpr double sunk = answer::most_travel;
 // which a normal may turn on the way out of the neighbours, and how many of them that may take.
 inline constexpr double valley = 0.1, same_side = 0.95;
 inline constexpr int most_around = 4;
-// How far a cylinder is scaled down to be apart from what it overlaps: one of these mostly does.
+// How far a round part is scaled down to be apart from what it overlaps: one of these mostly does.
 inline constexpr double shrinking[] = {0.98, 0.9};
 
 }  // namespace tw::seam

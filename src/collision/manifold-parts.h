@@ -63,14 +63,33 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
                          const ConvexPart& polyhedron, const Frame& frame_p, double reach,
                          bool reference_is_a, int pair, std::vector<ManifoldPoint>& out);
 
-// A cylinder against any other kind; a or b is the cylinder.
-void cylinder_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                       const Frame& frame_b, double reach, int pair,
-                       std::vector<ManifoldPoint>& out);
-// The same of a cylinder and a polyhedron or cylinder whose axis and witnesses (world) are known.
+// One point: the feature of the polyhedron that is nearest to the centre.
+void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame_p,
+                                const ConvexPart& sphere, const Frame& frame_s, double reach,
+                                bool reference_is_a, int pair, std::vector<ManifoldPoint>& out);
+void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                      const Frame& frame_b, double reach, int pair,
+                      std::vector<ManifoldPoint>& out);
+
+// A frustum against any other kind but an ellipsoid; a or b is the frustum.
+void frustum_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                      const Frame& frame_b, double reach, int pair,
+                      std::vector<ManifoldPoint>& out);
+// An ellipsoid against any kind; a or b is the ellipsoid.
+void ellipsoid_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                        const Frame& frame_b, double reach, int pair,
+                        std::vector<ManifoldPoint>& out);
+// The same of a frustum or ellipsoid, and a polyhedron or another of these, whose axis and
+// witnesses (world) are known.
 void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                     const Frame& frame_b, const RoundDistance& near, double reach, int pair,
                     std::vector<ManifoldPoint>& out);
+void frustum_manifold_at(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                         const Frame& frame_b, const RoundDistance& near, double reach, int pair,
+                         std::vector<ManifoldPoint>& out);
+void ellipsoid_manifold_at(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                           const Frame& frame_b, const RoundDistance& near, double reach, int pair,
+                           std::vector<ManifoldPoint>& out);
 
 // Signed distance of a point (world) from a part, m.
 double height_over(const SeamNeighbour& part, const Vec3& point);

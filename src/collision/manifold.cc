@@ -11,8 +11,6 @@
 
 namespace tw {
 
-namespace {
-
 void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame_p,
                                 const ConvexPart& sphere, const Frame& frame_s, double reach,
                                 bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
@@ -34,6 +32,8 @@ void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame
   out.push_back(p);
 }
 
+namespace {
+
 void half_space_sphere_manifold(const ConvexPart& half_space, const Frame& frame_h,
                                 const ConvexPart& sphere, const Frame& frame_s, double reach,
                                 bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
@@ -50,6 +50,8 @@ void half_space_sphere_manifold(const ConvexPart& half_space, const Frame& frame
   p.feature = feature_name(pair, FeatureMode::half_space, {0, 0, 0});
   out.push_back(p);
 }
+
+}  // namespace
 
 void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                       const Frame& frame_b, double reach, int pair,
@@ -71,7 +73,13 @@ void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPar
   out.push_back(p);
 }
 
-}  // namespace
+void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                    const Frame& frame_b, const RoundDistance& near, double reach, int pair,
+                    std::vector<ManifoldPoint>& out) {
+  const bool smooth = a.kind == PartKind::ellipsoid || b.kind == PartKind::ellipsoid;
+  (smooth ? ellipsoid_manifold_at : frustum_manifold_at)(a, frame_a, b, frame_b, near, reach, pair,
+                                                         out);
+}
 
 void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                    const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
@@ -94,8 +102,10 @@ void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
   if (are(K::sphere, K::half_space))
     return half_space_sphere_manifold(b, frame_b, a, frame_a, reach, false, pair, out);
   if (are(K::sphere, K::sphere)) return spheres_manifold(a, frame_a, b, frame_b, reach, pair, out);
-  if (a.kind == K::cylinder || b.kind == K::cylinder)
-    return cylinder_manifold(a, frame_a, b, frame_b, reach, pair, out);
+  if (a.kind == K::ellipsoid || b.kind == K::ellipsoid)
+    return ellipsoid_manifold(a, frame_a, b, frame_b, reach, pair, out);
+  if (a.kind == K::frustum || b.kind == K::frustum)
+    return frustum_manifold(a, frame_a, b, frame_b, reach, pair, out);
   // two half-spaces touch in a plane, which no few points describe
 }
 

@@ -14,8 +14,10 @@
 
 namespace tw {
 
-// What the reference body shows the other: see integrate/group-arc.h for what follows from it.
-enum class ReferenceFeature : unsigned char { plane, line, point, crossing, rim };
+// What the reference body shows the other: see integrate/group-arc.h for what follows from it.  A
+// tangent plane is a plane that an ellipsoid of the other body is followed on as it rolls; the core
+// point and radius are those of a ball that osculates it.
+enum class ReferenceFeature : unsigned char { plane, line, point, crossing, rim, tangent_plane };
 
 struct ManifoldPoint {
   bool reference_is_a = true;  // the reference body; the other has the core point

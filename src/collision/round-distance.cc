@@ -3,11 +3,15 @@
 #include "collision/round-distance.h"
 
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "collision/ellipsoid-point.h"
 #include "collision/expanding-polytope.h"
+#include "collision/frustum-point.h"
 #include "collision/simplex.h"
+#include "collision/smooth-axis.h"
 
 namespace tw {
 
@@ -20,8 +24,11 @@ constexpr int most_stalls = 6;
 constexpr double apart_accuracy = 1e-13;
 constexpr double depth_accuracy = 1e-12;
 
+// the same where an axis that errs little leads to the best one; that of an edge is soon left
+constexpr double smooth_accuracy = 1e-5, smooth_on_edges = 1e-9;
+
 // below this distance, relative to the size, GJK's direction is not trusted
-constexpr double touch = 1e-7;
+constexpr double touch = 1e-7, smooth_touch = 1e-4;
 
 // how far B is moved in for the polytope, relative to the size
 constexpr double push = 1e-6;
@@ -29,8 +36,8 @@ constexpr double push = 1e-6;
 // what a plain axis must gain on the polytope's for its own witness points, relative to the size
 constexpr double lost_depth = 1e-9;
 
-// special axes this near are tried, rad
-constexpr double special = 1e-3;
+// special axes this near are tried, rad; where an axis may err
+constexpr double special = 1e-3, smooth_special = 0.05;
 
 // GJK's end.
 struct Descent {
@@ -55,7 +62,12 @@ bool in_simplex(const Simplex& simplex, const Vec3& w) {
   return false;
 }
 
-Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
+bool has_ellipsoid(const SupportCore& a, const SupportCore& b) {
+  return a.kind == PartKind::ellipsoid || b.kind == PartKind::ellipsoid;
+}
+
+Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift,
+                double accuracy = apart_accuracy) {
   Descent d;
   const double size = a.size() + b.size();
   add_point(d, difference_support(a, b, shift, b.center() + shift - a.center()));
@@ -69,7 +81,7 @@ Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
     const DifferencePoint next = difference_support(a, b, shift, -v);
     // |v| - v.w/|v| bounds what can still be gained
     const double gain = square - v.dot(next.w);
-    if (gain <= apart_accuracy * size * std::sqrt(square) || in_simplex(d.simplex, next.w)) break;
+    if (gain <= accuracy * size * std::sqrt(square) || in_simplex(d.simplex, next.w)) break;
     add_point(d, next);
     if (reduce(d.simplex)) {
       d.overlap = true;
@@ -87,10 +99,20 @@ Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift) {
   return d;
 }
 
+// The normal of a frustum's side next to n, outward from the core where `sign` is 1.
+Vec3 side_normal(const SupportCore& core, double sign, const Vec3& n) {
+  const Vec3 axis = core.axis();
+  const Vec3 out = (n - axis.dot(n) * axis).normalized();
+  if (core.radius == core.top_radius) return out;
+  const SideNormal side(core);
+  return side.across * out + sign * side.along * axis;
+}
+
 // Special axes next to n of one core (outward from it), appended.
-void add_special(const SupportCore& core, const Vec3& n, double sign, std::vector<Vec3>& out) {
+void add_special(const SupportCore& core, const Vec3& n, double sign, double within,
+                 std::vector<Vec3>& out) {
   const auto offer = [&](const Vec3& axis) {
-    if ((axis - n).squaredNorm() < special * special) out.push_back(axis);
+    if ((axis - n).squaredNorm() < within * within) out.push_back(axis);
   };
   if (core.polyhedron != nullptr) {
     const Vec3 local = sign * (core.place.R.transpose() * n);
@@ -98,18 +120,20 @@ void add_special(const SupportCore& core, const Vec3& n, double sign, std::vecto
     const int face = core.polyhedron->face_at_vertex(vertex, local);
     return offer(sign * (core.place.R * core.polyhedron->face(face).normal));
   }
+  if (core.kind == PartKind::ellipsoid) return;
   const Vec3 axis = core.axis();
   const double along = axis.dot(n);
   offer(along < 0 ? Vec3(-axis) : axis);
-  offer((n - along * axis).normalized());
+  offer(side_normal(core, sign, n));
 }
 
 // The special axis that loses nothing against `distance`, if any.
 Vec3 refined(const SupportCore& a, const SupportCore& b, const Vec3& n, double distance) {
   thread_local std::vector<Vec3> axes;
   axes.clear();
-  add_special(a, n, 1, axes);
-  add_special(b, n, -1, axes);
+  const double within = has_ellipsoid(a, b) ? smooth_special : special;
+  add_special(a, n, 1, within, axes);
+  add_special(b, n, -1, within, axes);
   const double allowed = distance - 2 * depth_accuracy * (a.size() + b.size());
   for (const Vec3& axis : axes)
     if (distance_along(a, b, axis) >= allowed) return axis;
@@ -144,7 +168,7 @@ Vec3 best_plain_axis(const SupportCore& a, const SupportCore& b, const Descent& 
   };
   if (!first.overlap) offer(-first.simplex.v);
   for (const SupportCore* core : {&a, &b}) {
-    if (core->polyhedron != nullptr) continue;
+    if (core->kind != PartKind::frustum) continue;
     const Vec3 axis = core->axis();
     const double along = axis.dot(between);
     offer(along < 0 ? Vec3(-axis) : axis);
@@ -186,8 +210,12 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
     result.point_a = touch_along(a, b, plain);
     return result;
   }
+  const bool edges = a.polyhedron != nullptr || b.polyhedron != nullptr;
+  const double accuracy = !has_ellipsoid(a, b) ? depth_accuracy
+                          : edges              ? smooth_on_edges
+                                               : smooth_accuracy;
   const PolytopeDepth found = polytope_depth(
-      a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, depth_accuracy * size);
+      a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, accuracy * size);
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;
@@ -201,13 +229,75 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
   return result;
 }
 
-}  // namespace
-
-double distance_along(const SupportCore& a, const SupportCore& b, const Vec3& normal) {
-  return normal.dot(b.support(-normal) - a.support(normal));
+// The farthest point of A along the normal that B is over: an ellipsoid's own or under an
+// ellipsoid's; what else is flat there has others.
+Vec3 witness_of_smooth(const SupportCore& a, const SupportCore& b, const Vec3& normal,
+                       double distance) {
+  if (a.kind == PartKind::ellipsoid) return a.support(normal);
+  return b.support(-normal) - distance * normal;
 }
 
-RoundDistance round_distance(const SupportCore& a, const SupportCore& b) {
+// The signed height of a point over a core, m.
+double height_over(const SupportCore& core, const Vec3& point) {
+  const Vec3 local = core.place.to_local(point);
+  int face = 0;
+  if (core.polyhedron != nullptr) return core.polyhedron->face_separation(local, face);
+  if (core.kind == PartKind::ellipsoid) return nearest_on_ellipsoid(core.semi_axes, local).distance;
+  return nearest_on_frustum(core, local).distance + core.margin;
+}
+
+// Whether the ellipsoid's farthest point and one of the other are no farther apart than the
+// separation along the normal.
+bool is_proved(const SupportCore& a, const SupportCore& b, const Vec3& normal, double distance) {
+  const double allowed = apart_accuracy * (a.size() + b.size());
+  if (!(distance > 0)) return false;
+  if (a.kind == PartKind::ellipsoid)
+    return height_over(b, a.support(normal) + distance * normal) <= allowed;
+  return height_over(a, b.support(-normal) - distance * normal) <= allowed;
+}
+
+// From the axis given to the best one near by, and that if it is better than the result.
+void improve(const SupportCore& a, const SupportCore& b, const Vec3& start, RoundDistance& result) {
+  const SmoothAxis near = climb_smooth(a, b, start);
+  const Vec3 axis = refined(a, b, near.normal, near.distance);
+  const double distance = distance_along(a, b, axis);
+  if (distance < result.distance) return;
+  result.normal = axis;
+  result.distance = distance;
+}
+
+// With an ellipsoid.
+RoundDistance smooth_distance(const SupportCore& a, const SupportCore& b) {
+  const double size = a.size() + b.size();
+  Descent d = descend(a, b, Vec3::Zero(), smooth_accuracy);
+  RoundDistance result;
+  result.distance = -std::numeric_limits<double>::infinity();
+  if (!d.overlap && d.simplex.v.norm() > smooth_touch * size) {
+    improve(a, b, -d.simplex.v.normalized(), result);
+    if (!is_proved(a, b, result.normal, result.distance)) {
+      d = descend(a, b, Vec3::Zero());
+      improve(a, b, apart_at(d).normal, result);
+    }
+  } else {
+    result = overlapping(a, b, d);
+    improve(a, b, result.normal, result);
+  }
+  result.point_a = witness_of_smooth(a, b, result.normal, result.distance);
+  result.point_b = result.point_a + result.distance * result.normal;
+  return result;
+}
+
+// All points within the margins.
+RoundDistance grown(RoundDistance core, const SupportCore& a, const SupportCore& b) {
+  if (a.margin == 0 && b.margin == 0) return core;
+  core.distance -= a.margin + b.margin;
+  core.point_a += a.margin * core.normal;
+  core.point_b -= b.margin * core.normal;
+  return core;
+}
+
+RoundDistance core_distance(const SupportCore& a, const SupportCore& b) {
+  if (has_ellipsoid(a, b)) return smooth_distance(a, b);
   const double size = a.size() + b.size();
   const Descent d = descend(a, b, Vec3::Zero());
   RoundDistance result;
@@ -221,6 +311,16 @@ RoundDistance round_distance(const SupportCore& a, const SupportCore& b) {
   }
   result.point_b = result.point_a + result.distance * result.normal;
   return result;
+}
+
+}  // namespace
+
+double distance_along(const SupportCore& a, const SupportCore& b, const Vec3& normal) {
+  return normal.dot(b.support(-normal) - a.support(normal));
+}
+
+RoundDistance round_distance(const SupportCore& a, const SupportCore& b) {
+  return grown(core_distance(a, b), a, b);
 }
 
 }  // namespace tw

@@ -8,7 +8,8 @@
 
 #include "base/work-count.h"
 #include "collision/clip.h"
-#include "collision/cylinder-point.h"
+#include "collision/ellipsoid-point.h"
+#include "collision/frustum-point.h"
 #include "collision/gjk.h"
 #include "collision/part-pairs.h"
 #include "collision/round-distance.h"
@@ -208,24 +209,25 @@ Separation half_spaces(const ConvexPart& a, const Frame& frame_a, const ConvexPa
   return result;
 }
 
-Separation half_space_cylinder(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                               const Frame& frame_b, SimplexCache*) {
+// A frustum or an ellipsoid.
+Separation half_space_round(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                            const Frame& frame_b, SimplexCache*) {
   const Plane plane(a, frame_a);
   const SupportCore core(b, frame_b * b.placement);
   Separation result;
   result.normal = plane.normal;
   result.point_b = core.support(-plane.normal);
+  if (core.margin > 0) result.point_b -= core.margin * plane.normal;
   result.distance = plane.height(result.point_b);
   result.point_a = result.point_b - result.distance * plane.normal;
   return result;
 }
 
-Separation cylinder_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                           const Frame& frame_b, SimplexCache*) {
+Separation frustum_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                          const Frame& frame_b, SimplexCache*) {
   const Frame world_a = frame_a * a.placement;
   const Vec3 center = frame_b * b.placement.p;
-  const NearestOnCylinder near =
-      nearest_on_cylinder(a.radius, a.half_length, world_a.to_local(center));
+  const NearestOnFrustum near = nearest_on_frustum(a, world_a.to_local(center));
   Separation result;
   result.distance = near.distance - b.radius;
   result.normal = world_a.R * near.normal;
@@ -234,9 +236,50 @@ Separation cylinder_sphere(const ConvexPart& a, const Frame& frame_a, const Conv
   return result;
 }
 
-// A cylinder and a cylinder or a polyhedron, in the frame of A's core.
+Separation ellipsoid_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                            const Frame& frame_b, SimplexCache*) {
+  const Frame world_a = frame_a * a.placement;
+  const Vec3 center = frame_b * b.placement.p;
+  const NearestOnEllipsoid near = nearest_on_ellipsoid(a.semi_axes, world_a.to_local(center));
+  Separation result;
+  result.distance = near.distance - b.radius;
+  result.normal = world_a.R * near.normal;
+  result.point_a = world_a * near.point;
+  result.point_b = center - b.radius * result.normal;
+  return result;
+}
+
+bool is_segment(const ConvexPart& part) {
+  return part.kind == PartKind::frustum && part.radius == 0 && part.top_radius == 0;
+}
+
+// By their axes, which have no volume between them that a polytope could expand in.
+Separation capsules(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                    const Frame& frame_b) {
+  const Frame world_a = frame_a * a.placement;
+  const Frame world_b = frame_b * b.placement;
+  const Vec3 axis_a = world_a.R.col(2), axis_b = world_b.R.col(2);
+  Vec3 on_a, on_b;
+  nearest_on_segments(world_a.p - a.half_length * axis_a, 2 * a.half_length * axis_a,
+                      world_b.p - b.half_length * axis_b, 2 * b.half_length * axis_b, on_a, on_b);
+  const Vec3 apart = on_b - on_a;
+  const double length = apart.norm();
+  Separation result;
+  // axes that cross: square to both
+  const Vec3 across = axis_a.cross(axis_b);
+  result.normal = length > 0          ? Vec3(apart / length)
+                  : across.norm() > 0 ? Vec3(across.normalized())
+                                      : axis_a.unitOrthogonal();
+  result.distance = length - (a.margin + b.margin);
+  result.point_a = on_a + a.margin * result.normal;
+  result.point_b = on_b - b.margin * result.normal;
+  return result;
+}
+
+// A frustum or an ellipsoid, and a polyhedron or another of these, in the frame of A's core.
 Separation round_cores(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                        const Frame& frame_b, SimplexCache*) {
+  if (is_segment(a) && is_segment(b)) return capsules(a, frame_a, b, frame_b);
   const Frame world_a = frame_a * a.placement;
   const Frame world_b = frame_b * b.placement;
   const Mat3 back = world_a.R.transpose();
@@ -261,12 +304,15 @@ Separation swapped(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
   return result;
 }
 
-// The table of pairs of kinds; rows and columns: sphere, polyhedron, half-space, cylinder.
-constexpr Query queries[4][4] = {
-    {spheres, swapped<polyhedron_sphere>, swapped<half_space_sphere>, swapped<cylinder_sphere>},
-    {polyhedron_sphere, polyhedra, swapped<half_space_polyhedron>, round_cores},
-    {half_space_sphere, half_space_polyhedron, half_spaces, half_space_cylinder},
-    {cylinder_sphere, round_cores, swapped<half_space_cylinder>, round_cores},
+// The table of pairs of kinds; rows and columns: sphere, polyhedron, half-space, frustum,
+// ellipsoid.
+constexpr Query queries[5][5] = {
+    {spheres, swapped<polyhedron_sphere>, swapped<half_space_sphere>, swapped<frustum_sphere>,
+     swapped<ellipsoid_sphere>},
+    {polyhedron_sphere, polyhedra, swapped<half_space_polyhedron>, round_cores, round_cores},
+    {half_space_sphere, half_space_polyhedron, half_spaces, half_space_round, half_space_round},
+    {frustum_sphere, round_cores, swapped<half_space_round>, round_cores, round_cores},
+    {ellipsoid_sphere, round_cores, swapped<half_space_round>, round_cores, round_cores},
 };
 
 // A lower bound of the distance of two parts by their bounding balls, lowered by what rounding can

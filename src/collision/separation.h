@@ -34,8 +34,8 @@ struct SimplexCache {
 // One pair of parts, each with its *body's* frame; work_count.distance_queries counts these.  The
 // distance is exact to about 1e-15 of the size whether separate, touching or penetrating.  While
 // parts are separate the normal is along the witness points; at touch or in penetration it is the
-// axis of least penetration, exact too. `cache` may be null (cold).  Cylinders against polyhedra
-// and cylinders: see round-distance.h.
+// axis of least penetration, exact too. `cache` may be null (cold).  Frustums and ellipsoids
+// against polyhedra and one another: see round-distance.h.
 Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                            const Frame& frame_b, SimplexCache* cache);
 

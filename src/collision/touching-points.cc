@@ -88,14 +88,14 @@ void half_space_points(const ConvexPart& half_space, const Frame& frame_h,
     out.push_back({p.point - 0.5 * p.gap * normal, sign * normal, p.gap, pair});
 }
 
-// The manifold of a cylinder, midway between the surfaces.
-void cylinder_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                     const Frame& frame_b, double tolerance, int pair,
-                     std::vector<ContactPoint>& out) {
+// The manifold of a frustum, midway between the surfaces.
+void frustum_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                    const Frame& frame_b, double tolerance, int pair,
+                    std::vector<ContactPoint>& out) {
   thread_local std::vector<ManifoldPoint> points;
   points.clear();
   ++work_count.distance_queries;
-  cylinder_manifold(a, frame_a, b, frame_b, tolerance, pair, points);
+  frustum_manifold(a, frame_a, b, frame_b, tolerance, pair, points);
   for (const ManifoldPoint& p : points) {
     const Vec3 surface = p.core_point - (p.radius + 0.5 * p.gap) * p.normal;
     out.push_back({surface, p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, pair});
@@ -114,10 +114,12 @@ void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
     return half_space_points(a, frame_a, b, frame_b, tolerance, 1, pair, out);
   if (b.kind == PartKind::half_space && a.kind == PartKind::polyhedron)
     return half_space_points(b, frame_b, a, frame_a, tolerance, -1, pair, out);
-  const bool spheres = a.kind == PartKind::sphere || b.kind == PartKind::sphere;
-  if (!spheres && (a.kind == PartKind::cylinder || b.kind == PartKind::cylinder))
-    return cylinder_points(a, frame_a, b, frame_b, tolerance, pair, out);
-  // spheres touch in one point
+  const auto is_curved = [](const ConvexPart& part) {
+    return part.kind == PartKind::sphere || part.kind == PartKind::ellipsoid;
+  };
+  if (!is_curved(a) && !is_curved(b))
+    return frustum_points(a, frame_a, b, frame_b, tolerance, pair, out);
+  // what is curved all over touches in one point
   const Separation s = part_separation(a, frame_a, b, frame_b, nullptr);
   if (s.distance <= tolerance)
     out.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, pair});

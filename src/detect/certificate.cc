@@ -40,7 +40,7 @@ double reach(const MovingBody& side, const Vec3& n, double c, double u, double a
 // The least over the points of a part of a kinematic body: by its bounds.
 double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec3& n, double c,
                        double u, double alpha) {
-  if (part.kind == PartKind::cylinder)
+  if (part.kind != PartKind::polyhedron)
     return reach(side, n, c, u, alpha, side.frame.R * part.bound_center, part.bound_radius);
   double least = never;
   for (const Vec3& vertex : part.core->vertices())
@@ -49,23 +49,25 @@ double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec
   return least;
 }
 
-// How high a cylinder reaches along a direction in its frame, above its centre.
-double cylinder_top(const ConvexPart& part, const Vec3& along) {
-  return part.half_length * std::abs(along.z()) + part.radius * std::hypot(along.x(), along.y());
+// How high the core of a round part reaches along a direction in its frame, above its middle.
+double round_top(const ConvexPart& part, const Vec3& along) {
+  if (part.kind == PartKind::ellipsoid) return part.semi_axes.cwiseProduct(along).norm();
+  const double across = std::hypot(along.x(), along.y()), up = part.half_length * along.z();
+  return std::max(up + part.top_radius * across, part.radius * across - up);
 }
 
-// When a cylinder `gap` > 0 below the plane may reach it, but for its turning at the rate `rate`
-// and the pull `pull`.  Its top is at h(s) = cylinder_top(n + s m), which is convex: over [0, S] it
-// rises by no more than the chord's slope, at most cylinder_top(m).  Long chords count what goes
+// When a round part `gap` > 0 below the plane may reach it, but for its turning at the rate `rate`
+// and the pull `pull`.  Its top is at h(s) = round_top(n + s m), which is convex: over [0, S] it
+// rises by no more than the chord's slope, at most round_top(m).  Long chords count what goes
 // up at one end only once it is the top: what stands on the plane along a line or on a face, and
 // turns off it, is not there at once.
-double cylinder_reach(const ConvexPart& part, double gap, double rate, double pull, const Vec3& n,
-                      const Vec3& m) {
+double round_reach(const ConvexPart& part, double gap, double rate, double pull, const Vec3& n,
+                   const Vec3& m) {
   constexpr double longer = 4;
-  const double top = cylinder_top(part, n);
-  double reached = first_zero(gap, rate - cylinder_top(part, m), pull);
+  const double top = round_top(part, n);
+  double reached = first_zero(gap, rate - round_top(part, m), pull);
   while (reached < cost::soon) {
-    const double to = longer * reached, slope = (cylinder_top(part, n + to * m) - top) / to;
+    const double to = longer * reached, slope = (round_top(part, n + to * m) - top) / to;
     const double least = std::min(to, first_zero(gap, rate - slope, pull));
     if (!(least > reached)) break;
     reached = least;
@@ -96,9 +98,9 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
   const double pull = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) -
                       side.bend * side.body->radius;
-  if (part.kind == PartKind::cylinder) {
-    const double gap = c - height - cylinder_top(part, n_P);
-    return gap > 0 ? cylinder_reach(part, gap, u - speed, pull, n_P, m_P) : 0;
+  if (part.kind != PartKind::polyhedron) {
+    const double gap = c - height - round_top(part, n_P) - part.margin;
+    return gap > 0 ? round_reach(part, gap, u - speed, pull, n_P, m_P) : 0;
   }
   double least = never;
   for (const Vec3& vertex : part.core->vertices()) {

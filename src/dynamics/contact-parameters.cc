@@ -61,6 +61,9 @@ void ContactTable::add(const ContactSide& a, const ContactSide& b,
                        const ContactSettings& settings) {
   require_range(settings.restitution, "restitution", 0, 1, "a number from 0 to 1");
   require_range(settings.friction, "friction", 0, 1e9, "a coefficient of friction, from 0 to 1e9");
+  for (const auto& [value, keyword] : {std::pair(settings.rolling_friction, "rolling-friction"),
+                                       std::pair(settings.spinning_friction, "spinning-friction")})
+    require_range(value, keyword, 0, greatest_length, "a length in m, from 0 to 1e12");
   require_range(settings.stiffness, "stiffness", least_stiffness, greatest_stiffness,
                 "a positive number of N/m, from 1e-30 to 1e30");
   require_range(settings.damping, "damping", 0, greatest_damping,
@@ -88,7 +91,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
                    [](const auto& x, const auto& y) { return x.first > y.first; });
 
   ContactParameters result;
-  std::array<bool, 7> open;
+  std::array<bool, 9> open;
   open.fill(true);
   for (const auto& [specificity, rule] : found) {
     const ContactSettings& s = rule->settings;
@@ -99,6 +102,8 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
     take(open[4], s.fusion_speed, result.fusion_speed);
     take(open[5], s.friction_law, result.friction_law);
     take(open[6], s.collide, result.collide);
+    take(open[7], s.rolling_friction, result.rolling_friction);
+    take(open[8], s.spinning_friction, result.spinning_friction);
   }
   return result;
 }

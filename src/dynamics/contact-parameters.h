@@ -25,11 +25,12 @@ struct ContactSide {
 
 // What a rule sets; absent: says nothing about it.
 struct ContactSettings {
-  std::optional<double> restitution;   // 0..1
-  std::optional<double> friction;      // Coulomb's mu, >= 0
-  std::optional<double> stiffness;     // N/m for the pair
-  std::optional<double> damping;       // s/m, Hunt-Crossley's b
-  std::optional<double> fusion_speed;  // m/s
+  std::optional<double> restitution;                          // 0..1
+  std::optional<double> friction;                             // Coulomb's mu, >= 0
+  std::optional<double> rolling_friction, spinning_friction;  // m, >= 0
+  std::optional<double> stiffness;                            // N/m for the pair
+  std::optional<double> damping;                              // s/m, Hunt-Crossley's b
+  std::optional<double> fusion_speed;                         // m/s
   std::optional<FrictionLaw> friction_law;
   std::optional<bool> collide;  // set by disable/enable-collisions!
 };
@@ -38,6 +39,7 @@ struct ContactSettings {
 struct ContactParameters {
   double restitution = 0.3;
   double friction = 0.5;
+  double rolling_friction = 0, spinning_friction = 0;  // m
   std::optional<double> stiffness, damping, fusion_speed;
   FrictionLaw friction_law = FrictionLaw::anchored;
   bool collide = true;

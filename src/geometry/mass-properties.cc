@@ -41,6 +41,37 @@ MassProperties cylinder_mass(double radius, double length) {
   return mass;
 }
 
+MassProperties capsule_mass(double radius, double length) {
+  // a cylinder, and half a ball at either end: with 3/8 r from their flat sides to their centroids
+  // I_x = V_b (2/5 r^2 + l^2/4 + 3/8 l r)
+  MassProperties mass = cylinder_mass(radius, length);
+  const double balls = 4.0 / 3.0 * pi * radius * radius * radius;
+  const double across =
+      balls * (0.4 * radius * radius + 0.25 * length * length + 0.375 * length * radius);
+  mass.volume += balls;
+  mass.inertia += Vec3(across, across, 0.4 * balls * radius * radius).asDiagonal();
+  return mass;
+}
+
+MassProperties cone_mass(double radius, double height) {
+  MassProperties mass;
+  mass.volume = pi * radius * radius * height / 3.0;
+  // I_x = 3/20 V (r^2 + h^2/4), I_z = 3/10 V r^2
+  const double across = 0.15 * mass.volume * (radius * radius + 0.25 * height * height);
+  mass.inertia = Vec3(across, across, 0.3 * mass.volume * radius * radius).asDiagonal();
+  return mass;
+}
+
+MassProperties ellipsoid_mass(const Vec3& semi_axes) {
+  MassProperties mass;
+  mass.volume = 4.0 / 3.0 * pi * semi_axes.prod();
+  // I_x = V (b^2 + c^2) / 5 and cyclic
+  const Vec3 squares = semi_axes.cwiseAbs2();
+  mass.inertia =
+      (0.2 * mass.volume * (Vec3::Constant(squares.sum()) - squares)).eval().asDiagonal();
+  return mass;
+}
+
 MassProperties polyhedron_mass(const Polyhedron& polyhedron) {
   // tetrahedra from the polyhedron's middle to a fan of triangles on each face
   const Vec3& origin = polyhedron.center();

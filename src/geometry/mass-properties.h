@@ -19,6 +19,11 @@ MassProperties sphere_mass(double radius);
 MassProperties box_mass(const Vec3& edges);
 // About the z axis.
 MassProperties cylinder_mass(double radius, double length);
+// About the z axis; the length is that of the axis between the centres of the rounded ends.
+MassProperties capsule_mass(double radius, double length);
+// About the z axis, the centroid at the origin.
+MassProperties cone_mass(double radius, double height);
+MassProperties ellipsoid_mass(const Vec3& semi_axes);
 MassProperties polyhedron_mass(const Polyhedron& polyhedron);
 // The sum of several solids in one frame; an overlap counts twice.  Of nothing: all zero.
 MassProperties summed_mass(const std::vector<MassProperties>& solids);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "geometry/shape.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,13 +50,27 @@ Aabb half_space_bounds(const ConvexPart& part, const Frame& frame) {
   return box;
 }
 
-// A cylinder reaches h |a_i| + r sqrt(1 - a_i^2) along axis i, a its own axis.
-Aabb cylinder_bounds(const ConvexPart& part, const Frame& frame) {
+// Either end of a frustum reaches +-h a_i + r sqrt(1 - a_i^2) along axis i, a its own axis.
+Aabb frustum_bounds(const ConvexPart& part, const Frame& frame) {
   const Frame world = frame * part.placement;
-  Vec3 reach;
-  for (int i = 0; i < 3; ++i)
-    reach[i] = part.half_length * std::abs(world.R(i, 2)) +
-               part.radius * std::hypot(world.R(i, 0), world.R(i, 1));
+  Vec3 up, down;
+  for (int i = 0; i < 3; ++i) {
+    const double along = part.half_length * world.R(i, 2);
+    const double across = std::hypot(world.R(i, 0), world.R(i, 1));
+    const double bottom = part.radius * across, top = part.top_radius * across;
+    up[i] = std::max(along + top, bottom - along) + part.margin;
+    down[i] = std::max(along + bottom, top - along) + part.margin;
+  }
+  Aabb box;
+  box.add(world.p - down);
+  box.add(world.p + up);
+  return box;
+}
+
+// An ellipsoid reaches |A R^T e_i| along axis i.
+Aabb ellipsoid_bounds(const ConvexPart& part, const Frame& frame) {
+  const Frame world = frame * part.placement;
+  const Vec3 reach = (world.R * part.semi_axes.asDiagonal()).rowwise().norm();
   Aabb box;
   box.add(world.p - reach);
   box.add(world.p + reach);
@@ -66,7 +81,8 @@ Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
   switch (part.kind) {
     case PartKind::half_space: return half_space_bounds(part, frame);
     case PartKind::polyhedron: return polyhedron_bounds(part, frame);
-    case PartKind::cylinder: return cylinder_bounds(part, frame);
+    case PartKind::frustum: return frustum_bounds(part, frame);
+    case PartKind::ellipsoid: return ellipsoid_bounds(part, frame);
     case PartKind::sphere: break;
   }
   Aabb box;
@@ -78,11 +94,14 @@ Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
 double radius_about_origin_of(const ConvexPart& part) {
   if (part.kind == PartKind::half_space) return infinity;
   if (part.kind == PartKind::sphere) return part.placement.p.norm() + part.radius;
-  if (part.kind == PartKind::cylinder) {
+  if (part.kind == PartKind::ellipsoid) return part.placement.p.norm() + part.semi_axes.maxCoeff();
+  if (part.kind == PartKind::frustum) {
     // the farthest point of the rims
     const double along = part.placement.p.dot(part.placement.R.col(2));
     const double across = (part.placement.p - along * part.placement.R.col(2)).norm();
-    return std::hypot(std::abs(along) + part.half_length, across + part.radius);
+    return std::max(std::hypot(along + part.half_length, across + part.top_radius),
+                    std::hypot(along - part.half_length, across + part.radius)) +
+           part.margin;
   }
   double radius = 0;
   for (const Vec3& v : part.core->vertices())
@@ -98,8 +117,21 @@ double radius_about_line_of(const ConvexPart& part, const Vec3& direction) {
     for (const Vec3& v : part.core->vertices()) radius = std::max(radius, off(part.placement * v));
     return radius;
   }
-  const Vec3 cap = part.half_length * part.placement.R.col(2), p = part.placement.p;
-  return std::max(off(p + cap), off(p - cap)) + part.radius;
+  const Vec3 p = part.placement.p;
+  if (part.kind == PartKind::ellipsoid) {
+    // |A R^T u| over the unit vectors u square to the line
+    const Mat3 square = Mat3::Identity() - direction * direction.transpose();
+    const Mat3 reach = square * part.placement.R * part.semi_axes.asDiagonal();
+    return off(p) + std::sqrt(Eigen::SelfAdjointEigenSolver<Mat3>(reach * reach.transpose(),
+                                                                  Eigen::EigenvaluesOnly)
+                                  .eigenvalues()
+                                  .maxCoeff());
+  }
+  const Vec3 cap = part.half_length * part.placement.R.col(2);
+  const double bottom = part.kind == PartKind::frustum ? part.radius : 0;
+  const double top = part.kind == PartKind::frustum ? part.top_radius : 0;
+  const double margin = part.kind == PartKind::sphere ? part.radius : part.margin;
+  return std::max(off(p + cap) + top, off(p - cap) + bottom) + margin;
 }
 
 ConvexPart polyhedron_part(Polyhedron polyhedron) {
@@ -108,6 +140,17 @@ ConvexPart polyhedron_part(Polyhedron polyhedron) {
   part.core = std::make_shared<const Polyhedron>(std::move(polyhedron));
   part.bound_center = part.core->center();
   part.bound_radius = part.core->radius();
+  return part;
+}
+
+ConvexPart frustum_part(double bottom_radius, double top_radius, double length, double margin) {
+  ConvexPart part;
+  part.kind = PartKind::frustum;
+  part.radius = bottom_radius;
+  part.top_radius = top_radius;
+  part.half_length = 0.5 * length;
+  part.margin = margin;
+  part.bound_radius = std::hypot(std::max(bottom_radius, top_radius), part.half_length) + margin;
   return part;
 }
 
@@ -183,12 +226,35 @@ ShapePtr make_box(const Vec3& edges) {
 ShapePtr make_cylinder(double radius, double length) {
   require_length("the radius of a cylinder", radius);
   require_length("the length of a cylinder", length);
+  return finish_shape({frustum_part(radius, radius, length, 0)}, "cylinder",
+                      cylinder_mass(radius, length));
+}
+
+ShapePtr make_capsule(double radius, double length) {
+  require_length("the radius of a capsule", radius);
+  require_length("the length of a capsule", length);
+  return finish_shape({frustum_part(0, 0, length, radius)}, "capsule",
+                      capsule_mass(radius, length));
+}
+
+ShapePtr make_cone(double radius, double height) {
+  require_length("the radius of a cone", radius);
+  require_length("the height of a cone", height);
+  ConvexPart part = frustum_part(radius, 0, height, 0);
+  part.placement.p.z() = 0.25 * height;
+  part.bound_center = part.placement.p;
+  return finish_shape({part}, "cone", cone_mass(radius, height));
+}
+
+ShapePtr make_ellipsoid(const Vec3& semi_axes) {
+  require_length("the x semi-axis of an ellipsoid", semi_axes.x());
+  require_length("the y semi-axis of an ellipsoid", semi_axes.y());
+  require_length("the z semi-axis of an ellipsoid", semi_axes.z());
   ConvexPart part;
-  part.kind = PartKind::cylinder;
-  part.radius = radius;
-  part.half_length = 0.5 * length;
-  part.bound_radius = std::hypot(radius, part.half_length);
-  return finish_shape({part}, "cylinder", cylinder_mass(radius, length));
+  part.kind = PartKind::ellipsoid;
+  part.semi_axes = semi_axes;
+  part.bound_radius = semi_axes.maxCoeff();
+  return finish_shape({part}, "ellipsoid", ellipsoid_mass(semi_axes));
 }
 
 ShapePtr make_hull(const std::vector<Vec3>& points) {

@@ -1,10 +1,9 @@
 // Shapes: immutable unions of placed convex parts.
 //
-// Every shape is a list of convex parts in the body's frame.  A part is a *core* with a radius: a
-// sphere is a point with a radius, a box or hull is a polyhedron with radius 0; half-spaces and
-// cylinders are parts of their own.  Later shapes (capsule: a segment with a radius; cone,
-// ellipsoid: support mappings) become further kinds here and one row each in the tables of pairs in
-// collision/separation.cc and collision/manifold.cc.
+// Every shape is a list of convex parts in the body's frame, of few kinds: a box or hull is a
+// polyhedron; cylinder, cone and capsule are *frustums*: what a line that need not be parallel to
+// the axis sweeps out about it, and all points within a margin of that.  A kind is a row in the
+// tables of pairs in collision/separation.cc and collision/manifold.cc.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
 // flat, and say which value.
@@ -25,14 +24,17 @@ class Polyhedron;
 class Shape;
 using ShapePtr = std::shared_ptr<const Shape>;
 
-enum class PartKind { sphere, polyhedron, half_space, cylinder };
+enum class PartKind { sphere, polyhedron, half_space, frustum, ellipsoid };
 
 // One convex part, placed in the frame of the shape.
 struct ConvexPart {
   PartKind kind = PartKind::sphere;
   Frame placement;                         // part frame in the shape's frame
-  double radius = 0;                       // sphere, cylinder: its radius; otherwise 0
-  double half_length = 0;                  // cylinder: along z of the part's frame, to either side
+  double radius = 0;                       // sphere: its radius; frustum: at -half_length
+  double top_radius = 0;                   // frustum: at +half_length
+  double half_length = 0;                  // frustum: along z of the part's frame, to either side
+  double margin = 0;                       // frustum: and what is within this of it
+  Vec3 semi_axes = Vec3::Zero();           // ellipsoid: along the axes of the part's frame
   std::shared_ptr<const Polyhedron> core;  // polyhedron only, in the part's frame
   Vec3 normal = Vec3::UnitZ();             // half-space: outward unit normal, shape's frame
   double offset = 0;                       // half-space: solid where normal.x <= offset
@@ -59,15 +61,15 @@ class Shape {
   const MassProperties& mass_properties() const { return mass_; }
   // Least width of the bounding box, m: the `size` of contact parameters.  Infinite if unbounded.
   double least_width() const { return least_width_; }
-  // The smallest ball around the frame's origin that holds the shape (bound by the parts'
-  // farthest points, exact for spheres, cylinders and polyhedra), m.
+  // The smallest ball around the frame's origin that holds the shape (bound by the parts' farthest
+  // points, exact but for ellipsoids about another centre), m.
   double radius_about_origin() const { return radius_about_origin_; }
-  // No point is farther from the line through the origin, m (exact but for tilted cylinders).
+  // No point is farther from the line through the origin, m (exact but for tilted frustums and
+  // ellipsoids that are off it).
   double radius_about_line(const Vec3& direction) const;
-  // The shape's bounds when its frame is placed at `frame`, m.  Exact for spheres, cylinders,
-  // boxes and hulls.
+  // The shape's bounds when its frame is placed at `frame`, m.  Exact.
   Aabb bounds(const Frame& frame) const;
-  // One word for messages: "sphere", "box", "hull", "cylinder", "half-space", "union".
+  // One word for messages: "sphere", "box", "hull", "cylinder", "cone", "union" and so on.
   const std::string& kind_name() const { return kind_name_; }
   // True for a single sphere centred anywhere.
   bool is_sphere() const { return parts_.size() == 1 && parts_[0].kind == PartKind::sphere; }
@@ -91,6 +93,12 @@ ShapePtr make_sphere(double radius);
 ShapePtr make_box(const Vec3& edges);
 // About the z axis, from -length/2 to length/2.
 ShapePtr make_cylinder(double radius, double length);
+// About the z axis: all points within the radius of a segment from -length/2 to length/2.
+ShapePtr make_capsule(double radius, double length);
+// About the z axis, the centroid at the origin: the base at -height/4, the tip at 3/4 height.
+ShapePtr make_cone(double radius, double height);
+// Semi-axes along x, y and z.
+ShapePtr make_ellipsoid(const Vec3& semi_axes);
 // The convex hull of the points (Qhull).  The frame is the points' own: the centroid need not be
 // at the origin.
 ShapePtr make_hull(const std::vector<Vec3>& points);

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
+#include "groups/followed-contact.h"
 
 namespace tw {
 namespace {
@@ -35,11 +36,18 @@ Vec3 turned_into(const Vec3& stretch, const Vec3& normal) {
   return length > 0 ? Vec3(flat * (stretch.norm() / length)) : Vec3(Vec3::Zero());
 }
 
-void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) {
-  if (p.kind == ReferenceFeature::plane || reference.body->dynamic()) return;
+// The part that a point is on, of the body named; `body_b` is the second of the pair.
+const ConvexPart& part_at(const ManifoldPoint& p, const Body& body, const Body& body_b) {
   const auto parts_b = static_cast<int>(body_b.shape_P->parts().size());
-  const int number = reference.body == &body_b ? p.pair % parts_b : p.pair / parts_b;
-  const ConvexPart& part = reference.body->shape_P->parts()[static_cast<std::size_t>(number)];
+  const int number = &body == &body_b ? p.pair % parts_b : p.pair / parts_b;
+  return body.shape_P->parts()[static_cast<std::size_t>(number)];
+}
+
+void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) {
+  if (p.kind == ReferenceFeature::plane || p.kind == ReferenceFeature::tangent_plane ||
+      reference.body->dynamic())
+    return;
+  const ConvexPart& part = part_at(p, *reference.body, body_b);
   if (part.kind != PartKind::polyhedron) return;
   for (const Polyhedron::Face& face : part.core->faces()) {
     const Vec3 normal = reference.frame.R * (part.placement.R * face.normal);
@@ -58,20 +66,9 @@ NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const Placed
   const PlacedBody& reference = p.reference_is_a ? a : b;
   const PlacedBody& other = p.reference_is_a ? b : a;
   NewContact result;
-  GroupContact& c = result.contact;
-  c.feature = static_cast<ContactFeature>(p.kind);
-  c.normal = reference.frame.R.transpose() * p.normal;
-  c.direction = reference.frame.R.transpose() * p.direction;
-  c.other_direction = other.frame.R.transpose() * p.other_direction;
-  c.point_a = reference.frame.to_local(p.reference_point);
-  c.point_b = other.frame.to_local(p.core_point);
-  c.radius_a = p.reference_radius;
-  c.radius_b = p.radius;
-  if (p.kind == ReferenceFeature::rim) {
-    c.rim = p.rim;
-    c.point_b = other.frame.to_local(p.rim_center);
-  }
-  c.law = law;
+  result.contact =
+      followed_contact(p, reference.frame, other.frame, part_at(p, *other.body, *b.body));
+  result.contact.law = law;
   result.tag = {reference.body->id(), other.body->id(), p.pair, p.feature};
   result.gap = p.gap;
   result.normal = p.normal;

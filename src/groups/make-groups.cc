@@ -280,11 +280,16 @@ void make_groups(Regrouping& work) {
   // who touches anything at all, who hangs together, and where that comes to rest in part
   const std::size_t count = work.successors.size();
   work.touching.assign(count, false);
+  work.braked.assign(count, false);
   work.stillness.resize(count);
   for (const ContactPair& pair : work.pairs)
     for (const BodyId id : {pair.a(), pair.b()})
-      if (const Successor* member = work.successor_of(id); work.changes(member))
-        work.touching[work.place_of(member)] = true;
+      if (const Successor* member = work.successor_of(id); work.changes(member)) {
+        const std::size_t place = work.place_of(member);
+        work.touching[place] = true;
+        if (pair.count > 0 && work.contacts[pair.first].contact.law.rolling > 0)
+          work.braked[place] = true;
+      }
   std::vector<bool> held = work.touching;
   // what is joined never parts
   for (std::size_t i = 0; i < count; ++i)

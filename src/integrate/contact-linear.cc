@@ -24,8 +24,6 @@ TW_LANES LaneChange gather(const ContactPack& pack, const BodyChange* changes,
           gather_vec(c[0]->w, c[1]->w, c[2]->w, c[3]->w)};
 }
 
-constexpr bool is_flat(ContactFeature feature) { return feature == ContactFeature::plane; }
-
 // Nn y = (1 - n n^T - l l^T) y/|arm|
 TW_LANES LaneVec turn_normal(const ContactPack& pack, const PackLinear& o, const LaneVec& y) {
   LaneVec part = y - dot(o.n, y) * o.n;
@@ -77,6 +75,20 @@ TW_LANES void set_drag(const ContactPack& pack, const PackState& s, PackLinear& 
   o.more_turn = (pack.half_size * (s.drag + s.depth * slope)) * o.dw;
 }
 
+void set_resistance(const ContactPack& pack, const PackState& s, PackLinear& o) {
+  const Lanes slow = pack.slow_turn * pack.slow_turn;
+  const Lanes along = dot(s.n, o.dw), spin = along * along + slow;
+  const LaneVec across = o.dw - along * s.n;
+  const Lanes inverse = lanes(1) / sqrt(dot(across, across) + slow);
+  const LaneVec a = inverse * across;
+  const Lanes by_roll = -(s.N * pack.rolling * inverse);
+  const Lanes by_spin = -(s.N * pack.spinning * slow / (spin * sqrt(spin)));
+  const LaneMat across_n = scalar_matrix(lanes(1)) - outer(s.n, s.n);
+  o.twist = by_roll * (across_n - outer(a, a)) + by_spin * outer(s.n, s.n);
+  o.resisted = s.resisted;
+  o.resistance = -(s.N * s.resisted);
+}
+
 // dN, by dp and dv'
 TW_LANES Lanes normal_change(const PackLinear& o, const LaneVec& dp, const LaneVec& dv) {
   return dot(o.g, dp) - o.kb * dot(o.n, dv);
@@ -124,6 +136,13 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   out.sa = dp;
   out.sb = turned_b;
   LaneVec dn, turned;
+  if constexpr (rolls(feature)) {
+    turned = b.th;
+    if constexpr (!grounded) turned = turned - a.th;
+    const LaneVec along = o.roll * turned;
+    out.sa = out.sa + along;
+    out.sb = out.sb + along;
+  }
   if constexpr (runs(feature)) {
     turned = b.th;
     if constexpr (!grounded) turned = turned - a.th;
@@ -159,6 +178,13 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
     out.f = out.f + drag_change<flat>(o, dp, dn, dv);
     out.torque = dot(o.n, dp) * o.more_turn - o.turn_damper * b.w;
     if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
+  }
+  if (o.resists) {
+    LaneVec turning = b.w;
+    if constexpr (!grounded) turning = turning - a.w - cross(a.th, o.dw);
+    LaneVec torque = o.twist * turning - dN * o.resisted;
+    if constexpr (!grounded) torque = torque + cross(a.th, o.resistance);
+    out.torque = o.deep ? out.torque + torque : torque;
   }
   if constexpr (!grounded) out.f = out.f + cross(a.th, o.f);
 }
@@ -197,6 +223,7 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   const Lanes by_depth = s.N > zero ? pack.k * slope : zero;
   o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
+  if (rolls(pack.feature)) o.roll = s.roll;
   if (runs(pack.feature)) {
     o.running = s.running;
     const Lanes by_turn = o.kb * dot(o.running.ma, o.vr);
@@ -207,6 +234,9 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   }
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
   set_drag(pack, s, o);
+  o.turns = s.turns;
+  o.resists = pack.resists;
+  if (o.resists) set_resistance(pack, s, o);
 }
 
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
@@ -230,8 +260,10 @@ void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyCh
   // a line and a point differ in turn_normal alone, what runs in how it does
   const auto chosen =
       pack.feature == F::plane ? choose(change<F::plane, true>, change<F::plane, false>)
-      : runs(pack.feature)     ? choose(change<F::crossing, true>, change<F::crossing, false>)
-                               : choose(change<F::point, true>, change<F::point, false>);
+      : rolls(pack.feature)
+          ? choose(change<F::tangent_plane, true>, change<F::tangent_plane, false>)
+      : runs(pack.feature) ? choose(change<F::crossing, true>, change<F::crossing, false>)
+                           : choose(change<F::point, true>, change<F::point, false>);
   chosen(pack, linear, changes, stretch_side, out);
 }
 
@@ -287,7 +319,7 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
 template <ContactFeature feature>
 void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
             PackBlocks& out) {
-  constexpr bool flat = is_flat(feature), running = runs(feature);
+  constexpr bool flat = is_flat(feature), running = runs(feature), rolling = rolls(feature);
   LaneMat fp, fv, fom;
   force_derivatives<feature>(pack, o, fp, fv, fom);
   const Lanes inverse = lanes(1 / sigma);
@@ -316,7 +348,9 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
   else
     fq = fp + fvw * keep;
   LaneMat fq_om;
+  if constexpr (rolling) point_om = o.roll;
   if constexpr (running) fq_om = fom + fvw * point_om;
+  if constexpr (rolling) fq_om = fvw * point_om;
   // df by v of b
   const LaneMat by_v = fv + inverse * (fq - times_cross(fv, o.wb));
   const LaneVec arm[2] = {o.ra, o.rb}, reach[2] = {o.sa, o.sb};
@@ -329,15 +363,20 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     // dp and df by v, and by the rotation th of X
     const LaneMat dp_th = (-sign) * cross_lanes(arm[X]);
     LaneMat f_th = (-sign) * times_cross(fq, arm[X]);
-    if constexpr (running) f_th = f_th + sign * fq_om;
-    if (X == 0) f_th = f_th - times_cross(fvw, o.sa) + times_cross(fv, o.vr) - cross_lanes(o.f);
+    if constexpr (running || rolling) f_th = f_th + sign * fq_om;
+    if (X == 0) f_th = f_th - times_cross(fvw, o.sa) + times_cross(fv, o.vr);
+    const LaneMat in_a = f_th;  // as a sees it
+    if (X == 0) f_th = f_th - cross_lanes(o.f);
     const LaneMat f_w = (-sign) * times_cross(fv, reach[X]);
     const LaneMat f_v = sign * by_v;
     const LaneMat f_L = f_th * P + f_w * V;
 
     // arms by v and th
     LaneMat sa_th, sb_th = scalar_matrix(lanes(0));
-    if constexpr (flat) {
+    if constexpr (rolling) {
+      sb_th = sign * point_om;
+      sa_th = dp_th + sb_th;
+    } else if constexpr (flat) {
       sa_th = dp_th;
     } else {
       sa_th = keep * dp_th;
@@ -355,6 +394,18 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     if constexpr (!flat) sb_v = (-sign * inverse) * turn;
     const LaneMat s_v[2] = {sa_v, sb_v}, s_L[2] = {sa_th * P, sb_th * P};
 
+    // dM: n.df is dN where n keeps still
+    LaneMat resist_v, resist_L;
+    if (o.resists) {
+      const auto by_load = [&](const LaneMat& df) {
+        return lanes(-1) * outer(o.resisted, transposed_times(df, o.n));
+      };
+      resist_v = by_load(f_v);
+      LaneMat resist_th = by_load(in_a);
+      if (X == 0) resist_th = resist_th + times_cross(o.twist, o.dw) - cross_lanes(o.resistance);
+      resist_L = resist_th * P + (by_load(f_w) + sign * o.twist) * V;
+    }
+
     // torque s x f, force; on a with the opposite sign
     for (int Y = pack.grounded ? 1 : 0; Y < 2; ++Y) {
       const Lanes side = Y == 1 ? lanes(1) : lanes(-1);
@@ -363,6 +414,10 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       part[0][1] = side * f_L;
       part[1][0] = side * (cross_times(reach[Y], f_v) - cross_times(o.f, s_v[Y]));
       part[1][1] = side * (cross_times(reach[Y], f_L) - cross_times(o.f, s_L[Y]));
+      if (o.resists) {
+        part[1][0] = part[1][0] + side * resist_v;
+        part[1][1] = part[1][1] + side * resist_L;
+      }
       if (!o.deep) continue;
       const LaneMat by_p = outer(o.more_turn, o.n);
       part[1][0] = part[1][0] + (side * sign * inverse) * by_p;
@@ -379,6 +434,7 @@ void pack_blocks(const ContactPack& pack, const PackLinear& linear, double sigma
   using F = ContactFeature;
   switch (pack.feature) {
     case F::plane: return blocks<F::plane>(pack, linear, sigma, body, out);
+    case F::tangent_plane: return blocks<F::tangent_plane>(pack, linear, sigma, body, out);
     case F::crossing:
     case F::rim: return blocks<F::crossing>(pack, linear, sigma, body, out);
     case F::line:

@@ -15,11 +15,17 @@
 //   dT  = -c (dv' - n n.dv') + c v_r.n dn' + n c v_r.dn' + (dc/dd) u n.dp    (T = -c u, where deep)
 // and a torque Q = -C (w_b - w_a), C = c d size/2:
 //   dQ  = -C (dw_b - dw_a) + (dC/dd) (w_b - w_a) n.dp
+// Where rolling and spinning are resisted by M = -N m, with w = w_b - w_a and 1 - n n^T = P,
+//   dM  = -m dN - N T (dw_b - dw_a - dth_a x w) + dth_a x M,
+//   T   = rho_r (P - a a^T)/sqrt(w_t^2 + w0^2) + rho_s w0^2/sqrt(w_n^2 + w0^2)^3 n n^T,
+//   a   = w_t/sqrt(w_t^2 + w0^2);
+// the turn of n, by rho over the radii of the surfaces, is left out.
 // Where the core point runs (contact-pack.h, RunningPoint), with dom = dth_b - dth_a:
 //   dn' = (turn_p.dp + turn_om.dom) m_a, and (along_p.dp + along_om.dom) path adds to dp wherever
 // the point of the force moves (dv', arms), but not in dN, where the turn of n does:
 //   dN  = g.dp + h.dom - K b (n.dv'),  g = -(dN/dd) n - K b (m_a.v_r) turn_p,
 //   h = -K b (m_a.v_r) turn_om.
+// Where it rolls over the surface roll dom adds to dp likewise.
 // smooth: m = F/N, and du instead of dF* with the derivative of the atan law in c0, c1.
 //
 // The stretch z (world frame) has z' = -(F + kt z)/ct; dF/dz is -kt q t t^T when slipping, with
@@ -53,23 +59,26 @@ struct PackLinear {
       bend;  // dw = w_b - w_a; bend = kt s + ct v_r, or v_r
   LaneVec e, t, m, g;
   RunningPoint running;
+  LaneMat roll;
   LaneVec h;
   Lanes N, kb, inverse_length, vbend;  // vbend = n.bend
   Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
   Lanes inverse_ct, tau;
   LaneMask sticking;
-  bool deep;
-  Lanes damper;              // c
-  LaneVec pull, more_drag;   // c v_r, (dc/dd) u
-  Lanes turn_damper;         // C
-  LaneVec more_turn;         // (dC/dd) (w_b - w_a)
-  Lanes m1, m2, h0, h1, h2;  // by the step
+  bool deep, turns, resists;
+  LaneVec resisted, resistance;  // m, M
+  LaneMat twist;                 // -N T
+  Lanes damper;                  // c
+  LaneVec pull, more_drag;       // c v_r, (dc/dd) u
+  Lanes turn_damper;             // C
+  LaneVec more_turn;             // (dC/dd) (w_b - w_a)
+  Lanes m1, m2, h0, h1, h2;      // by the step
 };
 
 // Changes of the force on b, of the raw friction (stretches held) and of the two arms.
 struct PackChange {
   LaneVec f, friction, sa, sb;
-  LaneVec torque;  // dQ; set where deep
+  LaneVec torque;  // dQ + dM; set where it turns
 };
 
 // The derivative at a state; stretches are held until set_stage_rate is called.

@@ -117,6 +117,23 @@ TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMa
   return pack.rim * e;
 }
 
+// The lowest point of an ellipsoid, from its centre: -S m/h with m the normal in b's frame, h =
+// sqrt(m.S m).  S/h - S m (S m)^T/h^3 =: H are the second derivatives of h, m turns by R_b^T (n x
+// dom), so that the point runs by -R_b H R_b^T (n x dom).
+TW_LANES LaneVec set_tangent_plane(const ContactPack& pack, const LaneMat& Rb, PackState& o) {
+  o.n = o.Ra * pack.normal;
+  const LaneVec &d = pack.direction, &e = pack.other_direction;
+  const LaneMat S = {{{d.x, e.z, e.y}, {e.z, d.y, e.x}, {e.y, e.x, d.z}}};
+  const LaneVec m = transposed_times(Rb, o.n), along = S * m;
+  const Lanes height = sqrt(max(dot(m, along), lanes(1e-300))), inverse = lanes(1) / height;
+  const LaneVec lowest = -(inverse * (Rb * along));
+  const LaneMat RS = Rb * S;
+  const LaneMat RSR = {{Rb * RS.row[0], Rb * RS.row[1], Rb * RS.row[2]}};
+  const LaneMat in_world = inverse * (RSR - outer(lowest, lowest));
+  o.roll = lanes(-1) * times_cross(in_world, o.n);
+  return lowest;
+}
+
 template <ContactFeature feature>
 TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVec& side,
                          PackState& o) {
@@ -190,7 +207,7 @@ TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
   o.drag = zero;
   const Lanes ratio = o.depth * pack.inverse_hardening;
   const LaneMask beyond = ratio > hardest;
-  o.deep = any(beyond);
+  o.deep = o.turns = any(beyond);
   if (!o.deep) return;
   const Lanes most =
       lanes(1 + answer::hardening_cap) * pack.k * pack.damping * (o.depth * hardest / ratio);
@@ -198,6 +215,18 @@ TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
   o.f = o.f - o.drag * o.u;
   o.turn_drag = o.drag * o.depth * pack.half_size;
   o.torque = o.turn_drag * (o.wa - o.wb);
+}
+
+// M = -N (rho_r w_t/sqrt(w_t^2 + w0^2) + rho_s w_n/sqrt(w_n^2 + w0^2))
+TW_LANES void add_resistance(const ContactPack& pack, PackState& o) {
+  const LaneVec w = o.wb - o.wa;
+  const Lanes along = dot(o.n, w), slow = pack.slow_turn * pack.slow_turn;
+  const LaneVec across = w - along * o.n;
+  o.resisted = (pack.rolling / sqrt(dot(across, across) + slow)) * across +
+               (pack.spinning * along / sqrt(along * along + slow)) * o.n;
+  const LaneVec torque = -(o.N * o.resisted);
+  o.torque = o.turns ? o.torque + torque : torque;
+  o.turns = true;
 }
 
 template <ContactFeature feature>
@@ -221,6 +250,12 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
       along = set_crossing(pack, D, b.R, side, o);
     o.ra = o.ra + along;
     o.rb = o.rb + along;
+  } else if constexpr (rolls(feature)) {
+    const LaneVec lowest = set_tangent_plane(pack, b.R, o);
+    o.ra = o.ra + lowest;
+    o.rb = o.rb + lowest;
+    o.gap = dot(o.n, D + lowest);
+    o.inverse_length = lanes(0);
   } else {
     set_normal<feature>(pack, D, side, o);
   }
@@ -243,6 +278,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
     set_smooth_friction(pack, o);
   o.f = o.N * o.n + o.F;
   add_drag(pack, o);
+  if (pack.resists) add_resistance(pack, o);
 }
 
 void set_lane(LaneVec& v, int lane, const Vec3& value) {
@@ -269,6 +305,10 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
   pack.damping[lane] = law.b;
   pack.half_size[lane] = 0.5 * law.size;
+  pack.rolling[lane] = law.rolling;
+  pack.spinning[lane] = law.spinning;
+  pack.slow_turn[lane] = law.slow_turn > 0 ? law.slow_turn : 1;
+  pack.resists |= law.rolling > 0 || law.spinning > 0;
   // without a tangential spring and damper there is no friction of the anchored kind
   const bool frictionless = law.law == FrictionLaw::anchored && !(law.ct > 0);
   pack.mu[lane] = frictionless ? 0 : law.mu;
@@ -297,9 +337,14 @@ ContactPack empty_pack(const GroupContact& kind) {
   ContactPack pack;
   pack.feature = kind.feature;
   pack.law = kind.law.law;
+  GroupContact nothing;
+  if (rolls(kind.feature)) {
+    nothing.direction = Vec3::Ones();
+    nothing.other_direction = Vec3::Zero();
+  }
   for (int i = 0; i < lane_count; ++i) {
     pack.contact[i] = -1;
-    fill_lane(pack, i, GroupContact{}, 0);
+    fill_lane(pack, i, nothing, 0);
   }
   return pack;
 }
@@ -319,6 +364,8 @@ void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const 
       return evaluate<ContactFeature::crossing>(pack, bodies, stretch, side, out);
     case ContactFeature::rim:
       return evaluate<ContactFeature::rim>(pack, bodies, stretch, side, out);
+    case ContactFeature::tangent_plane:
+      return evaluate<ContactFeature::tangent_plane>(pack, bodies, stretch, side, out);
   }
 }
 

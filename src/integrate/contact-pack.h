@@ -1,10 +1,10 @@
 // Contacts of a group four at a time: constants, geometry and force.
 //
 // Symbols, for a contact of bodies a (reference) and b: P the core point of b (crossing and rim:
-// the point of its line or circle that is nearest to a's), n the normal, l the line's direction;
-// r_a, r_b from the centres to P; c = P - radius_b n where the force acts; s_a, s_b from the
-// centres to c; v_r velocity of b against a at c, u its tangential part; s the stretch in the world
-// frame; f = N n + F the force on b.
+// the point of its line or circle that is nearest to a's; tangent plane: the ellipsoid's lowest), n
+// the normal, l the line's direction; r_a, r_b from the centres to P; c = P - radius_b n where the
+// force acts; s_a, s_b from the centres to c; v_r velocity of b against a at c, u its tangential
+// part; s the stretch in the world frame; f = N n + F the force on b.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -30,12 +30,14 @@ struct ContactPack {
   int count = 0;
   bool uniform = false;                         // all of the same two bodies
   bool grounded = false;                        // all bodies a are outside
+  bool resists = false;                         // rolling or spinning, any
   int contact[lane_count];                      // index in GroupStart::contacts
   int a[lane_count], b[lane_count];             // body slots
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
-  LaneVec other_direction;                      // frame of b: crossing and rim
+  LaneVec other_direction;                      // frame of b: crossing, rim and tangent plane
   Lanes radius_a, radius_b, rim, offset;
   Lanes k, inverse_hardening, damping, mu, kt, ct, half_size;
+  Lanes rolling, spinning, slow_turn;
 };
 
 // Where in the packs a contact is.
@@ -58,6 +60,14 @@ constexpr bool runs(ContactFeature feature) {
   return feature == ContactFeature::crossing || feature == ContactFeature::rim;
 }
 
+// Whether n keeps its direction in a's frame.
+constexpr bool is_flat(ContactFeature feature) {
+  return feature == ContactFeature::plane || feature == ContactFeature::tangent_plane;
+}
+
+// Whether the core point of b runs over its surface as it rolls.
+constexpr bool rolls(ContactFeature feature) { return feature == ContactFeature::tangent_plane; }
+
 // How the core point of b runs along its line or circle, and n turns with it, when a displacement
 // dp of b's material there and a turn dom of b against a happen, in a's frame:
 //   the point by dp + (along_p.dp + along_om.dom) path,  n by (turn_p.dp + turn_om.dom) m_a,
@@ -73,18 +83,21 @@ struct PackState {
   LaneVec arm;                                     // n = arm/|arm|, signed; point and line
   Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
   RunningPoint running;                            // crossing and rim
-  Lanes gap, depth, vn;                            // depth = offset - gap
-  Lanes damping;                                   // b at this depth
-  Lanes N, stiffness;                              // stiffness = N/(1 - b vn)
-  LaneVec target;                                  // F* before the cut (anchored), u (smooth)
-  Lanes target_length, scale;                      // F = scale target
+  LaneMat roll;          // tangent plane: the point runs by roll dom when b turns by dom against a
+  Lanes gap, depth, vn;  // depth = offset - gap
+  Lanes damping;         // b at this depth
+  Lanes N, stiffness;    // stiffness = N/(1 - b vn)
+  LaneVec target;        // F* before the cut (anchored), u (smooth)
+  Lanes target_length, scale;  // F = scale target
   LaneMask slipping;
   LaneVec F, stretch_rate;  // the rate in a's frame
   bool deep = false;        // whether any is beyond the hardest ratio
   Lanes drag;               // c of the tangential damper there, N s/m
   LaneVec f;                // N n + F - drag u
   Lanes turn_drag;          // c d size/2, N m s
-  LaneVec torque;           // -turn_drag (w_b - w_a): on b; set where deep
+  bool turns = false;       // whether any torque beside that of f
+  LaneVec torque;           // on b, M - turn_drag (w_b - w_a); set where it turns
+  LaneVec resisted;         // M = -N resisted; set where the pack resists
 };
 
 // `stretch`: a's frame.  `side`: the normals at an earlier instant, which choose their sign (line,

@@ -69,7 +69,7 @@ struct GroupTree {
 };
 
 // What the reference body shows the other one at a contact.
-enum class ContactFeature : unsigned char { plane, line, point, crossing, rim };
+enum class ContactFeature : unsigned char { plane, line, point, crossing, rim, tangent_plane };
 
 // One contact point.  Body a has the feature, fixed in a's frame; body b a core point, fixed in b's
 // frame, with a radius, or a line or circle of such points.
@@ -80,6 +80,10 @@ enum class ContactFeature : unsigned char { plane, line, point, crossing, rim };
 //          n = s unit(l x l_b);           gap = n.(p_b - p_a) - radius_a - radius_b
 //   rim    the same with the tangent of a circle of b, of radius `rim` about point_b, square to
 //          other_direction
+//   tangent_plane  n = normal, and b has an ellipsoid about point_b, the points S u/sqrt(u.S u)
+//          from there (u any vector): p_b is that with u = -n, where it is lowest; gap = n.(p_b - p_a).
+//          S, b's frame, is symmetric: its diagonal is `direction`, (S_yz, S_zx, S_xy) is
+//          `other_direction`
 // n points from a to b.  The force acts at p_b - radius_b n; of a crossing and a rim p_b is not
 // fixed in b but the point of its line or circle that is nearest to a's: it runs along both as the
 // bodies slide, and a circle may spin.  s is 1, or -1 where n would else turn against `normal`

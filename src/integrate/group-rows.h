@@ -69,7 +69,7 @@ TW_LANES void scatter_change(const ContactPack& pack, const PackLinear& linear,
                              const PackChange& change, BodyWrench* wrenches) {
   LaneVec on_a = cross(linear.sa, change.f) + cross(change.sa, linear.f);
   LaneVec on_b = cross(linear.sb, change.f) + cross(change.sb, linear.f);
-  if (linear.deep) {
+  if (linear.turns) {
     on_a = on_a + change.torque;
     on_b = on_b + change.torque;
   }

@@ -157,7 +157,7 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
     if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
     store(state.stretch_rate, slope + at);
     LaneVec on_a = cross(state.sa, state.f), on_b = cross(state.sb, state.f);
-    if (state.deep) {
+    if (state.turns) {
       on_a = on_a + state.torque;
       on_b = on_b + state.torque;
     }

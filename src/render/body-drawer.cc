@@ -66,33 +66,50 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
 
 void BodyDrawer::add_part(const ConvexPart& part, const DrawBody& body, Part record) {
   if (part.kind == PartKind::half_space) return;
-  const bool smooth =
-      body.smooth.value_or(part.kind == PartKind::sphere || part.kind == PartKind::cylinder);
+  const bool smooth = body.smooth.value_or(part.kind != PartKind::polyhedron);
   if (part.kind == PartKind::sphere) record.placement.R *= part.radius;
   if (part.kind == PartKind::sphere && smooth) {
     balls_.push_back(record);
     return;
   }
   if (part.is_box) record.placement.R *= part.half_edges.asDiagonal();
-  if (part.kind == PartKind::cylinder)
+  if (part.kind == PartKind::ellipsoid) record.placement.R *= part.semi_axes.asDiagonal();
+  if (part.kind == PartKind::frustum && part.margin == 0)
     record.placement.R *= Vec3(part.radius, part.radius, part.half_length).asDiagonal();
   group_of(part, smooth).parts.push_back(record);
 }
 
 BodyDrawer::MeshGroup& BodyDrawer::group_of(const ConvexPart& part, bool smooth) {
   static const Polyhedron unit_box = Polyhedron::box(Vec3::Ones());
-  // stands for the mesh of all cylinders
-  static const char unit_cylinder = 0;
-  const bool sphere = part.kind == PartKind::sphere;
-  const bool cylinder = part.kind == PartKind::cylinder;
-  const Polyhedron* polyhedron = part.is_box ? &unit_box : part.core.get();
-  const MeshKey key(cylinder ? static_cast<const void*>(&unit_cylinder) : polyhedron, smooth);
-  const auto [found, fresh] = group_index_.emplace(key, groups_.size());
-  if (fresh)
-    groups_.push_back(make_group(sphere     ? facet_sphere_mesh()
-                                 : cylinder ? cylinder_mesh(smooth)
-                                 : smooth   ? smooth_mesh(*polyhedron)
-                                            : facet_mesh(*polyhedron)));
+  // stand for the meshes of all balls and ellipsoids, cylinders and cones
+  static const char unit_ball = 0, unit_cylinder = 0, unit_cone = 0;
+  const bool capsule = part.margin > 0;
+  const auto key = [&]() -> const void* {
+    switch (part.kind) {
+      case PartKind::sphere:
+      case PartKind::ellipsoid: return &unit_ball;
+      case PartKind::frustum: return part.top_radius > 0 ? &unit_cylinder : &unit_cone;
+      default: return part.is_box ? &unit_box : part.core.get();
+    }
+  };
+  const auto mesh = [&] {
+    switch (part.kind) {
+      case PartKind::sphere:
+      case PartKind::ellipsoid: return smooth ? ball_mesh() : facet_sphere_mesh();
+      case PartKind::frustum:
+        return capsule ? capsule_mesh(part.margin, part.half_length, smooth)
+                       : frustum_mesh(part.top_radius > 0 ? 1 : 0, smooth);
+      default: {
+        const Polyhedron& polyhedron = part.is_box ? unit_box : *part.core;
+        return smooth ? smooth_mesh(polyhedron) : facet_mesh(polyhedron);
+      }
+    }
+  };
+  // capsules of different proportions have no mesh in common
+  const MeshKey name(capsule ? nullptr : key(), smooth, part.margin,
+                     capsule ? part.half_length : 0);
+  const auto [found, fresh] = group_index_.emplace(name, groups_.size());
+  if (fresh) groups_.push_back(make_group(mesh()));
   return groups_[found->second];
 }
 

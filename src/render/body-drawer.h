@@ -8,6 +8,7 @@
 
 #include <map>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -55,8 +56,9 @@ class BodyDrawer {
     std::vector<Part> parts;
     std::vector<MeshInstance> instances;
   };
-  // The unit shapes that scale have keys of their own.
-  using MeshKey = std::pair<const void*, bool>;
+  // Whose mesh, smooth or not; of capsules radius and half length.  The unit shapes that scale have
+  // keys of their own.
+  using MeshKey = std::tuple<const void*, bool, double, double>;
 
   void add_part(const ConvexPart& part, const DrawBody& body, Part record);
   MeshGroup& group_of(const ConvexPart& part, bool smooth);

@@ -1,4 +1,4 @@
-// Meshes of polyhedra, spheres and cylinders.
+// Meshes of polyhedra and of what is round.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/mesh.h"
 
@@ -110,35 +110,84 @@ Mesh facet_sphere_mesh() {
   return mesh;
 }
 
-Mesh cylinder_mesh(bool smooth) {
+namespace {
+
+// A line from (radius, height) to another with the normals at its ends, to be turned about z.
+struct Band {
+  double radius[2], height[2];
+  double out[2], up[2];
+};
+
+// A band whose normal is the same all along: that of the line, on its right.
+Band straight(double radius, double height, double next_radius, double next_height) {
+  const double along = next_radius - radius, rise = next_height - height;
+  const double length = std::hypot(along, rise), out = rise / length, up = -along / length;
+  return {{radius, next_radius}, {height, next_height}, {out, out}, {up, up}};
+}
+
+// A quarter of a circle about (0, middle), as bands: from the pole to the equator, or back.
+void add_quarter(std::vector<Band>& profile, double radius, double middle, bool lower) {
+  constexpr int steps = 12;
+  const auto at = [&](int k) { return 0.5 * pi * (k / double(steps) - (lower ? 1 : 0)); };
+  for (int k = 0; k < steps; ++k) {
+    const double a = at(k), b = at(k + 1);
+    const double ra = lower && k == 0 ? 0 : std::cos(a),
+                 rb = !lower && k + 1 == steps ? 0 : std::cos(b);
+    profile.push_back({{radius * ra, radius * rb},
+                       {middle + radius * std::sin(a), middle + radius * std::sin(b)},
+                       {ra, rb},
+                       {std::sin(a), std::sin(b)}});
+  }
+}
+
+// From the lower end of the axis to the upper one.  Facets have the normal of their middle.
+Mesh turned_mesh(const std::vector<Band>& profile, bool smooth) {
   constexpr int facets = 48;
-  const auto rim = [](double k) {
-    const double angle = 2 * pi * k / facets;
-    return Vec3(std::cos(angle), std::sin(angle), 0);
-  };
   Mesh mesh;
-  const auto add_corner = [&mesh](const Vec3& position, const Vec3& normal) {
-    mesh.vertices.push_back({position.cast<float>(), normal.cast<float>()});
-  };
-  for (int k = 0; k < facets; ++k) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const Vec3 here = rim(k);
-    const Vec3 next = rim(k + 1);
-    const Vec3 middle = rim(k + 0.5);
-    add_corner(here - Vec3::UnitZ(), smooth ? here : middle);
-    add_corner(next - Vec3::UnitZ(), smooth ? next : middle);
-    add_corner(next + Vec3::UnitZ(), smooth ? next : middle);
-    add_corner(here + Vec3::UnitZ(), smooth ? here : middle);
-    add_fan(mesh, first, 4);
-  }
-  for (double side : {-1.0, 1.0}) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    // counter-clockwise from outside
-    for (int k = 0; k < facets; ++k)
-      add_corner(rim(side * k) + side * Vec3::UnitZ(), side * Vec3::UnitZ());
-    add_fan(mesh, first, facets);
-  }
+  for (int k = 0; k < facets; ++k)
+    for (const Band& band : profile) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      const auto add = [&](int column, std::size_t end) {
+        const double angle = 2 * pi * column / facets;
+        const double facing = smooth ? angle : 2 * pi * (k + 0.5) / facets;
+        const double out = smooth ? band.out[end] : 0.5 * (band.out[0] + band.out[1]);
+        const double up = smooth ? band.up[end] : 0.5 * (band.up[0] + band.up[1]);
+        const Vec3 position(band.radius[end] * std::cos(angle), band.radius[end] * std::sin(angle),
+                            band.height[end]);
+        const Vec3 normal(out * std::cos(facing), out * std::sin(facing), up);
+        mesh.vertices.push_back({position.cast<float>(), normal.normalized().cast<float>()});
+      };
+      // counter-clockwise from outside; a triangle at the axis
+      add(k, 0);
+      if (band.radius[0] > 0) add(k + 1, 0);
+      if (band.radius[1] > 0) add(k + 1, 1);
+      add(k, 1);
+      add_fan(mesh, first, static_cast<int>(mesh.vertices.size() - first));
+    }
   return mesh;
+}
+
+}  // namespace
+
+Mesh ball_mesh() {
+  std::vector<Band> profile;
+  add_quarter(profile, 1, 0, true);
+  add_quarter(profile, 1, 0, false);
+  return turned_mesh(profile, true);
+}
+
+Mesh frustum_mesh(double top_radius, bool smooth) {
+  std::vector<Band> profile{straight(0, -1, 1, -1), straight(1, -1, top_radius, 1)};
+  if (top_radius > 0) profile.push_back(straight(top_radius, 1, 0, 1));
+  return turned_mesh(profile, smooth);
+}
+
+Mesh capsule_mesh(double radius, double half_length, bool smooth) {
+  std::vector<Band> profile;
+  add_quarter(profile, radius, -half_length, true);
+  profile.push_back(straight(radius, -half_length, radius, half_length));
+  add_quarter(profile, radius, half_length, false);
+  return turned_mesh(profile, smooth);
 }
 
 }  // namespace tw

@@ -24,7 +24,11 @@ Mesh facet_mesh(const Polyhedron& polyhedron);
 Mesh smooth_mesh(const Polyhedron& polyhedron);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
 Mesh facet_sphere_mesh();
-// A cylinder of radius 1 about z from -1 to 1, with 48 facets or, smooth, a round side.
-Mesh cylinder_mesh(bool smooth);
+// What follows is turned about z in 48 facets or, smooth, round.
+// A sphere of radius 1, smooth.
+Mesh ball_mesh();
+// From -1, with radius 1, to 1: a cylinder by a top radius of 1, a cone by one of 0.
+Mesh frustum_mesh(double top_radius, bool smooth);
+Mesh capsule_mesh(double radius, double half_length, bool smooth);
 
 }  // namespace tw

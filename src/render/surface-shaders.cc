@@ -17,7 +17,10 @@ flat out vec4 surface_color;
 void main() {
   vec4 p = vec4(position, 1);
   gl_Position = projection * vec4(dot(row_x, p), dot(row_y, p), dot(row_z, p), 1);
-  surface_normal = vec3(dot(row_x.xyz, normal), dot(row_y.xyz, normal), dot(row_z.xyz, normal));
+  // by the cofactors of the matrix, which may stretch
+  surface_normal = vec3(dot(cross(row_y.xyz, row_z.xyz), normal),
+                        dot(cross(row_z.xyz, row_x.xyz), normal),
+                        dot(cross(row_x.xyz, row_y.xyz), normal));
   surface_color = color;
 }
 )";

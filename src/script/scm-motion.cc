@@ -30,15 +30,24 @@ double ball_displacement(const Vec3& shift, const Vec3& turn, double radius) {
   return std::hypot(along, across + 2 * radius * std::sin(0.5 * angle));
 }
 
-// Points around both rims of a cylinder: the farthest of them is never farther than its surface.
-std::vector<Vec3> rim_points(const ConvexPart& part) {
+// Points on the surface of a round part, in its frame: the farthest is never farther than that.
+std::vector<Vec3> surface_points(const ConvexPart& part) {
   constexpr int around = 16;
   std::vector<Vec3> points;
   for (int i = 0; i < around; ++i) {
     const double angle = 2 * pi * i / around;
-    for (const double end : {-part.half_length, part.half_length})
-      points.push_back({part.radius * std::cos(angle), part.radius * std::sin(angle), end});
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    if (part.kind == PartKind::ellipsoid) {
+      const Vec3 up(0, std::cos(angle), std::sin(angle));
+      for (const Vec3& unit : {out, up}) points.push_back(part.semi_axes.cwiseProduct(unit));
+      continue;
+    }
+    points.push_back((part.radius + part.margin) * out - part.half_length * Vec3::UnitZ());
+    points.push_back((part.top_radius + part.margin) * out + part.half_length * Vec3::UnitZ());
   }
+  if (part.margin > 0)
+    for (const double end : {-1.0, 1.0})
+      points.push_back(end * (part.half_length + part.margin) * Vec3::UnitZ());
   return points;
 }
 
@@ -94,8 +103,8 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
     const Frame fa = a * part.placement, fb = b * part.placement;
     if (part.kind == PartKind::sphere)
       most = std::max(most, ball_displacement(fb.p - fa.p, turn, part.radius));
-    else if (part.kind == PartKind::cylinder)
-      for (const Vec3& rim : rim_points(part)) most = std::max(most, (fb * rim - fa * rim).norm());
+    else if (part.kind != PartKind::polyhedron)
+      for (const Vec3& x : surface_points(part)) most = std::max(most, (fb * x - fa * x).norm());
     else
       for (const Vec3& vertex : part.core->vertices())
         most = std::max(most, (fb * vertex - fa * vertex).norm());

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "geometry/shape.h"
 
+#include "import/solid-file.h"
+#include "script/file-names.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -22,8 +24,30 @@ TW_PRIMITIVE(cylinder, "%cylinder", (SCM radius, SCM length), "Return a cylinder
   return from_shape(make_cylinder(to_real(radius, "radius"), to_real(length, "length")));
 }
 
+TW_PRIMITIVE(capsule, "%capsule", (SCM radius, SCM length), "Return a capsule about z.") {
+  return from_shape(make_capsule(to_real(radius, "radius"), to_real(length, "length")));
+}
+
+TW_PRIMITIVE(cone, "%cone", (SCM radius, SCM height), "Return a cone about z.") {
+  return from_shape(make_cone(to_real(radius, "radius"), to_real(height, "height")));
+}
+
+TW_PRIMITIVE(ellipsoid, "%ellipsoid", (SCM a, SCM b, SCM c),
+             "Return an ellipsoid with semi-axes a, b, c.") {
+  return from_shape(make_ellipsoid(
+      {to_real(a, "semi-axis a"), to_real(b, "semi-axis b"), to_real(c, "semi-axis c")}));
+}
+
 TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.") {
   return from_shape(make_hull(to_points(points, "points")));
+}
+
+TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls),
+             "Return the shape of a mesh file.") {
+  const Vec3 factors = scm_is_real(scale) ? Vec3(Vec3::Constant(to_finite(scale, "scale")))
+                                          : to_vec3(scale, "scale");
+  if (!(factors.cwiseAbs().minCoeff() > 0)) throw BadValue{"scale", scale, "no factor of 0"};
+  return from_shape(read_solid(to_file_name(file, "the file"), factors, scm_is_true(hulls)));
 }
 
 TW_PRIMITIVE(half_space, "%half-space", (SCM normal, SCM offset),

@@ -28,11 +28,28 @@ Solid box(const Vec3& edges) {
   return solid;
 }
 
-Solid cylinder(double radius, double length) {
+namespace {
+
+Solid turned(SolidKind kind, double radius, double length) {
   Solid solid;
-  solid.kind = SolidKind::cylinder;
+  solid.kind = kind;
   solid.radius = radius;
   solid.length = length;
+  return solid;
+}
+
+}  // namespace
+
+Solid cylinder(double radius, double length) { return turned(SolidKind::cylinder, radius, length); }
+
+Solid capsule(double radius, double length) { return turned(SolidKind::capsule, radius, length); }
+
+Solid cone(double radius, double height) { return turned(SolidKind::cone, radius, height); }
+
+Solid ellipsoid(const Vec3& widths) {
+  Solid solid;
+  solid.kind = SolidKind::ellipsoid;
+  solid.edges = widths;
   return solid;
 }
 
@@ -63,6 +80,9 @@ ShapePtr shape_of(const Solid& solid) {
     case SolidKind::ball: return make_sphere(solid.radius);
     case SolidKind::box: return make_box(solid.edges);
     case SolidKind::cylinder: return make_cylinder(solid.radius, solid.length);
+    case SolidKind::capsule: return make_capsule(solid.radius, solid.length);
+    case SolidKind::cone: return make_cone(solid.radius, solid.length);
+    case SolidKind::ellipsoid: return make_ellipsoid(0.5 * solid.edges);
     case SolidKind::hull: return make_hull(solid.points);
     case SolidKind::half_space: break;
   }

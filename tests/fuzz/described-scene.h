@@ -18,14 +18,16 @@
 
 namespace tw::fuzz {
 
-enum class SolidKind { ball, box, cylinder, hull, half_space };
+enum class SolidKind { ball, box, cylinder, hull, half_space, capsule, cone, ellipsoid };
 
 struct Solid {
   SolidKind kind = SolidKind::ball;
-  double radius = 0, length = 0;  // m: ball (radius), cylinder (about z)
-  Vec3 edges = Vec3::Zero();      // m: box
-  std::vector<Vec3> points;       // m: hull
-  Vec3 normal = Vec3::UnitZ();    // half-space: solid where normal.x <= offset
+  // m: ball (radius), cylinder, capsule and cone (about z; the length of a capsule without its
+  // ends, the height of a cone)
+  double radius = 0, length = 0;
+  Vec3 edges = Vec3::Zero();    // m: box; ellipsoid: twice its semi-axes
+  std::vector<Vec3> points;     // m: hull
+  Vec3 normal = Vec3::UnitZ();  // half-space: solid where normal.x <= offset
   double offset = 0;
   Pose placement;  // not of half-spaces
 };
@@ -69,6 +71,9 @@ struct DescribedScene {
 Solid ball(double radius);
 Solid box(const Vec3& edges);
 Solid cylinder(double radius, double length);
+Solid capsule(double radius, double length);
+Solid cone(double radius, double height);
+Solid ellipsoid(const Vec3& widths);
 Solid hull(std::vector<Vec3> points);
 Solid half_space(const Vec3& normal, double offset);
 Solid placed(Solid solid, const Vec3& position, const Quat& orientation = Quat::Identity());

@@ -81,7 +81,8 @@ std::size_t Draft::add_fixed(const Solid& solid, const Vec3& position, const Qua
 }
 
 DescribedBody& Draft::add_moving(std::vector<Solid> solids, const Vec3& position) {
-  static const char* const names[] = {"ball", "box", "cylinder", "hull", "half-space"};
+  static const char* const names[] = {"ball",       "box",     "cylinder", "hull",
+                                      "half-space", "capsule", "cone",     "ellipsoid"};
   DescribedBody body;
   body.solids = std::move(solids);
   body.pose.p = position;
@@ -135,6 +136,22 @@ std::vector<Solid> Draft::shape(double diameter) {
     case 3: return {rock(d, whole(5, 8))};
     case 4: return {rock(d, whole(12, 24))};
     default: return union_shape(d);
+  }
+}
+
+Solid Draft::round_shape(double diameter) {
+  const double d = diameter, angle = random.real(0.15, pi / 2 - 0.15);
+  switch (random.below(4)) {
+    case 0: {
+      const double radius = 0.5 * d * random.real(0.1, 0.9);
+      return capsule(radius, d - 2 * radius);
+    }
+    case 1: return cone(0.5 * d * std::cos(angle), 0.75 * d * std::sin(angle));
+    case 2: {
+      const double y = random.real(0.2, 1), z = random.real(0.2, 1);
+      return ellipsoid(d * Vec3(1, y, z));
+    }
+    default: return cylinder(0.5 * d * std::cos(angle), d * std::sin(angle));
   }
 }
 

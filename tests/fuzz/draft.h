@@ -42,6 +42,8 @@ class Draft {
   std::vector<Solid> shape(double diameter);
   std::vector<Solid> union_shape(double diameter);
   Solid rock(double diameter, int points);
+  // A capsule, cone, ellipsoid or cylinder.
+  Solid round_shape(double diameter);
   // A rod, needle, plate or coin, thinner by 1:100 to 1:1000 than its diameter.
   Solid thin_shape(double diameter);
 

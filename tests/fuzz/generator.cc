@@ -26,6 +26,7 @@ constexpr Kind table[] = {
     {"arch", "an arch is hit by a block", draw_arch},
     {"cards", "a card house is hit by a block", draw_cards},
     {"ramp", "bodies slide and roll down a ramp, along the floor, against a wall", draw_ramp},
+    {"round", "capsules, cones, ellipsoids and cylinders among others fall into a pit", draw_round},
 };
 
 }  // namespace

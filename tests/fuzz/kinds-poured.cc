@@ -42,6 +42,17 @@ void draw_heap(Draft& draft) {
   draft.last(12);
 }
 
+void draw_round(Draft& draft) {
+  const double half = draft.size * draft.random.real(0.8, 2);
+  const int count = draft.whole(3, 14);
+  draft.add_pit(half, 20 * draft.size);
+  draft.pour(count, half, 0.1 * draft.size, 1.02 * draft.size, [&] {
+    const double size = draft.size * draft.log_uniform(0.3, 1);
+    return draft.chance(0.3) ? draft.shape(size) : std::vector<Solid>{draft.round_shape(size)};
+  });
+  draft.last(10);
+}
+
 void draw_thin(Draft& draft) {
   const double half = draft.size * draft.random.real(0.8, 1.6);
   const int count = draft.whole(2, 6);

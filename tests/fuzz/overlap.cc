@@ -47,8 +47,25 @@ void add_cylinder(Part& part) {
   }
 }
 
+// What turns about an axis: tangents of its rims, and across them; of a cone its lines, too.
+void add_cone(Part& part) {
+  const Quat& q = part.solid.placement.q;
+  const double r = part.solid.radius, h = part.solid.length;
+  part.normals.push_back(q * Vec3::UnitZ());
+  for (int i = 0; i < rim_corners; ++i) {
+    const double angle = 2 * pi * i / rim_corners;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    add_direction(part.edges, q * Vec3(-out.y(), out.x(), 0));
+    add_direction(part.edges, q * (r * out - h * Vec3::UnitZ()));
+    add_direction(part.normals, q * (h * out + r * Vec3::UnitZ()));
+  }
+}
+
 Vec3 extents_of(const Solid& solid) {
   switch (solid.kind) {
+    case SolidKind::capsule: return Vec3(0, 0, solid.length) + Vec3::Constant(2 * solid.radius);
+    case SolidKind::cone: return {2 * solid.radius, 2 * solid.radius, solid.length};
+    case SolidKind::ellipsoid: return solid.edges;
     case SolidKind::ball: return Vec3::Constant(2 * solid.radius);
     case SolidKind::box: return solid.edges;
     case SolidKind::cylinder: return {2 * solid.radius, 2 * solid.radius, solid.length};
@@ -74,6 +91,18 @@ Part part_of(const Solid& solid) {
     case SolidKind::cylinder:
       part.reach = std::hypot(solid.radius, 0.5 * solid.length);
       add_cylinder(part);
+      break;
+    case SolidKind::capsule:
+      part.reach = solid.radius + 0.5 * solid.length;
+      add_cylinder(part);
+      break;
+    case SolidKind::cone:
+      part.reach = std::max(std::hypot(solid.radius, 0.25 * solid.length), 0.75 * solid.length);
+      add_cone(part);
+      break;
+    case SolidKind::ellipsoid:
+      part.reach = 0.5 * solid.edges.maxCoeff();
+      for (int i = 0; i < 3; ++i) part.normals.push_back(solid.placement.q * Vec3::Unit(i));
       break;
     default:
       add_polyhedron(
@@ -109,12 +138,34 @@ struct Placed {
       if (radial > 0) p += Vec3(d.x(), d.y(), 0) * (solid.radius / radial);
       return map(solid.placement.q * p + solid.placement.p);
     }
+    if (solid.kind == SolidKind::capsule || solid.kind == SolidKind::cone ||
+        solid.kind == SolidKind::ellipsoid)
+      return map(solid.placement.q * round_support(solid.placement.q.conjugate() * local) +
+                 solid.placement.p);
     const Vec3* best = &part.corners.front();
     for (const Vec3& v : part.corners)
       if (v.dot(local) > best->dot(local)) best = &v;
     return map(*best);
   }
   double height(const Vec3& n) const { return n.dot(support(n)); }
+
+ private:
+  // Of a capsule, a cone or an ellipsoid, in its own frame.
+  Vec3 round_support(const Vec3& d) const {
+    const Solid& solid = part.solid;
+    const Vec3 along = solid.length * Vec3::UnitZ();
+    if (solid.kind == SolidKind::capsule)
+      return solid.radius * d.normalized() + (d.z() > 0 ? 0.5 : -0.5) * along;
+    if (solid.kind == SolidKind::ellipsoid) {
+      const Vec3 semi = 0.5 * solid.edges;
+      return semi.cwiseAbs2().cwiseProduct(d) / semi.cwiseProduct(d).norm();
+    }
+    const double across = std::hypot(d.x(), d.y());
+    if (0.75 * solid.length * d.z() > solid.radius * across - 0.25 * solid.length * d.z())
+      return 0.75 * along;
+    const Vec3 out = across > 0 ? Vec3(d.x() / across, d.y() / across, 0) : Vec3::UnitX();
+    return solid.radius * out - 0.25 * along;
+  }
 };
 
 ccd_vec3_t to_ccd(const Vec3& v) {
@@ -156,7 +207,8 @@ class LeastOverlap {
 
   // From what is round to corners and edges: the directions of features that the rest lacks.
   void try_axes_of_round(const Placed& round, const Placed& other) {
-    const bool is_ball = round.part.solid.kind == SolidKind::ball;
+    const SolidKind kind = round.part.solid.kind;
+    const bool is_ball = kind == SolidKind::ball || kind == SolidKind::ellipsoid;
     const Vec3 center = round.center();
     for (const Vec3& corner : other.part.corners) {
       const Vec3 way = other.map(corner) - center;
@@ -236,7 +288,8 @@ class LeastOverlap {
 };
 
 bool is_round(const Part& part) {
-  return part.solid.kind == SolidKind::ball || part.solid.kind == SolidKind::cylinder;
+  const SolidKind kind = part.solid.kind;
+  return kind != SolidKind::box && kind != SolidKind::hull && kind != SolidKind::half_space;
 }
 
 double below_plane(const Part& plane, const Frame& frame, const Part& part, const Frame& other) {

@@ -22,6 +22,12 @@ std::string text(const Solid& solid) {
              show(solid.edges.z()) + ")";
     case SolidKind::cylinder:
       return "(cylinder " + show(solid.radius) + " " + show(solid.length) + ")";
+    case SolidKind::capsule:
+      return "(capsule " + show(solid.radius) + " " + show(solid.length) + ")";
+    case SolidKind::cone: return "(cone " + show(solid.radius) + " " + show(solid.length) + ")";
+    case SolidKind::ellipsoid:
+      return "(ellipsoid " + show(0.5 * solid.edges.x()) + " " + show(0.5 * solid.edges.y()) + " " +
+             show(0.5 * solid.edges.z()) + ")";
     case SolidKind::half_space:
       return "(half-space " + text(solid.normal) + " " + show(solid.offset) + ")";
     case SolidKind::hull: break;

@@ -67,6 +67,132 @@ TEST(Rolling, sliding_ball_ends_at_five_sevenths) {
   EXPECT_NEAR(0.1 * s.angular_velocity.y(), s.velocity.x(), 1e-4 * s.velocity.x());
 }
 
+// A cone on its side rolls around its tip: the axis turns about the vertical at W, and the body
+// about the line where it touches at W cot(alpha), alpha half the angle at the tip.  Its axis stays
+// level to within alpha, and nothing brakes it.
+TEST(Rolling, a_cone_rolls_around_its_tip) {
+  const double radius = 0.1, height = 0.3, turn = 2;
+  const double slant = std::hypot(radius, height), sine = radius / slant, cosine = height / slant;
+  World world;
+  set_contact_for_all(world, 0, 0.8);
+  add_wall(world, Vec3::UnitZ(), 0);
+  // the tip at the origin, the line of touch along x: the axis points from the base to the tip
+  const Vec3 axis(-cosine, 0, -sine);
+  const Vec3 centroid = -0.75 * height * axis;
+  BodyDef def = body_of(make_cone(radius, height), centroid, Vec3::Zero());
+  def.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), axis);
+  def.angular_velocity = Vec3(-turn * cosine / sine, 0, 0);
+  def.velocity = def.angular_velocity.cross(centroid);
+  const BodyId cone = world.add_body(def);
+  const double duration = 3;
+  world.advance(duration);
+  const BodyState s = world.state(cone);
+  const Vec3 tip = s.position + s.orientation * Vec3(0, 0, 0.75 * height);
+  const double angle = turn * duration;
+  EXPECT_NEAR(tip.norm(), 0, 3e-3);
+  EXPECT_NEAR(s.angular_velocity.norm(), turn * cosine / sine, 5e-3 * turn * cosine / sine);
+  EXPECT_NEAR(std::remainder(std::atan2(s.position.y(), s.position.x()) - angle, 2 * pi), 0, 0.02);
+}
+
+TEST(Rolling, a_capsule_rolls_as_its_inertia_says) {
+  const double r = 0.1, angle = 0.2;
+  const ShapePtr shape = make_capsule(r, 0.3);
+  const MassProperties mass = shape->mass_properties();
+  const double a = g * std::sin(angle) / (1 + mass.inertia(2, 2) / (mass.volume * r * r));
+  const Descent run = run_down(shape, r, angle, 0.5, 2, rotation_by(Vec3(pi / 2, 0, 0)));
+  EXPECT_NEAR(run.speed, 2 * a, 1e-4 * 2 * a);
+  EXPECT_NEAR(run.moved, 2 * a, 1e-4 * 2 * a);
+}
+
+// Without friction the weight acts at the centre alone, and what an egg that lies on its side has
+// of energy stays as it rocks: its height is a function of its attitude.
+TEST(Rolling, an_egg_that_rocks_without_friction_keeps_its_energy) {
+  World world;
+  set_contact_for_all(world, 0, 0);
+  add_wall(world, Vec3::UnitZ(), 0);
+  const Vec3 semi(0.3, 0.2, 0.12);
+  const Quat tilt = rotation_by(Vec3(0.3, 0.2, 0));
+  const Vec3 up = tilt.conjugate() * Vec3::UnitZ();
+  BodyDef def = body_of(make_ellipsoid(semi), {0, 0, semi.cwiseProduct(up).norm()}, Vec3::Zero());
+  def.orientation = tilt;
+  const BodyId egg = world.add_body(def);
+  world.advance(0.5);  // until the weight rests on it
+  const double before = world.total_energy();
+  for (int k = 2; k < 20; ++k) {
+    world.advance(0.5 * k);
+    const BodyState s = world.state(egg);
+    const Vec3 n = s.orientation.conjugate() * Vec3::UnitZ();
+    EXPECT_NEAR(s.position.z(), semi.cwiseProduct(n).norm(), 2e-4);
+    EXPECT_EQ(s.position.x(), 0);
+  }
+  EXPECT_NEAR(world.total_energy(), before, 1e-3 * before);
+}
+
+void set_resistance(World& world, double rolling, double spinning) {
+  ContactSettings settings;
+  settings.rolling_friction = rolling;
+  settings.spinning_friction = spinning;
+  world.set_contact({}, {}, settings);
+}
+
+// m a = -F and I a/r = F r - rho m g: a = rho g/r /(1 + I/(m r^2)).
+TEST(Rolling, rolling_friction_stops_a_ball_and_a_drum_where_the_closed_form_says) {
+  const double r = 0.1, v = 1, rho = 1e-3;
+  for (const auto& [shape, beta] :
+       {std::pair(make_sphere(r), 0.4), std::pair(make_cylinder(r, 0.3), 0.5)}) {
+    World world;
+    set_contact_for_all(world, 0, 0.5);
+    set_resistance(world, rho, 0);
+    add_wall(world, Vec3::UnitZ(), 0);
+    BodyDef def = body_of(shape, {0, 0, r}, {v, 0, 0});
+    def.orientation = rotation_by(Vec3(pi / 2, 0, 0));
+    def.angular_velocity = {0, v / r, 0};
+    const BodyId body = world.add_body(def);
+    const double a = rho * g / r / (1 + beta), stop = v / a;
+    world.advance(0.5 * stop);
+    EXPECT_NEAR(world.state(body).velocity.x(), 0.5 * v, 1e-3 * v);
+    world.advance(1.5 * stop);
+    EXPECT_NEAR(world.state(body).position.x(), 0.5 * v * stop, 1e-3 * v * stop);
+    EXPECT_LT(world.state(body).velocity.norm(), 1e-4 * v);
+  }
+}
+
+// I w' = -rho m g.
+TEST(Rolling, spinning_friction_stops_a_ball_that_spins) {
+  const double r = 0.1, w = 20, rho = 2e-3;
+  World world;
+  set_contact_for_all(world, 0, 0.5);
+  set_resistance(world, 0, rho);
+  add_wall(world, Vec3::UnitZ(), 0);
+  const BodyId ball = add_ball(world, r, {0, 0, r}, Vec3::Zero(), {0, 0, w});
+  const double stop = w * 0.4 * r * r / (rho * g);
+  world.advance(0.25 * stop);
+  EXPECT_NEAR(world.state(ball).angular_velocity.z(), 0.75 * w, 2e-3 * w);
+  world.advance(1.2 * stop);
+  EXPECT_LT(world.state(ball).angular_velocity.norm(), 1e-3 * w);
+}
+
+// It holds up to a slope of rho/r.
+TEST(Rolling, rolling_friction_holds_a_ball_on_a_slope) {
+  for (const double share : {0.5, 2.0}) {
+    const double r = 0.1, rho = 2e-3, angle = share * rho / r;
+    World world;
+    set_contact_for_all(world, 0, 0.5);
+    set_resistance(world, rho, 0);
+    const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+    add_wall(world, normal, 0);
+    const BodyId ball = add_ball(world, r, r * normal, Vec3::Zero());
+    world.advance(4);
+    const double slid = (world.state(ball).position - r * normal).norm();
+    const double a = g * (std::sin(angle) - rho / r * std::cos(angle)) / 1.4;
+    if (share < 1) {
+      EXPECT_LT(slid, 1e-3 * r);
+    } else {
+      EXPECT_NEAR(world.state(ball).velocity.norm(), 4 * a, 2e-2 * 4 * a);
+    }
+  }
+}
+
 TEST(Rolling, ball_keeps_rolling) {
   World world;
   set_contact_for_all(world, 0, 0.5);

@@ -49,13 +49,29 @@ TEST(Mesh, a_facet_sphere_is_nearly_a_ball) {
 
 TEST(Mesh, a_cylinder_has_48_facets_and_its_caps_are_flat) {
   for (bool smooth : {false, true}) {
-    const Mesh cylinder = cylinder_mesh(smooth);
-    // two triangles a facet, 46 a cap
-    EXPECT_EQ(cylinder.indices.size(), 3u * (2 * 48 + 2 * 46));
+    const Mesh cylinder = frustum_mesh(1, smooth);
+    // two triangles a facet, and one of either cap
+    EXPECT_EQ(cylinder.indices.size(), 3u * 4 * 48);
     EXPECT_NEAR(volume(cylinder), 2 * 24 * std::sin(2 * pi / 48), 1e-5);
     expect_outward_unit_normals(cylinder);
     for (const Mesh::Vertex& vertex : cylinder.vertices)
       EXPECT_TRUE(vertex.normal.z() == 0 || std::abs(vertex.normal.z()) == 1);
+  }
+}
+
+// As much less than the solid as 48 sides and 24 steps from pole to pole leave out.
+TEST(Mesh, balls_cones_and_capsules_have_their_volumes) {
+  const Mesh ball = ball_mesh();
+  EXPECT_NEAR(volume(ball), 4 * pi / 3, 0.01 * 4 * pi / 3);
+  expect_outward_unit_normals(ball);
+  for (bool smooth : {false, true}) {
+    const Mesh cone = frustum_mesh(0, smooth);
+    EXPECT_NEAR(volume(cone), 2.0 / 3 * 24 * std::sin(2 * pi / 48), 1e-5);
+    expect_outward_unit_normals(cone);
+    const Mesh capsule = capsule_mesh(0.5, 1, smooth);
+    const double exact = pi * (0.5 + 0.5 / 3);
+    EXPECT_NEAR(volume(capsule), exact, 0.01 * exact);
+    expect_outward_unit_normals(capsule);
   }
 }
 

@@ -109,6 +109,8 @@
   (one-of-these `(sphere ,(a-length))
                 `(box ,(a-length) ,(a-length) ,(a-length))
                 `(cylinder ,(a-length) ,(a-length))
+                `(,(one-of '(capsule cone)) ,(a-length) ,(a-length))
+                `(ellipsoid ,(a-length) ,(a-length) ,(a-length))
                 `(half-space #(0 0 1) ,(short (uniform -1 0)))
                 `(union (sphere ,(a-length)) (placed (box 0.2 0.2 0.2) #:position ,(a-vector)))
                 `(convex (list ,@(map (lambda _ (a-vector)) (iota (+ 4 (draw 6))))))

@@ -14,6 +14,20 @@
   (let ((inertia (shape-inertia (cylinder 0.5 2))))
     (< (vector-ref (vector-ref inertia 2) 2) (vector-ref (vector-ref inertia 0) 0))))
 (test-message "negative length" "length.* is -1" (cylinder 1 -1))
+(test-assert "a capsule is a cylinder and a ball"
+  (close? (+ (* 2 pi) (* 4/3 pi)) (shape-volume (capsule 1 2)) 1e-14))
+(test-assert "a cone's volume" (close? (* 4 pi) (shape-volume (cone 2 3)) 1e-14))
+(test-assert "a cone's origin is its centroid" (close? #(0 0 0) (shape-centroid (cone 2 3)) 1e-15))
+(test-assert "an ellipsoid's volume" (close? (* 8 pi) (shape-volume (ellipsoid 1 2 3)) 1e-14))
+(test-assert "how far shapes reach"
+  (close? #(2.0 2.25 3.0)
+          (vector (shape-radius (capsule 1 2)) (shape-radius (cone 1 3)) (shape-radius (ellipsoid 1 2 3)))
+          1e-15))
+(test-equal "new shapes name themselves" "(#<shape capsule> #<shape cone> #<shape ellipsoid>)"
+  (format #f "~s" (list (capsule 1 1) (cone 1 1) (ellipsoid 1 1 1))))
+(test-message "a capsule without length" "length of a capsule is 0" (capsule 1 0))
+(test-message "a flat cone" "height of a cone is -1" (cone 1 -1))
+(test-message "a flat ellipsoid" "z semi-axis of an ellipsoid is 0" (ellipsoid 1 1 0))
 (test-assert "a box's inertia at density 1"
   (close? #(#(50.0 0.0 0.0) #(0.0 40.0 0.0) #(0.0 0.0 26.0)) (shape-inertia (box 2 3 4)) 1e-13))
 (test-assert "a hull's volume"

@@ -105,6 +105,14 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     c.law.ct = draw.in(5, 10);
     c.law.mu = kind.regime == Regime::sticking ? 1000 : 0.4;
     c.law.law = kind.law;
+    // where n keeps still the derivative of the resistance to rolling is exact, too
+    const bool flat =
+        c.feature == ContactFeature::plane || c.feature == ContactFeature::tangent_plane;
+    if (flat && pair[0] % 2 == 0) {
+      c.law.rolling = 0.02;
+      c.law.spinning = 0.01;
+      c.law.slow_turn = 0.3;
+    }
     c.share = 0.5;
     c.stretch = draw.vec(0.01);
 
@@ -141,6 +149,17 @@ GroupStart random_group(Draw& draw, const Case& kind) {
       c.other_direction = b.q.conjugate() * (a.q * inward.cross(tangent));
       center += b.q.conjugate() * (a.q * (c.rim * inward));
     }
+    if (c.feature == ContactFeature::tangent_plane) {
+      // the centre of b's ellipsoid over the core point, which is its lowest
+      const Vec3 semi_axes(draw.in(0.1, 0.3), draw.in(0.2, 0.5), draw.in(0.4, 0.8));
+      const Mat3 axes = draw.turn().toRotationMatrix() * semi_axes.asDiagonal();
+      const Mat3 squares = axes * axes.transpose();
+      c.direction = squares.diagonal();
+      c.other_direction = {squares(1, 2), squares(0, 2), squares(0, 1)};
+      const Vec3 m = b.q.conjugate() * (a.q * n);
+      center += squares * m / std::sqrt(m.dot(squares * m));
+      c.radius_a = c.radius_b = 0;
+    }
     c.normal = n;
     const double radii = c.radius_b + (c.feature == ContactFeature::plane ? 0 : c.radius_a);
     c.point_a = a.q.conjugate() * (core - a.p) - (gap + radii) * n;
@@ -149,11 +168,12 @@ GroupStart random_group(Draw& draw, const Case& kind) {
       c.point_a += 0.3 * c.direction;
       c.point_b = center;
     }
+    if (c.feature == ContactFeature::tangent_plane) c.point_b = center;
     if (c.feature == ContactFeature::crossing) {
       c.point_a += 0.3 * c.direction;
       c.point_b += 0.2 * c.other_direction;
     }
-    if (c.feature == ContactFeature::plane) c.stretch -= n * n.dot(c.stretch);
+    if (flat) c.stretch -= n * n.dot(c.stretch);
     start.contacts.push_back(c);
   }
   // a spring, and a hold between two that are in contact, too
@@ -276,7 +296,7 @@ TEST_P(GroupSystemTest, time_slope_is_that_of_the_outside_motion_to_1e_6) {
 
 constexpr ContactFeature features[] = {ContactFeature::plane, ContactFeature::line,
                                        ContactFeature::point, ContactFeature::crossing,
-                                       ContactFeature::rim};
+                                       ContactFeature::rim,   ContactFeature::tangent_plane};
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;

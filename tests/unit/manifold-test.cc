@@ -62,7 +62,8 @@ double gap_by_feature(const ManifoldPoint& p) {
       return (r - p.direction * p.direction.dot(r)).norm() - p.reference_radius - p.radius;
     case ReferenceFeature::point: break;
     case ReferenceFeature::crossing:
-    case ReferenceFeature::rim: ADD_FAILURE() << "of cylinders alone"; break;
+    case ReferenceFeature::rim:
+    case ReferenceFeature::tangent_plane: ADD_FAILURE() << "of round shapes alone"; break;
   }
   return r.norm() - p.reference_radius - p.radius;
 }

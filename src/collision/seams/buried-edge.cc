@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "collision/cylinder-point.h"
+#include "collision/ellipsoid-point.h"
+#include "collision/frustum-point.h"
 #include "collision/manifold-parts.h"
 #include "collision/nearest-to-point.h"
 #include "collision/seams/seams.h"
@@ -37,15 +38,15 @@ Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
     if (length <= part.radius) return {point, length - part.radius, outward};
     return {world.p + part.radius * outward, length - part.radius, outward};
   }
-  if (part.kind == PartKind::cylinder) {
-    const NearestOnCylinder near =
-        nearest_on_cylinder(part.radius, part.half_length, world.to_local(point));
+  const auto nearest = [&](const auto& near) -> Nearest {
     return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance,
             world.R * near.normal};
-  }
-  const NearestToPoint near = nearest_to_point(*part.core, world.to_local(point));
-  return {near.distance > 0 ? Vec3(world * near.point) : point, near.distance,
-          world.R * near.normal};
+  };
+  if (part.kind == PartKind::frustum)
+    return nearest(nearest_on_frustum(part, world.to_local(point)));
+  if (part.kind == PartKind::ellipsoid)
+    return nearest(nearest_on_ellipsoid(part.semi_axes, world.to_local(point)));
+  return nearest(nearest_to_point(*part.core, world.to_local(point)));
 }
 
 // Whether a face plane of a polyhedron proves that the point is farther from it than this.
@@ -108,7 +109,7 @@ std::vector<Vec3> along_edges(const Polyhedron& core, const Vec3& point, const V
   return points;
 }
 
-// Whether a ball or a cylinder comes out of its neighbours near a point of its surface that they
+// Whether a round part comes out of its neighbours near a point of its surface that they
 // hold, with nearly this normal: the two make a valley there, and what presses in it is a little
 // way inside both.
 bool comes_out_beside(const ConvexPart& part, const Frame& frame, const Vec3& point,

@@ -13,11 +13,11 @@ namespace {
 double add(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const PartKind first = seam.first().kind, second = seam.second().kind;
   const auto has_core = [](PartKind kind) {
-    return kind == PartKind::polyhedron || kind == PartKind::cylinder;
+    return kind == PartKind::polyhedron || kind == PartKind::frustum || kind == PartKind::ellipsoid;
   };
   if (first == PartKind::polyhedron && second == PartKind::polyhedron)
     return polyhedra_at_seam(seam, out);
-  if (has_core(first) && has_core(second)) return cylinders_at_seam(seam, out);
+  if (has_core(first) && has_core(second)) return round_at_seam(seam, out);
   const std::size_t from = out.size();
   part_manifold(seam.first(), seam.a.frame, seam.second(), seam.b.frame, seam.reach, seam.choice,
                 seam.pair, out);

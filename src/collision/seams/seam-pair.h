@@ -57,9 +57,9 @@ struct SeamPair {
   void remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const;
 };
 
-// Two polyhedra; a polyhedron and a cylinder or two cylinders.  They return the distance, with all
-// ghosts, or beyond the reach a lower bound of it.
+// Two polyhedra; a frustum or ellipsoid and a polyhedron or another of these.  They return the
+// distance, with all ghosts, or beyond the reach a lower bound of it.
 double polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
-double cylinders_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
+double round_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 
 }  // namespace tw

@@ -28,7 +28,7 @@ struct SeamNeighbour {
 // has there.  A body with a positive distance to them all keeps its nearest contact: if c is its
 // point nearest to the part, then Q is nearer to c than the part is.  The normal of a face is that
 // of a ghost only where the face is denied all around the point too (an inner wall, not the bottom
-// of a valley), and that of a ball or cylinder only where its surface does not come out of the
+// of a valley), and that of a round part only where its surface does not come out of the
 // neighbours near by (the crease between a ball and a bar is a valley).
 //
 // `size` (m) is that of the bodies in contact: points within 1e-5 of it are the same point, and
@@ -46,9 +46,9 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
 // Where bodies overlap a little the axis of least depth may be that of a buried wall, while another
 // axis supports.  Then the points are those of the exposed edges that lie deepest in the other
 // polyhedron, and its vertices under the face that they leave the ground by (exposed-edges.h,
-// seam-polyhedra.cc).  In a valley all slopes hold a vertex (valley.h).  A cylinder is scaled down
-// until it is apart: what is nearest then is no ghost (see buried_edge), and has its depth along
-// that normal.
+// seam-polyhedra.cc).  In a valley all slopes hold a vertex (valley.h).  A round part is scaled
+// down until it is apart: what is nearest then is no ghost (see buried_edge), and has its depth
+// along that normal.
 double manifold_at_seams(const Shape& a, const Frame& frame_a,
                          const std::vector<SeamNeighbour>& around_a, const Shape& b,
                          const Frame& frame_b, const std::vector<SeamNeighbour>& around_b,

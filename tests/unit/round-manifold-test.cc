@@ -1,4 +1,4 @@
-// Contact manifolds of cylinders: lying, standing, rolling, on edges and on each other.
+// Contact manifolds of round shapes: lying, standing, rolling, on edges and on each other.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "collision/manifold.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
+#include "groups/followed-contact.h"
 #include "integrate/group-arc.h"
 #include "integrate/standing.h"
 
@@ -31,7 +32,8 @@ double gap_by_feature(const ManifoldPoint& p) {
   const Vec3 r = p.core_point - p.reference_point;
   const Vec3 across = r - p.direction * p.direction.dot(r);
   const double radii = p.reference_radius + p.radius;
-  if (p.kind == ReferenceFeature::plane) return p.normal.dot(r) - p.radius;
+  if (p.kind == ReferenceFeature::plane || p.kind == ReferenceFeature::tangent_plane)
+    return p.normal.dot(r) - p.radius;
   if (p.kind == ReferenceFeature::rim || p.kind == ReferenceFeature::crossing) {
     Vec3 line = p.other_direction;
     if (p.kind == ReferenceFeature::rim) {
@@ -46,13 +48,19 @@ double gap_by_feature(const ManifoldPoint& p) {
 
 const ShapePtr ground = make_half_space({0, 0, 1}, 0);
 
-TEST(CylinderManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_from_its_features) {
+TEST(RoundManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_from_its_features) {
   Random random(1);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   zoo.push_back(make_sphere(0.4));
   zoo.push_back(make_half_space({1, 2, 3}, 0.1));
-  const std::vector<ShapePtr> round = {make_cylinder(0.5, 1), make_cylinder(0.5, 0.05),
-                                       make_cylinder(0.03, 1.5)};
+  const std::vector<ShapePtr> round = {make_cylinder(0.5, 1),
+                                       make_cylinder(0.5, 0.05),
+                                       make_cylinder(0.03, 1.5),
+                                       make_capsule(0.2, 1),
+                                       make_cone(0.5, 1),
+                                       make_cone(0.05, 1),
+                                       make_ellipsoid({0.5, 0.3, 0.2}),
+                                       make_ellipsoid({0.6, 0.6, 0.1})};
   zoo.insert(zoo.end(), round.begin(), round.end());
   int poses = 0;
   for (int i = 0; i < 100; ++i)
@@ -69,18 +77,22 @@ TEST(CylinderManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_fr
         for (bool swap : {false, true}) {
           const Points points = swap ? manifold_of(b, frame_b, a, frame_a, 0.01)
                                      : manifold_of(a, frame_a, b, frame_b, 0.01);
-          ASSERT_FALSE(points.empty());
+          ASSERT_FALSE(points.empty())
+              << a->kind_name() << " " << b->kind_name() << " at " << s.distance;
           ASSERT_LE(points.size(), patch::most_points);
           double least = 1e300;
           std::set<std::uint64_t> names;
           for (const ManifoldPoint& p : points) {
             least = std::min(least, p.gap);
             names.insert(p.feature);
-            ASSERT_NEAR(p.gap, gap_by_feature(p), 1e-10);
-            ASSERT_GT((p.reference_is_a != swap ? 1 : -1) * p.normal.dot(s.normal), 0.99);
+            ASSERT_NEAR(p.gap, gap_by_feature(p), 1e-10) << a->kind_name() << " " << b->kind_name();
+            ASSERT_GT((p.reference_is_a != swap ? 1 : -1) * p.normal.dot(s.normal), 0.99)
+                << a->kind_name() << " " << b->kind_name() << " at " << s.distance << " by "
+                << static_cast<int>(p.kind);
           }
           ASSERT_EQ(names.size(), points.size());
-          ASSERT_NEAR(least, s.distance, 2e-3 * std::abs(s.distance) + 5e-6);
+          ASSERT_NEAR(least, s.distance, 2e-3 * std::abs(s.distance) + 5e-6)
+              << a->kind_name() << " " << b->kind_name();
           ++poses;
         }
       }
@@ -234,17 +246,8 @@ double worst_gap(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, con
   member.v = v;
   member.L = w;
   start.members = {member};
-  GroupContact c;
+  GroupContact c = followed_contact(p, frame_a, frame_b, b->parts()[0]);
   c.a = -1;
-  c.feature = static_cast<ContactFeature>(p.kind);
-  c.normal = frame_a.R.transpose() * p.normal;
-  c.direction = frame_a.R.transpose() * p.direction;
-  c.other_direction = frame_b.R.transpose() * p.other_direction;
-  c.point_a = frame_a.to_local(p.reference_point);
-  c.point_b = frame_b.to_local(kind == ReferenceFeature::rim ? p.rim_center : p.core_point);
-  c.radius_a = p.reference_radius;
-  c.radius_b = p.radius;
-  c.rim = p.rim;
   start.contacts = {c};
   GroupArc arc(start);
   arc.extend(start.end);
@@ -284,6 +287,27 @@ TEST(CylinderManifold, where_sides_edges_and_rims_cross_the_gap_stays_that_of_th
   const Vec3 spin = 20 * (tilt * Vec3::UnitZ());
   EXPECT_LT(worst(rod, coin, tilt, w, ReferenceFeature::rim), 1e-9);
   EXPECT_LT(worst(rod, coin, tilt, spin, ReferenceFeature::rim), 1e-9);
+}
+
+// A ball in the place of the ellipsoid would miss half the difference of its two radii of curvature
+// times the square of the angle it rolls by: 4e-4 m.
+TEST(RoundManifold, an_ellipsoid_that_rolls_on_a_plane_keeps_its_gap) {
+  Random random(5);
+  const ShapePtr table = make_box({4, 4, 1}), disc = make_cylinder(2, 0.1);
+  for (const ShapePtr& egg : {make_ellipsoid({0.5, 0.3, 0.2}), make_ellipsoid({0.1, 0.1, 0.5}),
+                              place_shape(make_ellipsoid({0.3, 0.4, 0.1}),
+                                          Pose{{0.1, 0.2, 0.3}, rotation_by({1, 2, 3})})})
+    for (int i = 0; i < 20; ++i)
+      for (const ShapePtr& under : {ground, table, disc}) {
+        Frame frame = random_frame(random, 0.1);
+        frame.p.z() += 3;
+        const Separation s = separation(*under, Frame(), *egg, frame);
+        frame.p.z() -= s.distance - 1e-4;
+        const Vec3 spin = 5 * random_direction(random);
+        EXPECT_LT(worst_gap(under, Frame(), egg, frame, {0.1, 0.2, 0.3}, spin,
+                            ReferenceFeature::tangent_plane),
+                  1e-9);
+      }
 }
 
 TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {

@@ -1,4 +1,4 @@
-// A cylinder at a seam.
+// A frustum or an ellipsoid at a seam.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 
@@ -35,23 +35,22 @@ bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
          std::any_of(others.begin(), others.end(), held_by);
 }
 
-// What is nearest with a cylinder scaled down, where the neighbours of a (or of b) bury the axis of
-// least depth.
+// What is nearest with a round part scaled down, where the neighbours of a (or of b) bury the axis
+// of least depth.
 void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out) {
   const ConvexPart& first = seam.first();
   const ConvexPart& second = seam.second();
-  if ((of_a ? second : first).kind != PartKind::cylinder) return;
+  if ((of_a ? second : first).kind == PartKind::polyhedron) return;
   const std::size_t from = out.size();
   for (double factor : seam::shrinking) {
     SupportCore core_a(first, seam.a.frame * first.placement);
     SupportCore core_b(second, seam.b.frame * second.placement);
     SupportCore& scaled = of_a ? core_b : core_a;
-    scaled.radius *= factor;
-    scaled.half_length *= factor;
+    scaled.scale(factor);
     RoundDistance near = round_distance(core_a, core_b);
     if (!(near.distance > 0)) continue;
     if (buries(seam, of_a, near)) return;
-    // the same point of the cylinder itself
+    // the same point of the part itself
     Vec3& point = of_a ? near.point_b : near.point_a;
     point = scaled.place.p + (point - scaled.place.p) / factor;
     near.distance = near.normal.dot(near.point_b - near.point_a);
@@ -67,7 +66,7 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
 
 }  // namespace
 
-double cylinders_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const ConvexPart& first = seam.first();
   const ConvexPart& second = seam.second();
   const std::size_t from = out.size();

@@ -1,6 +1,6 @@
-// A cylinder on a plane.
+// A frustum on a plane.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/cylinder-plane.h"
+#include "collision/frustum-plane.h"
 
 #include <algorithm>
 
@@ -32,10 +32,11 @@ void emit(const Found& found, const Ground& ground, FeatureMode mode, ManifoldPo
   out.push_back(p);
 }
 
-void lie(const PlacedCylinder& c, const Ground& ground, double rolling, const Vec3& down,
-         double reach, const ManifoldPoint& p, std::vector<ManifoldPoint>& out) {
-  const Vec3 tail = c.center - c.half_length * c.axis + c.radius * down;
-  const Vec3 along = 2 * c.half_length * c.axis;
+void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double reach,
+         const ManifoldPoint& p, std::vector<ManifoldPoint>& out) {
+  const double widening = c.top_radius - c.bottom_radius;
+  const Vec3 tail = c.end(false) + c.bottom_radius * tilt.down - c.margin * ground.normal;
+  const Vec3 along = 2 * c.half_length * c.axis + widening * tilt.down;
   // the part of the lowest line over the outline; its ends are named by what cuts them
   double from = 0;
   double to = 1;
@@ -52,14 +53,15 @@ void lie(const PlacedCylinder& c, const Ground& ground, double rolling, const Ve
     } else if (rise < 0 && edge < to) {
       to = edge;
       name_to = number;
-    } else if (rise == 0 && start < -slack * c.radius) {
+    } else if (rise == 0 && start < -slack * c.widest()) {
       return;
     }
     ++number;
   }
   if (from > to) return;
   const auto add = [&](double t, std::uint64_t name) {
-    Found found{{tail + t * along, 0, name}, rolling};
+    Found found{{tail + t * along, 0, name},
+                c.rolling_radius(c.bottom_radius + t * widening, tilt)};
     found.place.gap = ground.normal.dot(found.place.point - ground.point);
     if (found.place.gap <= reach) emit(found, ground, FeatureMode::lying, p, out);
   };
@@ -67,21 +69,21 @@ void lie(const PlacedCylinder& c, const Ground& ground, double rolling, const Ve
   if (to > from) add(to, name_to);
 }
 
-void stand(const PlacedCylinder& c, const Ground& ground, double rolling, const Vec3& down,
+void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt& tilt,
            double reach, const ManifoldPoint& p, std::vector<ManifoldPoint>& out) {
   thread_local std::vector<ClipCorner> polygon;
   thread_local std::vector<FacePoint> points;
-  const double end = ground.normal.dot(c.axis) > 0 ? -1 : 1;
-  const Vec3 cap = c.center + end * c.half_length * c.axis;
-  const Vec3 beside = c.axis.cross(down);
+  const double radius = c.end_radius(on_top);
+  const Vec3 cap = c.end(on_top);
+  const Vec3 beside = c.axis.cross(tilt.down);
   polygon.clear();
   for (int k = 0; k < patch::rim_points; ++k) {
     const double angle = 2 * pi * k / patch::rim_points;
-    const Vec3 point = cap + c.radius * (std::cos(angle) * down + std::sin(angle) * beside);
+    const Vec3 point = cap + radius * (std::cos(angle) * tilt.down + std::sin(angle) * beside);
     polygon.push_back({point, ground.normal.dot(point - ground.point), k});
   }
   for (std::size_t i = 0; i < ground.sides.size() && !polygon.empty(); ++i)
-    clip_by_side(polygon, ground.sides[i], static_cast<int>(i), slack * c.radius);
+    clip_by_side(polygon, ground.sides[i], static_cast<int>(i), slack * radius);
   // names: a point of the rim by its number; a cut by the two edges or sides that meet
   points.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -97,40 +99,50 @@ void stand(const PlacedCylinder& c, const Ground& ground, double rolling, const 
   }
   thin_face_points(points, patch::most_points);
   for (const FacePoint& point : points) {
-    // the lowest rolls, the others are fixed in the cylinder
-    const bool lowest = rolling > 0 && point.key == 0;
-    emit({point, lowest ? rolling : 0}, ground,
-         rolling > 0 ? FeatureMode::rim : FeatureMode::standing, p, out);
+    // the lowest rolls, the others are fixed in the frustum
+    const bool lowest = !tilt.upright() && point.key == 0;
+    emit({point, lowest ? c.rolling_radius(radius, tilt) : 0}, ground,
+         tilt.upright() ? FeatureMode::standing : FeatureMode::rim, p, out);
   }
 }
 
 }  // namespace
 
-PlacedCylinder::PlacedCylinder(const ConvexPart& part, const Frame& frame)
-    : radius(part.radius), half_length(part.half_length) {
+PlacedFrustum::PlacedFrustum(const ConvexPart& part, const Frame& frame)
+    : bottom_radius(part.radius),
+      top_radius(part.top_radius),
+      half_length(part.half_length),
+      margin(part.margin) {
   const Frame world = frame * part.placement;
   center = world.p;
   axis = world.R.col(2);
   across = world.R.col(0);
 }
 
-double PlacedCylinder::rolling_radius(const Vec3& normal, Vec3& down) const {
-  const Vec3 square = normal - axis.dot(normal) * axis;
-  const double sine = square.norm();
-  if (sine < patch::standing_flat) {
-    down = across;
-    return 0;
-  }
-  down = -square / sine;
-  return radius / sine;
+double PlacedFrustum::radius_at(const Vec3& point) const {
+  const double up = 0.5 + 0.5 * axis.dot(point - center) / half_length;
+  return bottom_radius + std::clamp(up, 0.0, 1.0) * (top_radius - bottom_radius);
 }
 
-void cylinder_on_ground(const PlacedCylinder& cylinder, const Ground& ground, double reach,
-                        ManifoldPoint p, std::vector<ManifoldPoint>& out) {
-  Vec3 down;
-  const double rolling = cylinder.rolling_radius(ground.normal, down);
-  const bool stands = rolling == 0 || cylinder.radius < patch::standing * rolling;
-  (stands ? stand : lie)(cylinder, ground, rolling, down, reach, p, out);
+Tilt PlacedFrustum::tilt(const Vec3& normal) const {
+  const Vec3 square = normal - axis.dot(normal) * axis;
+  const double sine = square.norm();
+  if (sine < patch::standing_flat) return {across, 0};
+  return {-square / sine, sine};
+}
+
+void frustum_on_ground(const PlacedFrustum& frustum, const Ground& ground, double reach,
+                       const ManifoldPoint& p, std::vector<ManifoldPoint>& out) {
+  const Tilt tilt = frustum.tilt(ground.normal);
+  const bool on_top = !(ground.normal.dot(frustum.axis) > 0);
+  const double radius = frustum.end_radius(on_top);
+  // a tip lies however steeply
+  const bool stands =
+      radius > 0 && (tilt.upright() || radius < patch::standing * (radius / tilt.sine));
+  if (stands)
+    stand(frustum, on_top, ground, tilt, reach, p, out);
+  else
+    lie(frustum, ground, tilt, reach, p, out);
 }
 
 }  // namespace tw

@@ -1,16 +1,21 @@
-// Contact manifolds of cylinders.
+// Contact manifolds of frustums: cylinders, cones, capsules.
 //
 // Which features meet is read off the axis of least distance: along a cap's normal the cap does,
-// square to the axis the side does, else the rim.  What crosses runs along both (group-arc.h): a
-// side or an edge and another side are two lines, with a rim they are a line and a circle.
+// along that of the side the side does, else a rim, or an end without one: a tip or the round end
+// of a capsule, which are balls.  What crosses runs along both (group-arc.h): a side or an edge and
+// another side are two lines, with a rim they are a line and a circle.
+//
+// The side of a cone is that of the cylinder that osculates it where it touches: its axis is
+// parallel to the generatrix there.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <tuple>
 
 #include "base/constants.h"
-#include "collision/cylinder-plane.h"
-#include "collision/cylinder-point.h"
 #include "collision/face-contact.h"
+#include "collision/frustum-plane.h"
+#include "collision/frustum-point.h"
 #include "collision/separation.h"
 
 namespace tw {
@@ -55,11 +60,50 @@ bool face_ground(const View& v, Ground& ground) {
   return true;
 }
 
-// The cap of a cylinder that the normal is next to.
+// The side of a frustum where a point of it is, as a cylinder: unit axis, middle.
+struct SideLine {
+  Vec3 center, axis;
+  double radius, half_length;
+
+  Vec3 tail() const { return center - half_length * axis; }
+  Vec3 along() const { return 2 * half_length * axis; }
+};
+
+SideLine side_line(const ConvexPart& part, const Frame& frame, const Vec3& point) {
+  const PlacedFrustum c(part, frame);
+  if (c.bottom_radius == c.top_radius)
+    return {c.center, c.axis, c.bottom_radius + c.margin, c.half_length};
+  const Vec3 from_axis = point - c.center - c.axis * c.axis.dot(point - c.center);
+  const double height = from_axis.norm();
+  const Vec3 out = height > 0 ? Vec3(from_axis / height) : c.across;
+  const SideNormal side(part);
+  const Vec3 bottom = c.end(false) + c.bottom_radius * out, top = c.end(true) + c.top_radius * out;
+  const double radius = c.radius_at(point) / side.across;
+  return {0.5 * (bottom + top) - radius * (side.across * out + side.along * c.axis),
+          (top - bottom).normalized(), radius + c.margin, 0.5 * (top - bottom).norm()};
+}
+
+// Whether the normal (unit, outward) is square to the side where the point is.
+bool is_level(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal) {
+  return std::abs(side_line(part, frame, point).axis.dot(normal)) < patch::level;
+}
+
+// The end without a rim that the point belongs to, if it does, as a ball.
+bool end_ball(const ConvexPart& part, const Frame& frame, const Vec3& point, ConvexPart& ball) {
+  const PlacedFrustum c(part, frame);
+  const bool top = c.axis.dot(point - c.center) > 0;
+  if (c.end_radius(top) > 0) return false;
+  ball.radius = part.margin;
+  ball.placement.p = part.placement * Vec3(0, 0, top ? part.half_length : -part.half_length);
+  return true;
+}
+
+// The cap of a frustum that the normal is next to.
 bool cap_ground(const View& v, Ground& ground) {
-  const PlacedCylinder c(v.reference, v.reference_frame);
+  const PlacedFrustum c(v.reference, v.reference_frame);
   const double along = c.axis.dot(v.normal);
-  if (std::abs(along) < patch::aligned_round) return false;
+  const double radius = c.end_radius(along > 0);
+  if (!(radius > 0) || std::abs(along) < patch::aligned_round) return false;
   ground.normal = along < 0 ? Vec3(-c.axis) : c.axis;
   ground.point = c.center + c.half_length * ground.normal;
   ground.name = along < 0 ? 1001 : 1000;
@@ -67,7 +111,7 @@ bool cap_ground(const View& v, Ground& ground) {
   for (int k = 0; k < patch::disc_sides; ++k) {
     const double angle = 2 * pi * k / patch::disc_sides;
     const Vec3 inward = -(std::cos(angle) * c.across + std::sin(angle) * beside);
-    ground.sides.push_back({inward, inward.dot(c.center) - c.radius, 0});
+    ground.sides.push_back({inward, inward.dot(c.center) - radius, 0});
   }
   return true;
 }
@@ -78,9 +122,9 @@ void add_witness(const View& v, std::vector<ManifoldPoint>& out) {
   p.gap = v.distance;
   p.reference_point = v.on_reference;
   p.core_point = v.on_other;
-  if (v.other.kind == PartKind::cylinder) {
-    Vec3 down;
-    p.radius = PlacedCylinder(v.other, v.other_frame).rolling_radius(v.normal, down);
+  if (v.other.kind == PartKind::frustum) {
+    const PlacedFrustum c(v.other, v.other_frame);
+    p.radius = c.rolling_radius(c.radius_at(v.on_other), c.tilt(v.normal));
     p.core_point += p.radius * v.normal;
   }
   p.feature = feature_name(v.pair, FeatureMode::corners, {0, 0, 0});
@@ -89,12 +133,12 @@ void add_witness(const View& v, std::vector<ManifoldPoint>& out) {
 
 void add_on_ground(const View& v, const Ground& ground, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
-  const PlacedCylinder cylinder(v.other, v.other_frame);
-  cylinder_on_ground(cylinder, ground, v.reach, v.point(), out);
+  const PlacedFrustum frustum(v.other, v.other_frame);
+  frustum_on_ground(frustum, ground, v.reach, v.point(), out);
   double least = 1e300;
   for (std::size_t i = from; i < out.size(); ++i) least = std::min(least, out[i].gap);
   const double allowed =
-      patch::missed_ratio * std::abs(v.distance) + patch::missed_floor_round * cylinder.radius;
+      patch::missed_ratio * std::abs(v.distance) + patch::missed_floor_round * frustum.widest();
   if (least <= v.distance + allowed) return;
   if (out.size() - from == patch::most_points) out.pop_back();
   add_witness(v, out);
@@ -104,10 +148,11 @@ void add_on_ground(const View& v, const Ground& ground, std::vector<ManifoldPoin
 void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& out) {
   thread_local std::vector<FacePoint> points;
   points.clear();
-  const PlacedCylinder c(v.reference, v.reference_frame);
+  const PlacedFrustum c(v.reference, v.reference_frame);
+  const double radius = c.end_radius(cap.normal.dot(c.axis) > 0);
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
-  const double near = 1e-6 * c.radius;
+  const double near = 1e-6 * radius;
   const auto add = [&](const Vec3& point, std::uint64_t key) {
     const double gap = cap.normal.dot(point - cap.point);
     if (gap > v.reach) return;
@@ -123,7 +168,7 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
     const Vec3 rate = along - c.axis * c.axis.dot(along);
     const double square = rate.squaredNorm();
     const double half = start.dot(rate);
-    const double rest = start.squaredNorm() - c.radius * c.radius;
+    const double rest = start.squaredNorm() - radius * radius;
     const double disc = half * half - square * rest;
     if (disc < 0 || (!(square > 0) && rest > 0)) continue;
     const double root = std::sqrt(disc);
@@ -152,11 +197,11 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
   if (points.empty()) add_witness(v, out);
 }
 
-// A cylinder's axis and the line of a segment of the other, `tail` + t `along`, where they cross
-// well within both and the normal stands on both; false where they do not.
+// The axis of a frustum's side and the line of a segment of the other, `tail` + t `along`, where
+// they cross well within both and the normal stands on both; false where they do not.
 bool add_crossing(const View& v, const Vec3& tail, const Vec3& along, double radius,
                   std::vector<ManifoldPoint>& out) {
-  const PlacedCylinder c(v.reference, v.reference_frame);
+  const SideLine c = side_line(v.reference, v.reference_frame, v.on_reference);
   const double length = along.norm();
   const Vec3 other = along / length;
   const Vec3 across = c.axis.cross(other);
@@ -184,25 +229,25 @@ bool add_crossing(const View& v, const Vec3& tail, const Vec3& along, double rad
   return true;
 }
 
-// A segment of the reference, from `tail` along `along` with a radius, and a rim of the cylinder
+// A segment of the reference, from `tail` along `along` with a radius, and a rim of the frustum
 // that stands on it as the other; false where they do not cross well within the segment, or where
 // the normal is not square to both.
 bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
              std::vector<ManifoldPoint>& out) {
-  const PlacedCylinder c(v.other, v.other_frame);
+  const PlacedFrustum c(v.other, v.other_frame);
   const double length = along.norm();
   const Vec3 line = along / length;
   ManifoldPoint p = v.point();
   p.kind = ReferenceFeature::rim;
   const double up = c.axis.dot(v.on_other - c.center);
   p.other_direction = c.axis;
-  p.rim_center = c.center + (up < 0 ? -c.half_length : c.half_length) * c.axis;
-  p.rim = c.radius;
+  p.rim_center = c.end(!(up < 0));
+  p.rim = c.end_radius(!(up < 0));
   const Vec3 from_axis = v.on_other - p.rim_center;
   const Vec3 out_of_axis = from_axis - c.axis * c.axis.dot(from_axis);
   const double reach = out_of_axis.norm();
-  if (std::abs(reach - c.radius) > patch::level * c.radius ||
-      (from_axis - out_of_axis).norm() > patch::level * c.radius)
+  if (std::abs(reach - p.rim) > patch::level * p.rim ||
+      (from_axis - out_of_axis).norm() > patch::level * p.rim)
     return false;
   const Vec3 radial = out_of_axis / reach;
   const Vec3 across = line.cross(c.axis.cross(radial));
@@ -211,13 +256,13 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   const double cosine = across.dot(v.normal) / sine;
   if (std::abs(cosine) < patch::aligned_round) return false;
   p.normal = (cosine < 0 ? -1 : 1) / sine * across;
-  // outside the cylinder's side, and not almost flat on it: then the point on the rim that a small
+  // outside the frustum's side, and not almost flat on it: then the point on the rim that a small
   // turn makes the nearest is far off
   if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -patch::crossing)
     return false;
   p.direction = line;
   p.reference_radius = radius;
-  p.core_point = p.rim_center + c.radius * radial;
+  p.core_point = p.rim_center + p.rim * radial;
   const double at = line.dot(p.core_point - tail);
   if (at <= 0 || at >= length) return false;
   p.reference_point = tail + at * line;
@@ -227,11 +272,12 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   return true;
 }
 
-// A cylinder's axis as reference line, and a segment of the other: from `tail` along `along` with a
-// radius.  Nearly parallel ones meet at the two ends of what they share, others at the witness.
+// The axis of a frustum's side as reference line, and a segment of the other: from `tail` along
+// `along` with a radius.  Nearly parallel ones meet at the two ends of what they share, others at
+// the witness.
 void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radius,
                  std::vector<ManifoldPoint>& out) {
-  const PlacedCylinder c(v.reference, v.reference_frame);
+  const SideLine c = side_line(v.reference, v.reference_frame, v.on_reference);
   ManifoldPoint p = v.point();
   p.kind = ReferenceFeature::line;
   p.direction = c.axis;
@@ -290,7 +336,7 @@ void witness_edge(const View& v, Vec3& tail, Vec3& along) {
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
-  const Vec3 axis = PlacedCylinder(v.reference, v.reference_frame).axis;
+  const Vec3 axis = side_line(v.reference, v.reference_frame, v.on_reference).axis;
   const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
   tail = world * core.vertex(vertex);
   along.setZero();
@@ -304,64 +350,38 @@ void level_edge(const View& v, Vec3& tail, Vec3& along) {
   }
 }
 
-bool is_level(const ConvexPart& part, const Frame& frame, const Vec3& normal) {
-  return std::abs(PlacedCylinder(part, frame).axis.dot(normal)) < patch::level;
-}
-
-void polyhedron_and_cylinder(const View& of_polyhedron, const View& of_cylinder,
-                             std::vector<ManifoldPoint>& out) {
+void polyhedron_and_frustum(const View& of_polyhedron, const View& of_frustum,
+                            std::vector<ManifoldPoint>& out) {
+  const ConvexPart& frustum = of_frustum.reference;
+  const Frame& frame = of_frustum.reference_frame;
   Ground ground;
   if (face_ground(of_polyhedron, ground)) return add_on_ground(of_polyhedron, ground, out);
-  if (cap_ground(of_cylinder, ground)) return add_on_cap(of_cylinder, ground, out);
+  if (cap_ground(of_frustum, ground)) return add_on_cap(of_frustum, ground, out);
   Vec3 tail, along;
-  witness_edge(of_cylinder, tail, along);
-  if (!is_level(of_cylinder.reference, of_cylinder.reference_frame, of_cylinder.normal)) {
+  witness_edge(of_frustum, tail, along);
+  if (!is_level(frustum, frame, of_frustum.on_reference, of_frustum.normal)) {
+    ConvexPart ball;
+    if (end_ball(frustum, frame, of_frustum.on_reference, ball)) {
+      return polyhedron_sphere_manifold(of_polyhedron.reference, of_polyhedron.reference_frame,
+                                        ball, frame, of_polyhedron.reach,
+                                        of_polyhedron.reference_is_a, of_polyhedron.pair, out);
+    }
     if (!along.isZero(0) && add_rim(of_polyhedron, tail, along, 0, out)) return;
     return add_witness(of_polyhedron, out);
   }
-  if (!along.isZero(0) && add_crossing(of_cylinder, tail, along, 0, out)) return;
-  level_edge(of_cylinder, tail, along);
-  if (along.isZero(0)) along = of_cylinder.normal;  // no part of it is along the axis
-  add_on_side(of_cylinder, tail, along, 0, out);
+  if (!along.isZero(0) && add_crossing(of_frustum, tail, along, 0, out)) return;
+  level_edge(of_frustum, tail, along);
+  if (along.isZero(0)) along = of_frustum.normal;  // no part of it is along the axis
+  add_on_side(of_frustum, tail, along, 0, out);
 }
 
-void two_cylinders(const View& of_a, const View& of_b, std::vector<ManifoldPoint>& out) {
-  Ground cap_a, cap_b;
-  const bool on_a = cap_ground(of_a, cap_a);
-  const bool on_b = cap_ground(of_b, cap_b);
-  // the wider cap carries
-  if (on_a && !(on_b && of_b.reference.radius > of_a.reference.radius))
-    return add_on_ground(of_a, cap_a, out);
-  if (on_b) return add_on_ground(of_b, cap_b, out);
-  const bool side_a = is_level(of_a.reference, of_a.reference_frame, of_a.normal);
-  const bool side_b = is_level(of_b.reference, of_b.reference_frame, of_b.normal);
-  if (side_a && side_b) {
-    const PlacedCylinder b(of_a.other, of_a.other_frame);
-    const Vec3 tail = b.center - b.half_length * b.axis, along = 2 * b.half_length * b.axis;
-    if (add_crossing(of_a, tail, along, b.radius, out)) return;
-    return add_on_side(of_a, tail, along, b.radius, out);
-  }
-  // a side and a rim, or two rims
-  for (const auto& [is_side, view] : {std::pair(side_a, &of_a), std::pair(side_b, &of_b)}) {
-    if (!is_side) continue;
-    const PlacedCylinder c(view->reference, view->reference_frame);
-    if (add_rim(*view, c.center - c.half_length * c.axis, 2 * c.half_length * c.axis, c.radius,
-                out))
-      return;
-    return add_on_side(*view, view->on_other, view->normal, 0, out);
-  }
-  add_witness(of_a, out);
-}
-
-void cylinder_and_sphere(const ConvexPart& cylinder, const Frame& frame_c, const ConvexPart& sphere,
-                         const Frame& frame_s, double reach, bool reference_is_a, int pair,
-                         std::vector<ManifoldPoint>& out) {
-  const PlacedCylinder c(cylinder, frame_c);
-  const Frame world = frame_c * cylinder.placement;
+void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const ConvexPart& sphere,
+                        const Frame& frame_s, double reach, bool reference_is_a, int pair,
+                        std::vector<ManifoldPoint>& out) {
+  const Frame world = frame_f * frustum.placement;
   ManifoldPoint p;
   p.core_point = frame_s * sphere.placement.p;
-  const NearestOnCylinder near =
-      nearest_on_cylinder(c.radius, c.half_length, world.to_local(p.core_point));
+  const NearestOnFrustum near = nearest_on_frustum(frustum, world.to_local(p.core_point));
   p.gap = near.distance - sphere.radius;
   if (p.gap > reach) return;
   p.reference_is_a = reference_is_a;
@@ -370,63 +390,131 @@ void cylinder_and_sphere(const ConvexPart& cylinder, const Frame& frame_c, const
   p.reference_point = world * near.point;
   p.pair = pair;
   FeatureMode mode = FeatureMode::face;
-  if (near.feature == CylinderFeature::side) {
+  if (near.feature == FrustumFeature::side) {
+    const SideLine side = side_line(frustum, frame_f, p.reference_point);
     mode = FeatureMode::side;
     p.kind = ReferenceFeature::line;
-    p.direction = c.axis;
-    p.reference_radius = c.radius;
-    p.reference_point -= c.radius * p.normal;
-  } else if (near.feature == CylinderFeature::rim) {
+    p.direction = side.axis;
+    p.reference_radius = side.radius;
+    p.reference_point -= side.radius * p.normal;
+  } else if (near.feature == FrustumFeature::rim) {
     mode = FeatureMode::rim;
     p.kind = ReferenceFeature::point;
+    p.reference_radius = frustum.margin;
+    p.reference_point = world * near.core;
   }
-  p.feature = feature_name(pair, mode, {p.normal.dot(c.axis) < 0 ? 1u : 0u, 0, 0});
+  const bool down = p.normal.dot(world.R.col(2)) < 0;
+  p.feature = feature_name(pair, mode, {down ? 1u : 0u, 0, 0});
   out.push_back(p);
 }
 
-void half_space_and_cylinder(const ConvexPart& half_space, const Frame& frame_h,
-                             const ConvexPart& cylinder, const Frame& frame_c, double reach,
-                             bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
+// Neither on its side nor on a cap: rims, tips and round ends.
+void two_ends(const View& of_a, const View& of_b, std::vector<ManifoldPoint>& out) {
+  ConvexPart ball_a, ball_b;
+  const bool round_a = end_ball(of_a.reference, of_a.reference_frame, of_a.on_reference, ball_a);
+  const bool round_b = end_ball(of_b.reference, of_b.reference_frame, of_b.on_reference, ball_b);
+  if (round_a && round_b && ball_a.radius + ball_b.radius > 0)
+    return spheres_manifold(ball_a, of_a.reference_frame, ball_b, of_b.reference_frame, of_a.reach,
+                            of_a.pair, out);
+  for (const auto& [is_ball, ball, rim] :
+       {std::tuple(round_a, &ball_a, &of_b), std::tuple(round_b, &ball_b, &of_a)}) {
+    if (!is_ball) continue;
+    return frustum_and_sphere(rim->reference, rim->reference_frame, *ball, rim->other_frame,
+                              rim->reach, rim->reference_is_a, rim->pair, out);
+  }
+  add_witness(of_a, out);
+}
+
+void two_frustums(const View& of_a, const View& of_b, std::vector<ManifoldPoint>& out) {
+  Ground cap_a, cap_b;
+  const bool on_a = cap_ground(of_a, cap_a);
+  const bool on_b = cap_ground(of_b, cap_b);
+  // the wider cap carries
+  if (on_a && !(on_b && of_b.reference.radius > of_a.reference.radius))
+    return add_on_ground(of_a, cap_a, out);
+  if (on_b) return add_on_ground(of_b, cap_b, out);
+  const auto level = [](const View& v) {
+    return is_level(v.reference, v.reference_frame, v.on_reference, v.normal);
+  };
+  const bool side_a = level(of_a), side_b = level(of_b);
+  if (side_a && side_b) {
+    const SideLine b = side_line(of_a.other, of_a.other_frame, of_a.on_other);
+    if (add_crossing(of_a, b.tail(), b.along(), b.radius, out)) return;
+    return add_on_side(of_a, b.tail(), b.along(), b.radius, out);
+  }
+  // a side, and a rim or an end without one
+  for (const auto& [is_side, view] : {std::pair(side_a, &of_a), std::pair(side_b, &of_b)}) {
+    if (!is_side) continue;
+    const SideLine c = side_line(view->reference, view->reference_frame, view->on_reference);
+    ConvexPart ball;
+    if (end_ball(view->other, view->other_frame, view->on_other, ball))
+      return add_on_side(*view, view->on_other, view->normal, ball.radius, out);
+    if (add_rim(*view, c.tail(), c.along(), c.radius, out)) return;
+    return add_on_side(*view, view->on_other, view->normal, 0, out);
+  }
+  two_ends(of_a, of_b, out);
+}
+
+bool has_tip(const ConvexPart& part) {
+  return part.kind == PartKind::frustum && part.radius != part.top_radius;
+}
+
+void half_space_and_frustum(const ConvexPart& half_space, const Frame& frame_h,
+                            const ConvexPart& frustum, const Frame& frame_f, double reach,
+                            bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
   Ground ground;
   ground.normal = frame_h.R * half_space.normal;
   ground.point = frame_h.p + half_space.offset * ground.normal;
   ManifoldPoint p;
   p.reference_is_a = reference_is_a;
   p.pair = pair;
-  cylinder_on_ground(PlacedCylinder(cylinder, frame_c), ground, reach, p, out);
+  frustum_on_ground(PlacedFrustum(frustum, frame_f), ground, reach, p, out);
 }
 
 }  // namespace
 
-void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                    const Frame& frame_b, const RoundDistance& near, double reach, int pair,
-                    std::vector<ManifoldPoint>& out) {
+void frustum_manifold_at(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                         const Frame& frame_b, const RoundDistance& near, double reach, int pair,
+                         std::vector<ManifoldPoint>& out) {
   const View of_a{
       a,     frame_a, b, frame_b, true, near.normal, near.point_a, near.point_b, near.distance,
       reach, pair};
   const View of_b{
       b,     frame_b, a, frame_a, false, -near.normal, near.point_b, near.point_a, near.distance,
       reach, pair};
-  if (a.kind == PartKind::polyhedron) return polyhedron_and_cylinder(of_a, of_b, out);
-  if (b.kind == PartKind::polyhedron) return polyhedron_and_cylinder(of_b, of_a, out);
-  two_cylinders(of_a, of_b, out);
+  const std::size_t from = out.size();
+  if (a.kind == PartKind::polyhedron)
+    polyhedron_and_frustum(of_a, of_b, out);
+  else if (b.kind == PartKind::polyhedron)
+    polyhedron_and_frustum(of_b, of_a, out);
+  else
+    two_frustums(of_a, of_b, out);
+  if (!has_tip(a) && !has_tip(b)) return;
+  // what is nearest to a tip inside the other one, or across a cone that is hardly thicker than the
+  // two are deep, may push elsewhere than the axis of least depth does
+  for (std::size_t i = from; i < out.size(); ++i) {
+    const Vec3 normal = out[i].reference_is_a ? out[i].normal : Vec3(-out[i].normal);
+    if (normal.dot(near.normal) > patch::aligned) continue;
+    out.resize(from);
+    return add_witness(of_a, out);
+  }
 }
 
-void cylinder_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
-                       const Frame& frame_b, double reach, int pair,
-                       std::vector<ManifoldPoint>& out) {
+void frustum_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                      const Frame& frame_b, double reach, int pair,
+                      std::vector<ManifoldPoint>& out) {
   if (a.kind == PartKind::half_space)
-    return half_space_and_cylinder(a, frame_a, b, frame_b, reach, true, pair, out);
+    return half_space_and_frustum(a, frame_a, b, frame_b, reach, true, pair, out);
   if (b.kind == PartKind::half_space)
-    return half_space_and_cylinder(b, frame_b, a, frame_a, reach, false, pair, out);
+    return half_space_and_frustum(b, frame_b, a, frame_a, reach, false, pair, out);
   if (b.kind == PartKind::sphere)
-    return cylinder_and_sphere(a, frame_a, b, frame_b, reach, true, pair, out);
+    return frustum_and_sphere(a, frame_a, b, frame_b, reach, true, pair, out);
   if (a.kind == PartKind::sphere)
-    return cylinder_and_sphere(b, frame_b, a, frame_a, reach, false, pair, out);
+    return frustum_and_sphere(b, frame_b, a, frame_a, reach, false, pair, out);
   const Separation s = part_separation(a, frame_a, b, frame_b, nullptr);
   if (s.distance > reach) return;
-  round_manifold(a, frame_a, b, frame_b, {s.distance, s.normal, s.point_a, s.point_b}, reach, pair,
-                 out);
+  frustum_manifold_at(a, frame_a, b, frame_b, {s.distance, s.normal, s.point_a, s.point_b}, reach,
+                      pair, out);
 }
 
 }  // namespace tw

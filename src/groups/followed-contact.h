@@ -1,0 +1,16 @@
+// What a group follows of a point of a manifold.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include "collision/manifold.h"
+#include "integrate/group-arc.h"
+
+namespace tw {
+
+// The contact's geometry, in the frames of the bodies that the point names as reference and other;
+// `other_part` is the part of the other one that it is on.  Everything else is left as it is by
+// default.
+GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference, const Frame& other,
+                              const ConvexPart& other_part);
+
+}  // namespace tw

@@ -1,0 +1,185 @@
+// Solids from mesh files.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "import/solid-file.h"
+
+// coordinates as they are written, not rounded to single precision
+#define TINYOBJLOADER_USE_DOUBLE
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+#include "base/error.h"
+#include "geometry/polyhedron.h"
+#include "import/mesh-file.h"
+
+namespace tw {
+namespace {
+
+// how deep a dent may be, relative to the size
+constexpr double flat = 1e-4;
+
+// The triangles of one object; points that are no corner of any don't count.
+struct Object {
+  std::string name;
+  std::vector<std::array<std::size_t, 3>> triangles;
+};
+
+struct Mesh {
+  std::vector<Vec3> points;
+  std::vector<Object> objects;
+};
+
+Mesh read_obj(const std::string& file) {
+  tinyobj::ObjReaderConfig config;
+  config.triangulate = true;
+  tinyobj::ObjReader reader;
+  TW_REQUIRE(reader.ParseFromFile(file, config),
+             "the mesh " + file + " cannot be read: " +
+                 reader.Error().substr(0, reader.Error().find('\n')) + "; expected an OBJ file");
+  Mesh mesh;
+  const std::vector<double>& x = reader.GetAttrib().vertices;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3)
+    mesh.points.emplace_back(x[i], x[i + 1], x[i + 2]);
+  for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+    Object object{shape.name, {}};
+    const std::vector<tinyobj::index_t>& corners = shape.mesh.indices;
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+      object.triangles.push_back({static_cast<std::size_t>(corners[i].vertex_index),
+                                  static_cast<std::size_t>(corners[i + 1].vertex_index),
+                                  static_cast<std::size_t>(corners[i + 2].vertex_index)});
+    for (const tinyobj::index_t& corner : corners)
+      TW_REQUIRE(corner.vertex_index >= 0 &&
+                     static_cast<std::size_t>(corner.vertex_index) < mesh.points.size(),
+                 "the mesh " + file + " has a face with the corner " +
+                     std::to_string(corner.vertex_index + 1) + ", and " +
+                     std::to_string(mesh.points.size()) +
+                     " vertices; expected corners that are there");
+    if (!object.triangles.empty()) mesh.objects.push_back(std::move(object));
+  }
+  return mesh;
+}
+
+Mesh read_any(const std::string& file) {
+  Mesh mesh;
+  for (const NamedTriangles& part : mesh_triangles(file)) {
+    Object object{part.name, {}};
+    for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3)
+      object.triangles.push_back(
+          {mesh.points.size() + i, mesh.points.size() + i + 1, mesh.points.size() + i + 2});
+    mesh.points.insert(mesh.points.end(), part.corners.begin(), part.corners.end());
+    mesh.objects.push_back(std::move(object));
+  }
+  return mesh;
+}
+
+// For each point the first one at the same place.
+std::vector<std::size_t> same_places(const std::vector<Vec3>& points) {
+  std::map<std::array<double, 3>, std::size_t> first;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    places.push_back(
+        first.emplace(std::array{points[i].x(), points[i].y(), points[i].z()}, i).first->second);
+  return places;
+}
+
+// An object's triangles by what hangs together, in the order of their first ones.
+std::vector<Object> connected(const Object& object, std::size_t points) {
+  std::vector<std::size_t> root(points);
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  for (const auto& [a, b, c] : object.triangles) {
+    root[find(b)] = find(a);
+    root[find(c)] = find(a);
+  }
+  std::map<std::size_t, std::size_t> number;
+  std::vector<Object> parts;
+  for (const auto& triangle : object.triangles) {
+    const auto [found, fresh] = number.emplace(find(triangle[0]), parts.size());
+    if (fresh) parts.push_back({object.name, {}});
+    parts[found->second].triangles.push_back(triangle);
+  }
+  return parts;
+}
+
+// How far the hull stands out over the plane of a triangle, on the side where it does so less, at
+// most, relative to its size: 0 for convex objects.
+double deepest_dent(const Object& object, const std::vector<Vec3>& points, const Shape& hull) {
+  const std::vector<Vec3>& corners = hull.parts()[0].core->vertices();
+  const double size = 2 * hull.parts()[0].bound_radius;
+  double deepest = 0;
+  for (const auto& [a, b, c] : object.triangles) {
+    const Vec3 normal = (points[b] - points[a]).cross(points[c] - points[a]);
+    const double area = normal.norm();
+    if (!(area > 1e-12 * size * size)) continue;
+    double above = 0, below = 0;
+    for (const Vec3& corner : corners) {
+      const double height = normal.dot(corner - points[a]) / area;
+      above = std::max(above, height);
+      below = std::max(below, -height);
+    }
+    deepest = std::max(deepest, std::min(above, below) / size);
+  }
+  return deepest;
+}
+
+std::string title(const Object& object, std::size_t number, std::size_t count) {
+  if (!object.name.empty()) return "the object " + object.name;
+  return count == 1 ? "it" : "its object " + std::to_string(number + 1);
+}
+
+ShapePtr hull_of(const Object& object, const std::vector<Vec3>& points) {
+  std::vector<Vec3> corners;
+  for (const auto& triangle : object.triangles)
+    for (const std::size_t corner : triangle) corners.push_back(points[corner]);
+  return make_hull(corners);
+}
+
+}  // namespace
+
+ShapePtr read_solid(const std::string& file, const Vec3& scale, bool hulls) {
+  std::error_code ignored;
+  TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
+             "the mesh " + file + " is missing; expected a file that can be read");
+  std::string suffix = std::filesystem::path(file).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  Mesh mesh = suffix == ".obj" ? read_obj(file) : read_any(file);
+  TW_REQUIRE(!mesh.objects.empty(),
+             "the mesh " + file + " has no faces; expected some that enclose a volume");
+  for (Vec3& point : mesh.points) point = point.cwiseProduct(scale);
+  const std::vector<std::size_t> places = same_places(mesh.points);
+  std::vector<Object> parts;
+  for (Object& object : mesh.objects) {
+    for (auto& triangle : object.triangles)
+      for (std::size_t& corner : triangle) corner = places[corner];
+    const std::vector<Object> pieces = connected(object, mesh.points.size());
+    parts.insert(parts.end(), pieces.begin(), pieces.end());
+  }
+
+  std::vector<ShapePtr> shapes;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string what = "the mesh " + file + ": " + title(parts[i], i, parts.size());
+    try {
+      shapes.push_back(hull_of(parts[i], mesh.points));
+    } catch (const UserError& error) {
+      throw UserError(what + " has no hull: " + error.what());
+    }
+    const double dent = deepest_dent(parts[i], mesh.points, *shapes.back());
+    TW_REQUIRE(hulls || dent <= flat,
+               what + " isn't convex: its hull stands " + show(dent) +
+                   " of its size over one of its faces; expected objects that are convex each, "
+                   "which make a union, or #:convex-hull? #t for the hull of each");
+  }
+  return shapes.size() == 1 ? shapes[0] : make_union(shapes);
+}
+
+}  // namespace tw

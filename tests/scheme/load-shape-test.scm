@@ -1,0 +1,69 @@
+;; Shapes from mesh files.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+;; A box from LO to HI as quads that look outward, its corners numbered from FIRST on.
+(define (box-lines name first lo hi)
+  (define (corner i)
+    (format #f "v ~{~a~^ ~}"
+            (map (lambda (axis) (list-ref (if (logbit? axis i) hi lo) axis)) '(0 1 2))))
+  (define (face . corners)
+    (format #f "f ~{~a~^ ~}" (map (lambda (c) (+ first c)) corners)))
+  (append (if name (list (string-append "o " name)) '())
+          (map corner (iota 8))
+          (list (face 0 2 3 1) (face 4 5 7 6) (face 0 1 5 4) (face 2 6 7 3) (face 0 4 6 2)
+                (face 1 3 7 5))))
+
+(define cube (apply write-file "cube.obj" (box-lines #f 1 '(0 0 0) '(0.1 0.2 0.3))))
+(define two
+  (apply write-file "two.obj"
+         (append (box-lines "left" 1 '(0 0 0) '(1 1 1)) (box-lines "right" 9 '(2 0 0) '(3 1 2)))))
+;; an L as one object: two boxes that share the corners of a face would be two convex objects
+(define ell
+  (write-file "ell.obj" "o bracket"
+              "v 0 0 0" "v 2 0 0" "v 2 1 0" "v 1 1 0" "v 1 2 0" "v 0 2 0"
+              "v 0 0 1" "v 2 0 1" "v 2 1 1" "v 1 1 1" "v 1 2 1" "v 0 2 1"
+              "f 6 5 4 3 2 1" "f 7 8 9 10 11 12"
+              "f 1 2 8 7" "f 2 3 9 8" "f 3 4 10 9" "f 4 5 11 10" "f 5 6 12 11" "f 6 1 7 12"))
+(define tetrahedron
+  (write-file "tetrahedron.stl" "solid tip"
+              "facet normal 0 0 -1" "outer loop" "vertex 0 0 0" "vertex 0 1 0" "vertex 1 0 0"
+              "endloop" "endfacet"
+              "facet normal 0 -1 0" "outer loop" "vertex 0 0 0" "vertex 1 0 0" "vertex 0 0 1"
+              "endloop" "endfacet"
+              "facet normal -1 0 0" "outer loop" "vertex 0 0 0" "vertex 0 0 1" "vertex 0 1 0"
+              "endloop" "endfacet"
+              "facet normal 1 1 1" "outer loop" "vertex 1 0 0" "vertex 0 1 0" "vertex 0 0 1"
+              "endloop" "endfacet" "endsolid tip"))
+
+(test-begin "load-shape")
+
+(test-assert "a cube keeps all digits of its coordinates"
+  (close? 0.006 (shape-volume (load-shape cube)) 1e-17))
+(test-equal "one object is a hull" "#<shape hull>" (format #f "~s" (load-shape cube)))
+(test-assert "a scale for all axes, and one for each"
+  (and (close? 6e-6 (shape-volume (load-shape cube #:scale 0.1)) 1e-18)
+       (close? 6.0 (shape-volume (load-shape cube #:scale #(10 10 10))) 1e-13)))
+(test-assert "objects make a union" (close? 3.0 (shape-volume (load-shape two)) 1e-13))
+(test-equal "of hulls" "#<shape union>" (format #f "~s" (load-shape two)))
+(test-assert "STL" (close? 1/6 (shape-volume (load-shape tetrahedron)) 1e-7))
+(test-message "what isn't convex is named"
+  "ell.obj: the object bracket isn't convex.*#:convex-hull\\? #t" (load-shape ell))
+(test-assert "its hull is to be had"
+  (close? 3.5 (shape-volume (load-shape ell #:convex-hull? #t)) 1e-13))
+(test-message "a missing file" "nowhere.obj is missing" (load-shape "nowhere.obj"))
+(test-message "no mesh" "no faces" (load-shape (write-file "empty.obj" "# nothing")))
+(test-message "a flat mesh" "has no hull: .*flat"
+  (load-shape (write-file "flat.obj" "v 0 0 0" "v 1 0 0" "v 1 1 0" "v 0 1 0" "f 1 2 3 4")))
+(test-message "corners that are not there" "flaw.obj has a face with the corner 7, and 2 vertices"
+  (load-shape (write-file "flaw.obj" "v 0 0 0" "v 1 0 0" "f 1 2 7")))
+(test-message "no scale" "scale" (load-shape cube #:scale 0))
+(test-message "no name" "file" (load-shape 5))
+(test-assert "a body made of it falls, lands and rests"
+  (begin
+    (reset!)
+    (add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)
+    (let ((body (add-body! #:shape (load-shape two #:scale 0.1) #:position #(0 0 0.05))))
+      (run! #:until 2)
+      (< (abs (vector-ref (position body) 2)) 1e-3))))
+
+(test-end "load-shape")
