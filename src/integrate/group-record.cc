@@ -168,19 +168,19 @@ GroupRecord::Place GroupRecord::place(double t) const {
   return i < 0 ? Place{steps(), 0} : Place{i, fraction(i, t)};
 }
 
-Vec3 GroupRecord::position(int member, double t) const {
-  const auto [i, r] = place(t);
+Vec3 GroupRecord::position(int member, Place at) const {
+  const auto [i, r] = at;
   return r > 0 ? path(i, member).value(r) : vec(member_node(i, member) + x_at);
 }
 
-Quat GroupRecord::attitude(int member, double t) const {
-  const auto [i, r] = place(t);
+Quat GroupRecord::attitude(int member, Place at) const {
+  const auto [i, r] = at;
   const Quat begin = quat(member_node(i, member) + q_at);
   return r > 0 ? Quat(short_rotation(rotation(i, member).value(r)) * begin) : begin;
 }
 
-void GroupRecord::velocities(int member, double t, Vec3& v, Vec3& L) const {
-  const auto [i, r] = place(t);
+void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
+  const auto [i, r] = at;
   const double* a = member_node(i, member);
   v = vec(a + v_at);
   L = vec(a + L_at);
