@@ -76,13 +76,12 @@ struct Greatest {
     best_group = better ? here : best_group;
   }
   double value(std::size_t items, int& item) const {
-    long long lane = 0;
-    for (long long k = 1; k < 4; ++k)
-      if (best[k] > best[lane] || (best[k] == best[lane] && best_group[k] < best_group[lane]))
-        lane = k;
-    item =
-        static_cast<int>(std::min(4 * best_group[lane] + lane, static_cast<long long>(items) - 1));
-    return best[lane];
+    const double top = std::max(std::max(best[0], best[1]), std::max(best[2], best[3]));
+    long long first = static_cast<long long>(items) - 1;
+    for (long long lane = 0; lane < 4; ++lane)
+      if (best[lane] == top) first = std::min(first, 4 * best_group[lane] + lane);
+    item = static_cast<int>(first);
+    return top;
   }
 };
 
@@ -274,6 +273,21 @@ double Polyhedron::face_separation(const Vec3& point, int& best_face) const {
   for (long long g = 0; g < groups; ++g, data += 16)
     greatest.see(g, load(data) * x + load(data + 4) * y + load(data + 8) * z - load(data + 12));
   return greatest.value(faces_.size(), best_face);
+}
+
+void Polyhedron::faces_under(const Vec3& point, double height, std::vector<int>& out) const {
+  const double x = point.x();
+  const double y = point.y();
+  const double z = point.z();
+  const int count = static_cast<int>(faces_.size());
+  const double* data = plane_lanes_.data();
+  for (int face = 0; face < count; face += 4, data += 16) {
+    const Numbers over =
+        load(data) * x + load(data + 4) * y + load(data + 8) * z - load(data + 12) >= height;
+    if ((over[0] | over[1] | over[2] | over[3]) == 0) continue;
+    for (int lane = 0; lane < 4 && face + lane < count; ++lane)
+      if (over[lane] != 0) out.push_back(face + lane);
+  }
 }
 
 int Polyhedron::face_at_vertex(int vertex, const Vec3& direction) const {
