@@ -83,28 +83,27 @@ void try_faces(const Polyhedron& p, const Polyhedron& q, const Frame& q_in_p, Ax
   }
 }
 
-// Collects the edges of p (`p_in_a` maps its frame to A's) that reach above a plane of A's frame,
-// normal.x >= plane.
-void edges_above(const Polyhedron& p, const Frame& p_in_a, const Vec3& normal, double plane,
+// Collects the edges of p that reach above a plane, normal.x >= height in p's frame; `place` maps
+// an edge to A's frame.
+template <class Place>
+void edges_above(const Polyhedron& p, const Vec3& normal, double height, const Place& place,
                  std::vector<PlacedEdge>& out) {
-  thread_local std::vector<int> numbers;
-  out.clear();
-  // the plane in p's frame
-  const Vec3 n = p_in_a.R.transpose() * normal;
-  const double offset = plane - normal.dot(p_in_a.p);
   // those at the few vertices above it, ascending
+  thread_local std::vector<int> numbers;
   numbers.clear();
   const int count = static_cast<int>(p.vertices().size());
   for (int v = 0; v < count; ++v)
-    if (n.dot(p.vertex(v)) >= offset)
+    if (normal.dot(p.vertex(v)) >= height)
       for (const Polyhedron::Link& link : p.links(v)) numbers.push_back(link.edge);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  out.clear();
   for (const int e : numbers) {
     const Polyhedron::Edge& edge = p.edges()[static_cast<std::size_t>(e)];
-    const Vec3 &tail = p.vertex(edge.tail), &head = p.vertex(edge.head);
-    out.push_back({e, p_in_a * tail, p_in_a.R * (head - tail), p_in_a.R * p.face(edge.left).normal,
-                   p_in_a.R * p.face(edge.right).normal});
+    const Vec3& tail = p.vertex(edge.tail);
+    out.push_back(
+        {e, tail, p.vertex(edge.head) - tail, p.face(edge.left).normal, p.face(edge.right).normal});
+    place(out.back());
   }
 }
 
@@ -142,8 +141,14 @@ void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, do
   // of the best face axis: A lies below `top`, B above top + chosen
   const Vec3 n = search.best.normal;
   const double top = a.extent(n, 0);
-  edges_above(a, Frame(), n, top + search.chosen - reach, edges_a);
-  edges_above(b, b_in_a, -n, -(top + reach), edges_b);
+  edges_above(
+      a, n, top + search.chosen - reach, [](PlacedEdge&) {}, edges_a);
+  const auto place = [&](PlacedEdge& edge) {
+    edge.tail = b_in_a * edge.tail;
+    for (Vec3* direction : {&edge.along, &edge.left, &edge.right})
+      *direction = b_in_a.R * *direction;
+  };
+  edges_above(b, -(b_in_a.R.transpose() * n), n.dot(b_in_a.p) - (top + reach), place, edges_b);
   for (const PlacedEdge& ea : edges_a)
     for (const PlacedEdge& eb : edges_b) {
       if (!arcs_cross(ea, eb)) continue;
