@@ -44,7 +44,7 @@ Travel Travels::of(const Body& body, const State& state, double from, double to)
     double from = 0, to = 0;
     Travel travel;
   };
-  constexpr int bits = 9;
+  constexpr int bits = 11;
   thread_local std::vector<Kept> table(std::size_t{1} << bits);
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15u;  // 2^64 over the golden ratio
   const std::uint64_t mixed = (body.id() * odd ^ std::bit_cast<std::uint64_t>(from)) * odd ^
