@@ -308,6 +308,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
   look.found = Look::Found::contact;
   ContactPair& fresh = look.pair;
   fresh = {id, 0, static_cast<std::uint32_t>(points.size()), false, {}};
+  look.contacts.reserve(points.size());
   for (const ManifoldPoint& p : points) look.contacts.push_back(new_contact(p, a, b, scales.law));
   if (before) {
     fresh.has_borne_load = before->pair->has_borne_load;

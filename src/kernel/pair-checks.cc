@@ -60,7 +60,7 @@ double slack_of(const Scene& scene, const Piece& piece) {
 // stays so, or parts as slowly as it likes: without this it were looked at at every grid point.
 double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
   if (!(pair.touch > 0)) {
-    const double start = separation_at(piece, piece.start_time()).distance;
+    const double start = distance_at(piece, piece.start_time());
     pair.touch = std::max(-start, 0.0) + slack_of(scene, piece);
   }
   return pair.touch;
@@ -213,7 +213,7 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when,
   // certainly at touch, perhaps overlapping: the cold distance decides
   const std::optional<double> known = certificates.overlap();
   return find_crossing(pair, piece, std::max(piece.start_time(), when - answer::check_grid), when,
-                       known ? *known : separation_at(piece, when).distance);
+                       known ? *known : distance_at(piece, when));
 }
 
 // The crossing of 0 or, where the left end touches already, of the depth at touch, where the two
@@ -225,11 +225,11 @@ bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, dou
   if (right >= -slack_of(sim_.scene, piece)) return false;
   const double touch = depth_at_touch(sim_.scene, pair, piece);
   if (right >= -touch) return false;
-  const double left = separation_at(piece, start).distance;
+  const double left = distance_at(piece, start);
   double impact_time = when;
   if (left > -touch) {
     const double level = left > 0 ? 0 : touch;
-    const auto f = [&](double t) { return separation_at(piece, t).distance + level; };
+    const auto f = [&](double t) { return distance_at(piece, t) + level; };
     impact_time = find_root(f, start, when, left + level, right + level).left;
   }
   pair.impact = pieces_.impact_key(piece, impact_time);
@@ -242,7 +242,7 @@ bool PairChecks::check_between(Pair& pair, const Piece& piece, double from,
   const double to = grid_after(from);
   if (pair.next_check != to) return false;
   const double dip = first_dip(piece, pair.caches, from, to, counts.certificates);
-  return dip < never && find_crossing(pair, piece, from, dip, separation_at(piece, dip).distance);
+  return dip < never && find_crossing(pair, piece, from, dip, distance_at(piece, dip));
 }
 
 // After a free check at `checked`: no root is left before the bracket that the next check would
