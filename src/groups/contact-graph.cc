@@ -352,6 +352,7 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
   const Scene& scene = work.scene();
   const bool may_disable = scene.may_disable();
   std::vector<BodyId> candidates;
+  candidates.reserve(16);
   const auto consider = [&](BodyId other) {
     const Body& partner = scene.body(other);
     if (partner.dynamic()) {
