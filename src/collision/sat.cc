@@ -6,8 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "collision/axis-climb.h"
-
 namespace tw {
 
 namespace {
@@ -17,9 +15,6 @@ constexpr double tie = 1e-13;
 
 // slack of the tests that leave edges out, relative to the size
 constexpr double slack = 1e-9;
-
-// where the best face is deeper than this, relative to the size, another axis may leave fewer edges
-constexpr double deep = 1e-4;
 
 // below this sine of their angle two edges count as parallel: the thin Minkowski face between them
 // is then within rounding of its neighbours
@@ -138,39 +133,16 @@ Vec3 edge_axis(const PlacedEdge& a, const PlacedEdge& b) {
   return n.dot(a.left + a.right) < 0 ? Vec3(-n) : n;
 }
 
-// A plane square to n that A reaches at `top` and lies below, and B above top + distance.
-struct Slab {
-  Vec3 n;
-  double top, distance;
-};
-
-Slab slab_along(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, const Vec3& n) {
-  const double top = a.extent(n, 0);
-  const Vec3 back = -(b_in_a.R.transpose() * n);
-  return {n, top, n.dot(b_in_a * b.vertex(b.support(back, 0))) - top};
-}
-
-// Two edges that meet when B is moved out along the answer, by its depth at most, meet near a slab.
-// The axis of two crossing edges can be far shallower than that of any face: then climbing finds a
-// slab that is as thin.
-Slab thinnest_slab(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
-                   const Search& search, double size) {
-  const Slab slab = slab_along(a, b, b_in_a, search.best.normal);
-  if (!(slab.distance < -deep * size)) return slab;
-  const Climb climb = climb_to_axis(a, b, b_in_a);
-  if (!(climb.axis.distance > slab.distance)) return slab;
-  const Slab other = slab_along(a, b, b_in_a, climb.axis.normal);
-  return other.distance > slab.distance ? other : slab;
-}
-
-void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double gap,
-               double size, Search& search) {
+void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, double reach,
+               Search& search) {
   thread_local std::vector<PlacedEdge> edges_a;
   thread_local std::vector<PlacedEdge> edges_b;
-  const auto [n, top, distance] = thinnest_slab(a, b, b_in_a, search, size);
-  const double reach = std::max(gap, -distance) + slack * size;
+  // edges that meet when B is moved out by at most `reach` come near the slab between the planes
+  // of the best face axis: A lies below `top`, B above top + chosen
+  const Vec3 n = search.best.normal;
+  const double top = a.extent(n, 0);
   edges_above(
-      a, n, top + distance - reach, [](PlacedEdge&) {}, edges_a);
+      a, n, top + search.chosen - reach, [](PlacedEdge&) {}, edges_a);
   const auto place = [&](PlacedEdge& edge) {
     edge.tail = b_in_a * edge.tail;
     for (Vec3* direction : {&edge.along, &edge.left, &edge.right})
@@ -211,7 +183,8 @@ LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in
   const double before = search.chosen;
   try_faces(b, a, a_in_b, AxisKind::face_b, search);
   if (search.chosen != before) search.best.normal = -(b_in_a.R * search.best.normal);
-  try_edges(a, b, b_in_a, gap, size, search);
+  // moving B by at most -s along the answer makes the two edges meet
+  try_edges(a, b, b_in_a, std::max(gap, -search.chosen) + slack * size, search);
   search.best.distance = search.greatest;
   return search.best;
 }
