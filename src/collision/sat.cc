@@ -3,6 +3,7 @@
 #include "collision/sat.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace tw {
@@ -58,16 +59,23 @@ void try_face(const Polyhedron& p, int number, const Polyhedron& q, const Frame&
   search.best.normal = face.normal;
 }
 
-// Tries all faces of p.  A face is left out when even the ball inside q is nearer than the best.
+// Tries all faces of p.  A face is left out when even the ball inside q is nearer than the best, or
+// when the deepest vertex under the first one is, by more than ties and rounding.
 void try_faces(const Polyhedron& p, const Polyhedron& q, const Frame& q_in_p, AxisKind kind,
                Search& search) {
+  thread_local std::vector<int> left;
   const Vec3 center = q_in_p * q.center();
   int first = 0;
   search.start = 0;
   const double height = p.face_separation(center, first);
-  if (height - q.inner_radius() >= search.chosen) try_face(p, first, q, q_in_p, kind, search);
-  const int count = static_cast<int>(p.faces().size());
-  for (int f = 0; f < count; ++f) {
+  const bool near = height - q.inner_radius() >= search.chosen;
+  if (near) try_face(p, first, q, q_in_p, kind, search);
+  // (hill climbing begins where the face before ended: there none is left out by the vertex)
+  double least = search.chosen - search.margin;
+  if (!near || q.climbs()) least = -std::numeric_limits<double>::infinity();
+  left.clear();
+  p.faces_under(q_in_p * q.vertex(search.start), least, left);
+  for (const int f : left) {
     const Polyhedron::Face& face = p.face(f);
     const double bound = face.normal.dot(center) - face.offset - q.inner_radius();
     if (f == first || bound < search.chosen) continue;
@@ -75,26 +83,27 @@ void try_faces(const Polyhedron& p, const Polyhedron& q, const Frame& q_in_p, Ax
   }
 }
 
-// Collects the edges of p (`p_in_a` maps its frame to A's) that reach above a plane of A's frame,
-// normal.x >= plane.
-void edges_above(const Polyhedron& p, const Frame& p_in_a, const Vec3& normal, double plane,
+// Collects the edges of p that reach above a plane, normal.x >= height in p's frame; `place` maps
+// an edge to A's frame.
+template <class Place>
+void edges_above(const Polyhedron& p, const Vec3& normal, double height, const Place& place,
                  std::vector<PlacedEdge>& out) {
-  thread_local std::vector<char> above;
+  // those at the few vertices above it, ascending
+  thread_local std::vector<int> numbers;
+  numbers.clear();
+  const int count = static_cast<int>(p.vertices().size());
+  for (int v = 0; v < count; ++v)
+    if (normal.dot(p.vertex(v)) >= height)
+      for (const Polyhedron::Link& link : p.links(v)) numbers.push_back(link.edge);
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   out.clear();
-  // the plane in p's frame
-  const Vec3 n = p_in_a.R.transpose() * normal;
-  const double offset = plane - normal.dot(p_in_a.p);
-  const std::vector<Vec3>& vertices = p.vertices();
-  above.resize(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) above[i] = n.dot(vertices[i]) >= offset;
-  const int count = static_cast<int>(p.edges().size());
-  for (int e = 0; e < count; ++e) {
+  for (const int e : numbers) {
     const Polyhedron::Edge& edge = p.edges()[static_cast<std::size_t>(e)];
-    const auto tail = static_cast<std::size_t>(edge.tail);
-    const auto head = static_cast<std::size_t>(edge.head);
-    if ((above[tail] | above[head]) == 0) continue;
-    out.push_back({e, p_in_a * vertices[tail], p_in_a.R * (vertices[head] - vertices[tail]),
-                   p_in_a.R * p.face(edge.left).normal, p_in_a.R * p.face(edge.right).normal});
+    const Vec3& tail = p.vertex(edge.tail);
+    out.push_back(
+        {e, tail, p.vertex(edge.head) - tail, p.face(edge.left).normal, p.face(edge.right).normal});
+    place(out.back());
   }
 }
 
@@ -132,8 +141,14 @@ void try_edges(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a, do
   // of the best face axis: A lies below `top`, B above top + chosen
   const Vec3 n = search.best.normal;
   const double top = a.extent(n, 0);
-  edges_above(a, Frame(), n, top + search.chosen - reach, edges_a);
-  edges_above(b, b_in_a, -n, -(top + reach), edges_b);
+  edges_above(
+      a, n, top + search.chosen - reach, [](PlacedEdge&) {}, edges_a);
+  const auto place = [&](PlacedEdge& edge) {
+    edge.tail = b_in_a * edge.tail;
+    for (Vec3* direction : {&edge.along, &edge.left, &edge.right})
+      *direction = b_in_a.R * *direction;
+  };
+  edges_above(b, -(b_in_a.R.transpose() * n), n.dot(b_in_a.p) - (top + reach), place, edges_b);
   for (const PlacedEdge& ea : edges_a)
     for (const PlacedEdge& eb : edges_b) {
       if (!arcs_cross(ea, eb)) continue;

@@ -335,6 +335,25 @@ double ball_bound(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b
   return apart - radii - rounding * (apart + radii);
 }
 
+// The distance of `polyhedra`, cold, without witnesses.
+double polyhedra_distance(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                          const Frame& frame_b) {
+  ++work_count.distance_queries;
+  const CorePair pair(a, frame_a, b, frame_b);
+  const CoreDistance core = core_distance(pair.a, pair.b, pair.b_in_a, nullptr);
+  if (!core.overlap && core.distance > touch_ratio * pair.size()) return core.distance;
+  const double least =
+      least_axis(pair.a, pair.b, pair.b_in_a, core.overlap ? 0 : core.distance).distance;
+  return core.overlap || least <= 0 ? least : core.distance;
+}
+
+double part_distance(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
+                     const Frame& frame_b) {
+  if (a.kind == PartKind::polyhedron && b.kind == PartKind::polyhedron)
+    return polyhedra_distance(a, frame_a, b, frame_b);
+  return part_separation(a, frame_a, b, frame_b, nullptr).distance;
+}
+
 }  // namespace
 
 Separation part_separation(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
@@ -357,6 +376,17 @@ Separation separation(const Shape& a, const Frame& frame_a, const Shape& b, cons
       best.part_b = static_cast<int>(j);
     }
   return best;
+}
+
+double signed_distance(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b) {
+  const std::vector<ConvexPart>& parts_a = a.parts();
+  const std::vector<ConvexPart>& parts_b = b.parts();
+  double least = part_distance(parts_a[0], frame_a, parts_b[0], frame_b);
+  for (std::size_t i = 0; i < parts_a.size(); ++i)
+    for (std::size_t j = i == 0 ? 1 : 0; j < parts_b.size(); ++j)
+      if (!(ball_bound(parts_a[i], frame_a, parts_b[j], frame_b) > least))
+        least = std::min(least, part_distance(parts_a[i], frame_a, parts_b[j], frame_b));
+  return least;
 }
 
 }  // namespace tw

@@ -41,6 +41,8 @@ Separation part_separation(const ConvexPart& a, const Frame& frame_a, const Conv
 
 // The least over all pairs of parts, cold.  Ties: the first pair in order of part numbers.
 Separation separation(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b);
+// Its distance alone, with the same bits.
+double signed_distance(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b);
 
 // One point where two shapes touch.
 struct ContactPoint {

@@ -25,6 +25,13 @@ Separation separation_at(const Piece& piece, double when) {
                     piece.b->trajectory().frame(when));
 }
 
+double distance_at(const Piece& piece, double when) {
+  const Body& a = *piece.body_a;
+  const Body& b = *piece.body_b;
+  return signed_distance(*a.shape_P, piece.a->trajectory().frame(when), *b.shape_P,
+                         piece.b->trajectory().frame(when));
+}
+
 double closing_at(const Piece& piece, double when, const Separation& s) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;

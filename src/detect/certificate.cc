@@ -157,31 +157,56 @@ double distance_rounding(const Body& a, const Vec3& at_a, const Body& b, const V
          of_coordinates * (coordinates(a, at_a) + coordinates(b, at_b));
 }
 
-double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
-  const Trajectory& path_a = piece.a->trajectory();
-  const Trajectory& path_b = piece.b->trajectory();
-  const MovingBody a(*piece.body_a, path_a, when), b(*piece.body_b, path_b, when);
+Certificates::Certificates(const Piece& piece, SimplexCaches& caches, double when)
+    : piece_(piece),
+      caches_(caches),
+      when_(when),
+      a_(*piece.body_a, piece.a->trajectory(), when),
+      b_(*piece.body_b, piece.b->trajectory(), when) {}
+
+const Separation& Certificates::separation(std::size_t i, std::size_t j) {
+  const auto& parts_a = a_.body->shape_P->parts();
+  const auto& parts_b = b_.body->shape_P->parts();
+  const std::size_t place = i * parts_b.size() + j;
+  std::optional<Separation>& found = place < most_kept ? kept_[place] : last_;
+  if (found && place < most_kept) return *found;
+  if (caches_.empty()) caches_.resize(parts_a.size() * parts_b.size());
+  found = part_separation(parts_a[i], a_.frame, parts_b[j], b_.frame, &caches_[place]);
+  return *found;
+}
+
+std::optional<double> Certificates::overlap() const {
+  const auto is_polyhedron = [](const MovingBody& side) {
+    const auto& parts = side.body->shape_P->parts();
+    return parts.size() == 1 && parts.front().kind == PartKind::polyhedron;
+  };
+  // of polyhedra that overlap the query is cold, whatever its warm start
+  if (!kept_[0] || !(kept_[0]->distance < 0) || !is_polyhedron(a_) || !is_polyhedron(b_)) return {};
+  return kept_[0]->distance;
+}
+
+double Certificates::until(double allowance) {
+  const MovingBody &a = a_, &b = b_;
   const auto& parts_a = a.body->shape_P->parts();
   const auto& parts_b = b.body->shape_P->parts();
-  double least = std::min(a.bounds.valid_until, b.bounds.valid_until) - when;
+  double least = std::min(a.bounds.valid_until, b.bounds.valid_until) - when_;
   // less than this is perhaps not apart
   const double sure = distance_rounding(*a.body, a.point.x, *b.body, b.point.x) - allowance;
   // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
   // needed
   const bool in_steps = a.step_end != never || b.step_end != never;
-  std::optional<MovingBody> step_a, step_b;
   const auto by_step = [&](const auto& bound) {
     if (!in_steps) return bound(a, b);
-    if (!step_a) {
-      step_a.emplace(a.within_step(path_a, when));
-      step_b.emplace(b.within_step(path_b, when));
+    if (!step_a_) {
+      step_a_.emplace(a.within_step(piece_.a->trajectory(), when_));
+      step_b_.emplace(b.within_step(piece_.b->trajectory(), when_));
     }
-    return std::min(std::min(step_a->bounds.valid_until, step_b->bounds.valid_until) - when,
-                    bound(*step_a, *step_b));
+    return std::min(std::min(step_a_->bounds.valid_until, step_b_->bounds.valid_until) - when_,
+                    bound(*step_a_, *step_b_));
   };
   const auto longest = [&](const auto& bound) {
     const double left = bound(a, b);
-    return in_steps && left < piece.end.time - when ? std::max(left, by_step(bound)) : left;
+    return in_steps && left < piece_.end.time - when_ ? std::max(left, by_step(bound)) : left;
   };
 
   for (std::size_t i = 0; i < parts_a.size(); ++i)
@@ -206,9 +231,7 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
         }
       }
 
-      if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
-      SimplexCache& cache = caches[i * parts_b.size() + j];
-      const Separation s = part_separation(pa, a.frame, pb, b.frame, &cache);
+      const Separation& s = separation(i, j);
       if (!(s.distance > sure)) return -never;
       double apart = longest([&](const MovingBody& x, const MovingBody& y) {
         return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
@@ -224,7 +247,11 @@ double certificate(const Piece& piece, SimplexCaches& caches, double when, doubl
                          }));
       least = std::min(least, apart);
     }
-  return when + least;
+  return when_ + least;
+}
+
+double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
+  return Certificates(piece, caches, when).until(allowance);
 }
 
 }  // namespace tw

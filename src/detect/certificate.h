@@ -21,9 +21,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "collision/separation.h"
+#include "detect/moving-body.h"
 #include "detect/piece.h"
 
 namespace tw {
@@ -31,8 +33,31 @@ namespace tw {
 // Warm starts of the distance queries, one for each pair of parts; empty: none yet.
 using SimplexCaches = std::vector<SimplexCache>;
 
-// Until when the two are surely apart on the piece's arcs, as seen at `when`, s; -infinity: perhaps
-// not at `when`.  Overlaps up to `allowance` (m) count as apart.
+// The two bodies of a piece as seen at `when`, s.
+class Certificates {
+ public:
+  Certificates(const Piece& piece, SimplexCaches& caches, double when);
+
+  // Until when the two are surely apart on the piece's arcs, s; -infinity: perhaps not at `when`.
+  // Overlaps up to `allowance` (m) count as apart.
+  double until(double allowance);
+  // How deep the two were found to overlap, as a negative distance, m: the very number of the cold
+  // query.  Nothing: they were not, or it is not known.
+  std::optional<double> overlap() const;
+
+ private:
+  const Separation& separation(std::size_t part_a, std::size_t part_b);
+
+  const Piece& piece_;
+  SimplexCaches& caches_;
+  double when_;
+  MovingBody a_, b_;
+  std::optional<MovingBody> step_a_, step_b_;  // within the present step of the integrator
+  static constexpr std::size_t most_kept = 4;
+  std::optional<Separation> kept_[most_kept];  // of the first pairs of parts
+  std::optional<Separation> last_;             // of others
+};
+
 double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance);
 
 // What rounding may make of no distance between two bodies with their centres there, m.

@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "detect/certificate.h"
+#include "detect/travels.h"
 
 namespace tw {
 
@@ -24,6 +25,6 @@ struct Clearance {
 
 // Whether the two are surely apart over [from, to] on the piece's arcs; cheaper than a certificate.
 bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& caches, double from,
-                      double to);
+                      double to, const Travels& travels = {});
 
 }  // namespace tw

@@ -36,7 +36,7 @@ double first_dip(const Piece& piece, SimplexCaches& caches, double from, double 
   for (double t = from;;) {
     ++looks;
     const double clear = certificate(piece, caches, t, depth);
-    if (t > from && !(clear > t) && separation_at(piece, t).distance < -depth) return t;
+    if (t > from && !(clear > t) && distance_at(piece, t) < -depth) return t;
     const double next = std::max(std::floor(clear / spacing) * spacing, after(t));
     // the end, or times have no finer digits
     if (!(next > t && next < to)) return never;

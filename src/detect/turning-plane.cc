@@ -22,12 +22,14 @@ struct Facing {
 
 Facing facing(const Frame& frame, const ConvexPart& part, const Vec3& n, double top, double depth) {
   Facing result;
+  // heights in the part's frame
+  const Vec3 n_P = frame.R.transpose() * n;
+  const double least = top - depth - n.dot(frame.p);
   Vec3 first = Vec3::Zero();
   for (const Vec3& vertex : part.core->vertices()) {
-    const Vec3 p = frame * vertex;
-    if (top - n.dot(p) > depth) continue;
-    if (result.count == 0) first = p;
-    if (result.count == 1) result.edge = p - first;
+    if (n_P.dot(vertex) < least) continue;
+    if (result.count == 0) first = vertex;
+    if (result.count == 1) result.edge = frame.R * (vertex - first);
     if (++result.count > 2) break;
   }
   return result;
@@ -68,16 +70,18 @@ double time_to_reach(const MovingBody& side, const Frame& frame, const ConvexPar
   const double pull = n.dot(relative) - n.cwiseAbs().dot(side.spread) - side.bend * radius -
                       plane.turn * (2 * speed + plane.turn * distance + plane.until * change);
 
-  // gap = n.(c - p), and its rate n.(u - v - w x (p - x)) + n'.(c - p), linear in p
+  // gap = n.(c - p), and its rate n.(u - v - w x (p - x)) + n'.(c - p), linear in p = R p_P + p_0
   const Vec3 m = n.cross(side.point.w);
   const Vec3 slope = -m - rate;
-  const double speed0 = n.dot(plane.u - side.point.v) + m.dot(side.point.x) + rate.dot(plane.c);
+  const double gap0 = n.dot(plane.c - frame.p) + plane.allowance;
+  const double speed0 =
+      n.dot(plane.u - side.point.v) + m.dot(side.point.x) + rate.dot(plane.c) + slope.dot(frame.p);
+  const Vec3 n_P = frame.R.transpose() * n, slope_P = frame.R.transpose() * slope;
   double least = plane.until;
   for (const Vec3& vertex : part.core->vertices()) {
-    const Vec3 p = frame * vertex;
-    const double gap = n.dot(plane.c - p) + plane.allowance;
+    const double gap = gap0 - n_P.dot(vertex);
     if (!(gap > 0)) return 0;
-    const double closing = speed0 + slope.dot(p);
+    const double closing = speed0 + slope_P.dot(vertex);
     if (pull <= 0 && gap + least * (closing + 0.5 * pull * least) > 0) continue;
     least = std::min(least, first_zero(gap, closing, pull));
   }

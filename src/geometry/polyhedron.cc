@@ -3,9 +3,14 @@
 #include "geometry/polyhedron.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <map>
 #include <utility>
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 #include "base/error.h"
 
@@ -64,6 +69,17 @@ Lanes load(const double* data) {
   return lanes;
 }
 
+// Bit k: whether lane k of what a comparison yields is true.
+unsigned bits(const Numbers& mask) {
+#ifdef __AVX__
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+#else
+  unsigned all = 0;
+  for (unsigned lane = 0; lane < 4; ++lane) all |= mask[lane] != 0 ? 1u << lane : 0u;
+  return all;
+#endif
+}
+
 // The greatest of many numbers seen four at a time, and the least item that has it.
 struct Greatest {
   Lanes best = {-1e300, -1e300, -1e300, -1e300};
@@ -76,13 +92,16 @@ struct Greatest {
     best_group = better ? here : best_group;
   }
   double value(std::size_t items, int& item) const {
-    long long lane = 0;
-    for (long long k = 1; k < 4; ++k)
-      if (best[k] > best[lane] || (best[k] == best[lane] && best_group[k] < best_group[lane]))
-        lane = k;
-    item =
-        static_cast<int>(std::min(4 * best_group[lane] + lane, static_cast<long long>(items) - 1));
-    return best[lane];
+    const double top = std::max(std::max(best[0], best[1]), std::max(best[2], best[3]));
+    const Lanes tops = {top, top, top, top};
+    long long groups[4], first = static_cast<long long>(items) - 1;
+    std::memcpy(groups, &best_group, sizeof groups);
+    for (unsigned have = bits(best == tops); have != 0; have &= have - 1) {
+      const int lane = std::countr_zero(have);
+      first = std::min(first, 4 * groups[lane] + lane);
+    }
+    item = static_cast<int>(first);
+    return top;
   }
 };
 
@@ -274,6 +293,21 @@ double Polyhedron::face_separation(const Vec3& point, int& best_face) const {
   for (long long g = 0; g < groups; ++g, data += 16)
     greatest.see(g, load(data) * x + load(data + 4) * y + load(data + 8) * z - load(data + 12));
   return greatest.value(faces_.size(), best_face);
+}
+
+void Polyhedron::faces_under(const Vec3& point, double height, std::vector<int>& out) const {
+  const double x = point.x();
+  const double y = point.y();
+  const double z = point.z();
+  const Lanes least = {height, height, height, height};
+  const int count = static_cast<int>(faces_.size());
+  const double* data = plane_lanes_.data();
+  for (int face = 0; face < count; face += 4, data += 16) {
+    const Lanes heights =
+        load(data) * x + load(data + 4) * y + load(data + 8) * z - load(data + 12);
+    for (unsigned over = bits(heights >= least); over != 0; over &= over - 1)
+      if (const int number = face + std::countr_zero(over); number < count) out.push_back(number);
+  }
 }
 
 int Polyhedron::face_at_vertex(int vertex, const Vec3& direction) const {

@@ -87,11 +87,16 @@ class Polyhedron {
              (direction.z() > 0 ? 4 : 0);
     return scans_ ? scan(direction) : climb(direction, start);
   }
+  // Whether `support` is hill climbing, where `start` decides between equals.
+  bool climbs() const { return !is_box_ && !scans_; }
   // The same as the value max over the solid of direction.x.
   double extent(const Vec3& direction, int start) const {
     return direction.dot(vertex(support(direction, start)));
   }
 
+  // Appends the faces over whose planes the point is no lower than `height`, up to rounding,
+  // ascending.
+  void faces_under(const Vec3& point, double height, std::vector<int>& out) const;
   // Greatest signed distance of the point over all face planes, and that face: positive outside,
   // minus the depth inside.  Ties: the first face.
   double face_separation(const Vec3& point, int& best_face) const;

@@ -31,8 +31,9 @@ Aabb polyhedron_bounds(const ConvexPart& part, const Frame& frame) {
     box.add(world.p + reach);
     return box;
   }
-  for (const Vec3& v : part.core->vertices()) box.add(world * v);
-  return box;
+  const Vec3 x = world.R.row(0), y = world.R.row(1), z = world.R.row(2);
+  for (const Vec3& v : part.core->vertices()) box.add(Vec3(x.dot(v), y.dot(v), z.dot(v)));
+  return {box.lo + world.p, box.hi + world.p};
 }
 
 Aabb half_space_bounds(const ConvexPart& part, const Frame& frame) {

@@ -35,6 +35,7 @@ Before::Owned Before::owned(std::uint64_t pair) const {
 
 std::vector<ProcessId> Before::remaining(const Group& group) const {
   std::vector<ProcessId> result;
+  result.reserve(group.members.size());
   for (const ProcessId member : group.members)
     if (const State& s = state(member); s.group.get() == &group && !s.error)
       result.push_back(member);

@@ -119,23 +119,32 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
   const Body& body_a = work.scene().body(pair.a());
   const Body& body_b = work.scene().body(pair.b());
   const double size = std::min(body_a.least_width, body_b.least_width);
-  std::vector<bool> taken(old->count, false);
+  // where the old ones are, but those that were taken
+  struct Old {
+    Vec3 point;
+    bool taken = false;
+  };
+  thread_local std::vector<Old> there;
+  there.clear();
+  if (pair.count > 0)
+    each_contact(*old, [&](std::uint32_t c) {
+      there.push_back({arc.contact_force(static_cast<int>(c), now).point});
+    });
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
     NewContact& fresh = contacts[c];
     double nearest = answer::same_point * size;
     std::uint32_t best = old->count;
     for (std::uint32_t o = 0; o < old->count; ++o) {
-      if (taken[o]) continue;
+      if (there[o].taken) continue;
       const ContactTag& tag = before.tags[old->first + o];
-      const Vec3 was = arc.contact_force(static_cast<int>(old->first + o), now).point;
-      double distance = (was - fresh.point).norm();
+      double distance = (there[o].point - fresh.point).norm();
       if (tag.feature == fresh.tag.feature && tag.parts == fresh.tag.parts) distance *= 0.5;
       if (distance >= nearest) continue;
       nearest = distance;
       best = o;
     }
     if (best == old->count) continue;
-    taken[best] = true;
+    there[best].taken = true;
     const ContactTag& tag = before.tags[old->first + best];
     const GroupContact& was = arc.start().contacts[old->first + best];
     fresh.law_before = was.law;
@@ -296,6 +305,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
   look.found = Look::Found::contact;
   ContactPair& fresh = look.pair;
   fresh = {id, 0, static_cast<std::uint32_t>(points.size()), false, {}};
+  look.contacts.reserve(points.size());
   for (const ManifoldPoint& p : points) look.contacts.push_back(new_contact(p, a, b, scales.law));
   if (before) {
     fresh.has_borne_load = before->pair->has_borne_load;
@@ -339,6 +349,7 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
   const Scene& scene = work.scene();
   const bool may_disable = scene.may_disable();
   std::vector<BodyId> candidates;
+  candidates.reserve(16);
   const auto consider = [&](BodyId other) {
     const Body& partner = scene.body(other);
     if (partner.dynamic()) {

@@ -119,7 +119,13 @@ void start_arc(Regrouping& work, Group& group) {
     start.outside.push_back(outside_motion(work, id));
     return ~static_cast<int>(group.outside.size() - 1);
   };
+  std::size_t count = 0;
+  for (const ContactPair& pair : group.pairs) count += pair.count;
+  start.contacts.reserve(count);
+  group.tags.reserve(count);
+  group.gaps.reserve(count);
   std::vector<NewContact> contacts;
+  contacts.reserve(count);
   for (ContactPair& pair : group.pairs) {
     const std::uint32_t first = static_cast<std::uint32_t>(start.contacts.size());
     pair.masses.add(group.masses);

@@ -28,7 +28,8 @@ void share_ground(const std::vector<NewContact*>& points, const Body& body) {
   };
   double deepest = 0;
   for (const NewContact* c : points) deepest = std::max(deepest, -c->gap);
-  std::vector<double> here(points.size(), 1);
+  thread_local std::vector<double> here;
+  here.assign(points.size(), 1);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < points.size(); ++j) {
       if (i == j || !(cosine(*points[i], *points[j]) > answer::same_normal)) continue;
@@ -48,7 +49,9 @@ void share_ground(const std::vector<NewContact*>& points, const Body& body) {
 
 void share_stiffness(Regrouping& work) {
   const Scene& scene = work.scene();
-  std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
+  thread_local std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
+  thread_local std::vector<NewContact*> points;
+  on_ground.clear();
   for (const ContactPair& pair : work.pairs) {
     const bool a_moves = scene.body(pair.a()).dynamic(), b_moves = scene.body(pair.b()).dynamic();
     double count = 0, deepest = 0;
@@ -67,7 +70,7 @@ void share_stiffness(Regrouping& work) {
   std::sort(on_ground.begin(), on_ground.end());
   for (std::size_t i = 0, j = 0; i < on_ground.size(); i = j) {
     for (j = i; j < on_ground.size() && on_ground[j].first == on_ground[i].first;) ++j;
-    std::vector<NewContact*> points;
+    points.clear();
     for (std::size_t k = i; k < j; ++k) points.push_back(&work.contacts[on_ground[k].second]);
     share_ground(points, scene.body(on_ground[i].first));
   }

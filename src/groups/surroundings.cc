@@ -30,6 +30,7 @@ std::vector<BodyId> Surroundings::ground_around(const Body& moving,
                                                 std::initializer_list<Frame> frames) const {
   std::vector<BodyId> ground;
   if (moving.unbounded) return ground;
+  ground.reserve(8);
   Aabb place;
   for (const Frame& frame : frames) place.add(moving.shape_P->bounds(frame));
   place.grow(std::max(answer::contact_margin, seam::sunk) * moving.least_width);
@@ -47,6 +48,7 @@ std::vector<SeamNeighbour> Surroundings::seam_neighbours(const Body& body,
                                                          const std::vector<BodyId>& ground) const {
   std::vector<SeamNeighbour> result;
   if (!body.fixed()) return result;
+  result.reserve(2 * ground.size());
   for (const BodyId id : ground) {
     if (id == body.id()) continue;
     const Frame frame(scene_.body(id).motion->pose(0));

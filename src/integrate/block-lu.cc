@@ -187,6 +187,9 @@ void BlockLu::order(const std::vector<std::pair<int, int>>& pairs) {
 
   // bodies in the place of positions at first
   positions_.resize(u(rows_));
+  pivots_.reserve(u(rows_));
+  starts_.reserve(u(rows_) + 1);
+  later_.reserve(2 * pairs.size());
   starts_.push_back(0);
   for (int position = 0; position < rows_; ++position) {
     const int pivot =
@@ -225,6 +228,7 @@ std::size_t BlockLu::offset(int row, int column) const {
 
 // the later ones of S_k are in S_i for every i of S_k: eliminating k linked them
 void BlockLu::set_targets() {
+  target_starts_.reserve(u(rows_));
   for (int k = 0; k < rows_; ++k) {
     target_starts_.push_back(targets_.size());
     for (std::size_t i = starts_[u(k)]; i < starts_[u(k) + 1]; ++i) {

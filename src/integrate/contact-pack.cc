@@ -333,18 +333,11 @@ void finish_pack(ContactPack& pack, int members) {
 }
 
 // contacts that touch nothing: without stiffness
-ContactPack empty_pack(const GroupContact& kind) {
+ContactPack empty_pack() {
   ContactPack pack;
-  pack.feature = kind.feature;
-  pack.law = kind.law.law;
-  GroupContact nothing;
-  if (rolls(kind.feature)) {
-    nothing.direction = Vec3::Ones();
-    nothing.other_direction = Vec3::Zero();
-  }
   for (int i = 0; i < lane_count; ++i) {
     pack.contact[i] = -1;
-    fill_lane(pack, i, nothing, 0);
+    fill_lane(pack, i, GroupContact{}, 0);
   }
   return pack;
 }
@@ -408,6 +401,9 @@ ContactPacks make_contact_packs(const GroupStart& start) {
   };
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return kind(i) < kind(j); });
 
+  static const ContactPack empty = empty_pack();
+  // four contacts a pack, or fewer
+  result.packs.reserve(contacts.size() / 3 + 1);
   // fill pack after pack; pairs with several contacts begin one of their own
   for (std::size_t at = 0; at < order.size(); ++at) {
     const int i = order[at];
@@ -417,8 +413,16 @@ ContactPacks make_contact_packs(const GroupStart& start) {
         at > 0 && !same_pair(contact, contacts[static_cast<std::size_t>(order[at - 1])]);
     const bool several = at + 2 < order.size() && kind(order[at + 2]) == kind(i) &&
                          same_pair(contact, contacts[static_cast<std::size_t>(order[at + 2])]);
-    if (new_kind || result.packs.back().count == lane_count || (new_pair && several))
-      result.packs.push_back(empty_pack(contact));
+    if (new_kind || result.packs.back().count == lane_count || (new_pair && several)) {
+      ContactPack& fresh = result.packs.emplace_back(empty);
+      fresh.feature = contact.feature;
+      fresh.law = contact.law.law;
+      // lanes without a contact hold a ball
+      if (rolls(fresh.feature)) {
+        fresh.direction = {lanes(1), lanes(1), lanes(1)};
+        fresh.other_direction = {lanes(0), lanes(0), lanes(0)};
+      }
+    }
     ContactPack& pack = result.packs.back();
     pack.contact[pack.count] = i;
     fill_lane(pack, pack.count, contact, members);

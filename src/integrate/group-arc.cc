@@ -115,10 +115,10 @@ void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
     rows::store_rotation(point.q.toRotationMatrix(), body.R);
     return;
   }
-  Vec3 v, L;
-  record.velocities(slot, time, v, L);
-  system.set_member(slot, record.position(slot, time), record.attitude(slot, time), v, L,
-                    s.bodies[static_cast<std::size_t>(slot)]);
+  Vec3 x, v, L;
+  Quat q;
+  record.motion(slot, time, x, q, v, L);
+  system.set_member(slot, x, q, v, L, s.bodies[static_cast<std::size_t>(slot)]);
 }
 
 void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
@@ -183,9 +183,7 @@ GroupSample GroupArc::evaluate(int member, double time) const {
     const Vec3& moments = data_->start.members[static_cast<std::size_t>(member)].moments;
     return {point.x, point.v, point.w, R * moments.cwiseProduct(R.transpose() * point.w), point.q};
   }
-  sample.x = data_->record.position(member, at);
-  sample.q = data_->record.attitude(member, at);
-  data_->record.velocities(member, at, sample.v, sample.L);
+  data_->record.motion(member, at, sample.x, sample.q, sample.v, sample.L);
   sample.w = data_->system.angular_velocity(member, sample.q, sample.L);
   return sample;
 }
@@ -198,8 +196,9 @@ void GroupArc::pose(int member, double time, Vec3& x, Quat& q) const {
     q = pose.q;
     return;
   }
-  x = data_->record.position(member, at);
-  q = data_->record.attitude(member, at);
+  const Pose pose = data_->record.pose(member, at);
+  x = pose.p;
+  q = pose.q;
 }
 
 Vec3 GroupArc::position(int member, double time) const {
@@ -287,12 +286,15 @@ const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) c
   if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;
   GroupScratch& s = stepper.scratch();
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(number)];
-  for (int i = 0; i < pack.count; ++i)
-    for (const int slot : {pack.a[i], pack.b[i]})
-      if (slot < system.members())
-        set_slot(slot, at, s);
+  // contacts of one pair stand beside each other: their bodies once
+  for (const auto& slots : {pack.a, pack.b})
+    for (int i = 0; i < pack.count; ++i)
+      if (i > 0 && slots[i] == slots[i - 1])
+        continue;
+      else if (slots[i] < system.members())
+        set_slot(slots[i], at, s);
       else
-        system.set_outside_slot(slot, at, s.bodies);
+        system.set_outside_slot(slots[i], at, s.bodies);
   evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.side(number, at),
                 kept.state);
   for (int i = 0; i < pack.count; ++i) {

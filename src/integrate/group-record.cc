@@ -19,13 +19,23 @@ enum : int { theta_at = 0, rate_at = 3, d3_at = 6, d4_at = 12, step_numbers = 18
 
 Vec3 vec(const double* p) { return {p[0], p[1], p[2]}; }
 
-void put(std::vector<double>& to, const double* from, int count) {
-  to.insert(to.end(), from, from + count);
-}
+// Puts numbers down one after the other, at the end of a row that grows by so many.
+class Writer {
+ public:
+  Writer(std::vector<double>& row, std::size_t count) {
+    row.resize(row.size() + count);
+    to_ = row.data() + row.size() - count;
+  }
+  void put(const double* from, int count) { to_ = std::copy_n(from, count, to_); }
+  void put(const Vec3& v) { put(v.data(), 3); }
+  void put(const Quat& q) {
+    for (const double number : {q.w(), q.x(), q.y(), q.z()}) put(number);
+  }
+  void put(double number) { *to_++ = number; }
 
-void put(std::vector<double>& to, const Quat& q) {
-  to.insert(to.end(), {q.w(), q.x(), q.y(), q.z()});
-}
+ private:
+  double* to_;
+};
 
 Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
 
@@ -50,20 +60,23 @@ GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
   step_size_ = static_cast<std::size_t>(step_numbers * members_ +
                                         (pack_step + (with_sides_ ? pack_side : 0)) * packs_);
   first_sides_ = system.sides();
-  // the first node
+  // most arcs have one step
+  nodes_.reserve(2 * node_size_);
+  steps_.reserve(step_size_);
+  times_.reserve(2);
   times_.push_back(start.time);
+  Writer node(nodes_, node_size_);
   for (int i = 0; i < members_; ++i) {
     const GroupMember& m = start.members[static_cast<std::size_t>(i)];
     const Vec3 w = system.angular_velocity(i, m.q, m.L);
-    for (const Vec3* part : {&m.x, &m.v, &m.L, &w}) put(nodes_, part->data(), 3);
-    put(nodes_, m.q);
+    for (const Vec3* part : {&m.x, &m.v, &m.L, &w}) node.put(*part);
+    node.put(m.q);
   }
   for (const ContactPack& pack : system.contact_packs().packs)
     for (int axis = 0; axis < 3; ++axis)
       for (int lane = 0; lane < lane_count; ++lane) {
         const int contact = pack.contact[lane];
-        nodes_.push_back(
-            contact < 0 ? 0 : start.contacts[static_cast<std::size_t>(contact)].stretch[axis]);
+        node.put(contact < 0 ? 0 : start.contacts[static_cast<std::size_t>(contact)].stretch[axis]);
       }
 }
 
@@ -75,8 +88,8 @@ GroupRecord GroupRecord::stretch_of(int member, double from) const {
   // at a node the step before it, too: rates are those of the step that ends there
   for (int i = steps() > 0 ? step_to(from) : 0; i <= steps(); ++i) {
     stretch.times_.push_back(time(i));
-    put(stretch.nodes_, member_node(i, member), node_numbers);
-    if (i < steps()) put(stretch.steps_, member_step(i, member), step_numbers);
+    Writer(stretch.nodes_, node_numbers).put(member_node(i, member), node_numbers);
+    if (i < steps()) Writer(stretch.steps_, step_numbers).put(member_step(i, member), step_numbers);
   }
   return stretch;
 }
@@ -95,31 +108,32 @@ void GroupRecord::load_last(GroupSystem& system, double* y) const {
 void GroupRecord::append(double time, const GroupSystem& system, const double* y1, const double* d3,
                          const double* d4) {
   times_.push_back(time);
+  Writer node(nodes_, node_size_), step(steps_, step_size_);
   for (int i = 0; i < members_; ++i) {
     const double* y = y1 + 12 * i;
     const Vec3 theta = vec(y + 3);
     const Quat q = normalized(short_rotation(theta) * system.attitude(i));
     const Vec3 w = system.angular_velocity(i, q, vec(y + 9)), rate = rotation_vector_rate(theta, w);
-    put(nodes_, y, 3);
-    put(nodes_, y + 6, 6);
-    put(nodes_, w.data(), 3);
-    put(nodes_, q);
-    put(steps_, theta.data(), 3);
-    put(steps_, rate.data(), 3);
-    put(steps_, d3 + 12 * i + 6, 6);
-    put(steps_, d4 + 12 * i + 6, 6);
+    node.put(y, 3);
+    node.put(y + 6, 6);
+    node.put(w);
+    node.put(q);
+    step.put(theta);
+    step.put(rate);
+    step.put(d3 + 12 * i + 6, 6);
+    step.put(d4 + 12 * i + 6, 6);
   }
   const int first = 12 * members_;
-  put(nodes_, y1 + first, pack_node * packs_);
+  node.put(y1 + first, pack_node * packs_);
   for (int p = 0; p < packs_; ++p) {
-    put(steps_, d3 + first + 12 * p, 12);
-    put(steps_, d4 + first + 12 * p, 12);
+    step.put(d3 + first + 12 * p, 12);
+    step.put(d4 + first + 12 * p, 12);
   }
   if (!with_sides_) return;
   for (const LaneVec& side : system.sides()) {
     double numbers[pack_side];
     std::memcpy(numbers, &side, sizeof side);
-    put(steps_, numbers, pack_side);
+    step.put(numbers, pack_side);
   }
 }
 
@@ -168,19 +182,19 @@ GroupRecord::Place GroupRecord::place(double t) const {
   return i < 0 ? Place{steps(), 0} : Place{i, fraction(i, t)};
 }
 
-Vec3 GroupRecord::position(int member, double t) const {
-  const auto [i, r] = place(t);
+Vec3 GroupRecord::position(int member, Place at) const {
+  const auto [i, r] = at;
   return r > 0 ? path(i, member).value(r) : vec(member_node(i, member) + x_at);
 }
 
-Quat GroupRecord::attitude(int member, double t) const {
-  const auto [i, r] = place(t);
+Quat GroupRecord::attitude(int member, Place at) const {
+  const auto [i, r] = at;
   const Quat begin = quat(member_node(i, member) + q_at);
   return r > 0 ? Quat(short_rotation(rotation(i, member).value(r)) * begin) : begin;
 }
 
-void GroupRecord::velocities(int member, double t, Vec3& v, Vec3& L) const {
-  const auto [i, r] = place(t);
+void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
+  const auto [i, r] = at;
   const double* a = member_node(i, member);
   v = vec(a + v_at);
   L = vec(a + L_at);

@@ -46,14 +46,24 @@ class GroupRecord {
   int step_to(double time) const;
 
   // At a time in [start, reached].
-  Vec3 position(int member, double time) const;
-  Quat attitude(int member, double time) const;
-  void velocities(int member, double time, Vec3& v, Vec3& L) const;
+  Vec3 position(int member, double time) const { return position(member, place(time)); }
+  Quat attitude(int member, double time) const { return attitude(member, place(time)); }
+  void velocities(int member, double time, Vec3& v, Vec3& L) const {
+    velocities(member, place(time), v, L);
+  }
   LaneVec stretch(int pack, double time) const;
   LaneVec side(int pack, double time) const;
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
   Pose pose(int member, double time) const {
-    return {position(member, time), attitude(member, time)};
+    const Place at = place(time);
+    return {position(member, at), attitude(member, at)};
+  }
+  // Pose, velocity and angular momentum.
+  void motion(int member, double time, Vec3& x, Quat& q, Vec3& v, Vec3& L) const {
+    const Place at = place(time);
+    x = position(member, at);
+    q = attitude(member, at);
+    velocities(member, at, v, L);
   }
   Twist rates(int member, double time) const {
     Twist rates;
@@ -88,6 +98,9 @@ class GroupRecord {
     double r;
   };
   Place place(double time) const;
+  Vec3 position(int member, Place at) const;
+  Quat attitude(int member, Place at) const;
+  void velocities(int member, Place at, Vec3& v, Vec3& L) const;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
   static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,

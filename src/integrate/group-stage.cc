@@ -136,10 +136,10 @@ LaneBody GroupSystem::gather(const ContactPack& pack, const int (&slot)[lane_cou
   return out;
 }
 
-void GroupSystem::add_block(int Y, int X, const LaneMat (&part)[2][2], int lane) {
+template <class Number>
+void GroupSystem::add_block(int Y, int X, const LaneMat (&part)[2][2], Number number) {
   double* to = matrix_.at(matrix_.offset(Y, X));
   constexpr int stride = BodyMatrix::block;
-  const auto number = [lane](Lanes v) { return lane < 0 ? sum(v) : v[lane]; };
   for (int i = 0; i < 2; ++i)
     for (int r = 0; r < 3; ++r) {
       double* row = to + 3 * i + r;
@@ -205,14 +205,19 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     set_stage_rate(pack, sigma, s.linear[index(p)]);
     pack_blocks(pack, s.linear[index(p)], sigma, gather(pack, pack.a), gather(pack, pack.b),
                 blocks);
-    // the lanes of one pair as one
-    const int lanes_apart = pack.uniform ? 1 : pack.count;
-    for (int lane = 0; lane < lanes_apart; ++lane) {
+    const auto add_lane = [&](int lane, auto number) {
       const int body[2] = {pack.a[lane], pack.b[lane]};
       for (int Y = 0; Y < 2; ++Y)
         for (int X = 0; X < 2; ++X)
           if (body[Y] < members_ && body[X] < members_)
-            add_block(body[Y], body[X], blocks.part[Y][X], pack.uniform ? -1 : lane);
+            add_block(body[Y], body[X], blocks.part[Y][X], number);
+    };
+    // the lanes of one pair as one
+    if (pack.uniform) {
+      add_lane(0, [](const Lanes& v) { return sum(v); });
+    } else {
+      for (int lane = 0; lane < pack.count; ++lane)
+        add_lane(lane, [lane](const Lanes& v) { return v[lane]; });
     }
   }
   return matrix_.factor();

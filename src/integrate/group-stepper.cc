@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "base/constants.h"
 #include "integrate/joint-equations.h"
@@ -11,6 +13,33 @@
 #include "integrate/runge-kutta.h"
 
 namespace tw {
+namespace {
+
+// Rows of numbers are combined four at a time, and are as long as that needs (scratch).
+constexpr std::size_t in_fours(std::size_t size) {
+  return (size + lane_count - 1) / lane_count * lane_count;
+}
+
+TW_LANES Lanes load(const double* from) {
+  Lanes four;
+  std::memcpy(&four, from, sizeof four);
+  return four;
+}
+TW_LANES void store(Lanes four, double* to) { std::memcpy(to, &four, sizeof four); }
+
+// first + sum_j<n weights[j] rows[j], at number e and the three after it, added in this order.
+template <int n>
+TW_LANES Lanes weighted_sum(Lanes first, const double (&weights)[rodas4::stages - 1],
+                            const double* const (&rows)[rodas4::stages], std::size_t e) {
+  Lanes sum = first;
+  [&]<int... j>(std::integer_sequence<int, j...>) __attribute__((always_inline)) {
+    ((sum += lanes(weights[j]) * load(rows[j] + e)), ...);
+  }
+  (std::make_integer_sequence<int, n>());
+  return sum;
+}
+
+}  // namespace
 
 GroupStepper::GroupStepper(const GroupStart& start)
     : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {
@@ -49,6 +78,7 @@ GroupScratch& GroupStepper::scratch() const {
   const auto fit = [](auto& v, std::size_t size) {
     if (v.size() < size) v.resize(size);
   };
+  const std::size_t row = in_fours(system_.size());
   const std::size_t slots = static_cast<std::size_t>(system_.contact_packs().slots);
   fit(shared.bodies, slots);
   fit(shared.changes, slots);
@@ -57,8 +87,8 @@ GroupScratch& GroupStepper::scratch() const {
   // a multibody may have more links than freedoms
   fit(shared.right_side, std::max(system_.unknowns(), static_cast<std::size_t>(system_.members())));
   for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
-    fit(*v, system_.size());
-  for (std::vector<double>& v : shared.stage) fit(v, system_.size());
+    fit(*v, row);
+  for (std::vector<double>& v : shared.stage) fit(v, row);
   return shared;
 }
 
@@ -103,19 +133,13 @@ bool GroupStepper::set_stage(double h, GroupScratch& s) {
     // y0 + sum a_ij U_j
     double* y = s.trial.data();
     const double* y0 = s.state.data();
-    for (std::size_t e = 0; e < size; ++e) {
-      double sum = y0[e];
-      for (int j = 0; j < i; ++j) sum += a[i][j] * earlier[j][e];
-      y[e] = sum;
-    }
+    for (std::size_t e = 0; e < size; e += lane_count)
+      store(weighted_sum<i>(load(y0 + e), a[i], earlier, e), y + e);
     system_.evaluate(record_.reached() + alpha[i] * h, y, s, U);
     ++counts_.evaluations;
-    const double rate = 1 / h;
-    for (std::size_t e = 0; e < size; ++e) {
-      double sum = 0;
-      for (int j = 0; j < i; ++j) sum += c[i][j] * earlier[j][e];
-      U[e] += rate * sum;
-    }
+    const Lanes rate = lanes(1 / h);
+    for (std::size_t e = 0; e < size; e += lane_count)
+      store(load(U + e) + rate * weighted_sum<i>(lanes(0), c[i], earlier, e), U + e);
   }
   if (system_.moved_from_outside() && gamma_i[i] != 0)
     for (std::size_t e = 0; e < size; ++e) U[e] += h * gamma_i[i] * s.time_slope[e];
@@ -168,16 +192,14 @@ void GroupStepper::accept(double time, GroupScratch& s) {
   // D3 and D4 in the place of stages that are not needed any more
   const std::size_t size = system_.size();
   double *d3 = s.stage[4].data(), *d4 = s.stage[5].data();
-  const double* earlier[rodas4::stages - 1];
-  for (int j = 0; j < rodas4::stages - 1; ++j) earlier[j] = s.stage[j].data();
-  for (std::size_t e = 0; e < size; ++e) {
-    double sum3 = 0, sum4 = 0;
-    for (int j = 0; j < rodas4::stages - 1; ++j) {
-      sum3 += rodas4::d3[j] * earlier[j][e];
-      sum4 += rodas4::d4[j] * earlier[j][e];
-    }
-    d3[e] = sum3;
-    d4[e] = sum4;
+  const double* rows[rodas4::stages];
+  for (int j = 0; j < rodas4::stages; ++j) rows[j] = s.stage[j].data();
+  for (std::size_t e = 0; e < size; e += lane_count) {
+    constexpr int used = rodas4::stages - 1;
+    const Lanes sum3 = weighted_sum<used>(lanes(0), rodas4::d3, rows, e);
+    const Lanes sum4 = weighted_sum<used>(lanes(0), rodas4::d4, rows, e);
+    store(sum3, d3 + e);
+    store(sum4, d4 + e);
   }
   append_joints(time, s);
   record_.append(time, system_, s.trial.data(), d3, d4);

@@ -31,8 +31,9 @@ GroupSystem::GroupSystem(const GroupStart& start)
       packs_(make_contact_packs(start)),
       matrix_(start.trees.empty() ? members_ : 0,
               start.trees.empty() ? member_pairs(start) : std::vector<std::pair<int, int>>()) {
+  member_.reserve(start.members.size());
   for (const GroupMember& m : start.members) {
-    Member member;
+    Member& member = member_.emplace_back();
     member.mass = m.mass;
     member.inverse_mass = 1 / m.mass;
     member.inverse_moments = m.moments.cwiseInverse();
@@ -42,7 +43,6 @@ GroupSystem::GroupSystem(const GroupStart& start)
     forces_change_ = forces_change_ || (m.forces && m.forces->longest_unlooked() < never);
     member.q0 = m.q;
     member.is_link = m.tree >= 0;
-    member_.push_back(member);
   }
   for (const GroupBond& bond : start.bonds) bonds_.push_back({bond, {}});
   size_ = 12 * (start.members.size() + packs_.packs.size());
@@ -68,6 +68,7 @@ GroupSystem::GroupSystem(const GroupStart& start)
     const GroupMember& m = start.members[index(i)];
     set_member(i, m.x, m.q, m.v, m.L, bodies[index(i)]);
   }
+  sides_.reserve(packs_.packs.size());
   for (const ContactPack& pack : packs_.packs) sides_.push_back(starting_side(pack, bodies.data()));
 }
 

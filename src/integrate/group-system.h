@@ -110,8 +110,9 @@ class GroupSystem {
     Bond::Derivative derivative;  // at the step's start
   };
 
-  // of one lane, or (-1) of the sum of the lanes
-  void add_block(int Y, int X, const LaneMat (&part)[2][2], int lane);
+  // `number`: what of the lanes counts
+  template <class Number>
+  void add_block(int Y, int X, const LaneMat (&part)[2][2], Number number);
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
   PoseTwist point_of(int member, const double* y, const BodyKinematics& body) const;

@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "detect/approach.h"
 #include "detect/dip.h"
@@ -59,7 +60,7 @@ double slack_of(const Scene& scene, const Piece& piece) {
 // stays so, or parts as slowly as it likes: without this it were looked at at every grid point.
 double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
   if (!(pair.touch > 0)) {
-    const double start = separation_at(piece, piece.start_time()).distance;
+    const double start = distance_at(piece, piece.start_time());
     pair.touch = std::max(-start, 0.0) + slack_of(scene, piece);
   }
   return pair.touch;
@@ -122,7 +123,7 @@ void PairChecks::apply(std::uint32_t index, const PairOutcome& outcome) {
     case wait: sim_.queue.withdraw(pairs_[index].event); break;
     case schedule: this->schedule(index, outcome.key); break;
     case drop: pairs_.drop(index); break;
-    case alone: pursue(index); break;
+    case alone: TW_ASSERT(false, "a pair was left to nobody");
   }
 }
 
@@ -202,31 +203,33 @@ bool PairChecks::check_grid_point(Pair& pair, const Piece& piece, double when,
     counts.dearest_pair[0] = pair.a;
     counts.dearest_pair[1] = pair.b;
   }
-  double clear = certificate(piece, pair.caches, when, slack_of(sim_.scene, piece));
-  if (!(clear > when))
-    clear = certificate(piece, pair.caches, when, depth_at_touch(sim_.scene, pair, piece));
+  Certificates certificates(piece, pair.caches, when);
+  double clear = certificates.until(slack_of(sim_.scene, piece));
+  if (!(clear > when)) clear = certificates.until(depth_at_touch(sim_.scene, pair, piece));
   counts.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), when + answer::check_grid);
   if (clear > when) return false;
 
   // certainly at touch, perhaps overlapping: the cold distance decides
-  return find_crossing(pair, piece, std::max(piece.start_time(), when - answer::check_grid), when);
+  const std::optional<double> known = certificates.overlap();
+  return find_crossing(pair, piece, std::max(piece.start_time(), when - answer::check_grid), when,
+                       known ? *known : distance_at(piece, when));
 }
 
 // The crossing of 0 or, where the left end touches already, of the depth at touch, where the two
-// are deeper at `when`; true if they are.  What gets deeper approaches somewhere, whatever the
-// velocity at the witness points: drums side by side may part in the middle and tilt into each
-// other at an end.
-bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, double when) const {
-  const double right = separation_at(piece, when).distance;
+// are deeper at `when`, where their distance is `right`; true if they are.  What gets deeper
+// approaches somewhere, whatever the velocity at the witness points: drums side by side may part in
+// the middle and tilt into each other at an end.
+bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, double when,
+                               double right) const {
   if (right >= -slack_of(sim_.scene, piece)) return false;
   const double touch = depth_at_touch(sim_.scene, pair, piece);
   if (right >= -touch) return false;
-  const double left = separation_at(piece, start).distance;
+  const double left = distance_at(piece, start);
   double impact_time = when;
   if (left > -touch) {
     const double level = left > 0 ? 0 : touch;
-    const auto f = [&](double t) { return separation_at(piece, t).distance + level; };
+    const auto f = [&](double t) { return distance_at(piece, t) + level; };
     impact_time = find_root(f, start, when, left + level, right + level).left;
   }
   pair.impact = pieces_.impact_key(piece, impact_time);
@@ -239,7 +242,7 @@ bool PairChecks::check_between(Pair& pair, const Piece& piece, double from,
   const double to = grid_after(from);
   if (pair.next_check != to) return false;
   const double dip = first_dip(piece, pair.caches, from, to, counts.certificates);
-  return dip < never && find_crossing(pair, piece, from, dip);
+  return dip < never && find_crossing(pair, piece, from, dip, distance_at(piece, dip));
 }
 
 // After a free check at `checked`: no root is left before the bracket that the next check would
@@ -300,7 +303,8 @@ std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& p
 }
 
 // Over as many pieces as it takes, up to the event's time.
-PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper) const {
+PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
+                               const Travels& travels) const {
   const double now =
       pair.event == EventQueue::none ? pair.from.time : sim_.queue.event(pair.event).key.time;
   for (;;) {
@@ -329,7 +333,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper) c
         return waits;
       }
       const double to = std::min(until, piece.end.time);
-      if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to)) {
+      if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to, travels)) {
         if (to == piece.end.time) {
           if (const auto end = next_piece(pair, piece)) return *end;
           continue;
@@ -349,7 +353,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper) c
 }
 
 void PairChecks::pursue(std::uint32_t index) {
-  apply(index, follow(pairs_[index], counters_, false));
+  apply(index, follow(pairs_[index], counters_, false, Travels()));
 }
 
 // ---- those that meet ----
@@ -375,6 +379,7 @@ void PairChecks::look_up(Meeting& m) const {
 void PairChecks::meet(std::vector<Meeting>& meetings) {
   using enum PairOutcome::Kind;
   constexpr std::size_t grain = 16;
+  const Travels travels;
   each_in_parallel(meetings.size(), grain, [&](std::size_t i) { look_up(meetings[i]); });
   for (Meeting& m : meetings)
     if (m.is_new) m.pair = make(m.a, m.b, m.from);
@@ -383,9 +388,10 @@ void PairChecks::meet(std::vector<Meeting>& meetings) {
     if (m.outcome.kind == schedule)
       m.outcome = pending_at(pairs_[m.pair], m.outcome.key);
     else if (m.is_new || m.outcome.kind == wait)
-      m.outcome = follow(pairs_[m.pair], m.counts, true);
+      m.outcome = follow(pairs_[m.pair], m.counts, true, travels);
   });
-  for (const Meeting& m : meetings) {
+  for (Meeting& m : meetings) {
+    if (m.outcome.kind == alone) m.outcome = follow(pairs_[m.pair], m.counts, false, travels);
     counters_.add(m.counts);
     apply(m.pair, m.outcome);
   }

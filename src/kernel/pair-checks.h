@@ -16,6 +16,7 @@ namespace tw {
 class ActivePairs;
 struct Pair;
 struct Simulation;
+class Travels;
 
 // What becomes of a pair that was followed: all that others may see of it.
 struct PairOutcome {
@@ -60,7 +61,7 @@ class PairChecks {
   void apply(std::uint32_t index, const PairOutcome& outcome);
   // These write to the pair alone and read what stands; several pairs may be followed at once by
   // helpers, which leave alone what completes arcs as it looks.
-  PairOutcome follow(Pair& pair, PairCounts& counts, bool as_helper) const;
+  PairOutcome follow(Pair& pair, PairCounts& counts, bool as_helper, const Travels& travels) const;
   std::optional<PairOutcome> follow_exact(Pair& pair, const Piece& piece, PairCounts& counts) const;
   std::optional<PairOutcome> follow_on_grid(Pair& pair, const Piece& piece, double until,
                                             PairCounts& counts) const;
@@ -68,7 +69,7 @@ class PairChecks {
   std::optional<PairOutcome> next_piece(Pair& pair, const Piece& piece) const;
   bool check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const;
   bool check_grid_point(Pair& pair, const Piece& piece, double when, PairCounts& counts) const;
-  bool find_crossing(Pair& pair, const Piece& piece, double start, double when) const;
+  bool find_crossing(Pair& pair, const Piece& piece, double start, double when, double right) const;
   bool check_between(Pair& pair, const Piece& piece, double from, PairCounts& counts) const;
   void raise_safe_time(Pair& pair, const Piece& piece, double checked) const;
 

@@ -172,6 +172,20 @@ TEST(Polyhedron, support_is_the_farthest_vertex_from_any_start) {
   }
 }
 
+TEST(Polyhedron, faces_under_a_point_are_those_whose_planes_it_is_over) {
+  Random random(5);
+  for (int round = 0; round < 50; ++round) {
+    const auto hull = convex_hull(cloud(random, 20, Vec3(1, 1, 1)));
+    const Vec3 point = random_vector(random, 1.5);
+    const double height = uniform(random, -1, 1);
+    std::vector<int> found, expected;
+    hull.faces_under(point, height, found);
+    for (int f = 0; f < static_cast<int>(hull.faces().size()); ++f)
+      if (hull.face(f).normal.dot(point) - hull.face(f).offset >= height) expected.push_back(f);
+    EXPECT_EQ(found, expected);
+  }
+}
+
 TEST(Polyhedron, centre_is_inside_also_where_the_middle_of_the_box_is_not) {
   const Polyhedron corner = convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
   int face = 0;

@@ -141,6 +141,22 @@ TEST(Pieces, the_swept_box_holds_the_shape_on_its_way) {
 }
 
 // Two that touch along a line: rounding leaves no plane between them, but nothing moves.
+TEST(Certificates, an_overlap_is_told_with_the_bits_of_a_cold_query) {
+  for (const double x : {0.9, 0.99, 1.1, 2.0}) {
+    const Flyer a(0, make_box(Vec3(1, 1, 1)), {0, 0, 0}, {0, 0, 0});
+    const Flyer b(1, make_box(Vec3(1, 1, 1)), {x, 0.1, 0.05}, {-0.1, 0, 0}, {0.1, 0.2, 0.3});
+    const Piece piece = between(a, b);
+    SimplexCaches caches;
+    Certificates certificates(piece, caches, 0.01);
+    EXPECT_FALSE(certificates.overlap()) << "nobody has asked";
+    const bool apart = certificates.until(0) > -never;
+    EXPECT_EQ(apart, x > 1);
+    const double distance = separation_at(piece, 0.01).distance;
+    EXPECT_EQ(distance_at(piece, 0.01), distance);
+    EXPECT_EQ(certificates.overlap(), apart ? std::optional<double>() : distance);
+  }
+}
+
 TEST(Certificates, what_touches_and_moves_alike_is_apart_for_ever) {
   const ShapePtr drum = make_cylinder(0.25, 0.5);
   const double allowance = 1e-12 * 0.5;

@@ -75,6 +75,17 @@ TEST(Separation, depth_equals_the_least_over_all_axes_to_rounding) {
   EXPECT_LT(worst, 4e-15 * size_of_zoo);
 }
 
+TEST(Separation, the_distance_alone_has_the_same_bits) {
+  for_random_pairs(11, 4, [](Random& random, const ShapePtr& a, const ShapePtr& b) {
+    for (const double gap : {0.3, 1e-6, 1e-12, 0.0, -1e-6, -0.05}) {
+      const GapPose pose(random, a, b, gap);
+      ASSERT_EQ(signed_distance(*a, pose.frame_a, *b, pose.frame_b),
+                separation(*a, pose.frame_a, *b, pose.frame_b).distance)
+          << gap;
+    }
+  });
+}
+
 TEST(Separation, sign_agrees_with_libccd_on_thousands_of_poses) {
   int overlaps = 0;
   int poses = 0;

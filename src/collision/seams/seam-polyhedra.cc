@@ -1,6 +1,7 @@
 // Two polyhedra at a seam.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <limits>
 
 #include "base/constants.h"
 #include "collision/face-contact.h"
@@ -128,8 +129,14 @@ struct Exposure {
   // beneath the neighbours.
   void add_in_valleys() const {
     thread_local std::vector<std::pair<double, std::uint64_t>> heights;
+    // most are far over the face that is most towards the other's middle
+    int towards = 0;
+    part.face_separation(other_in_part * other.center(), towards);
+    const Polyhedron::Face& over = part.face(towards);
+    const double clearly = (1 + 1e-9) * seam.farthest();
     for (std::uint64_t v = 0; v < other.vertices().size(); ++v) {
       const Vec3 point = other_in_part * other.vertices()[v];
+      if (over.normal.dot(point) - over.offset > clearly) continue;
       int nearest = 0;
       const double beside = part.face_separation(point, nearest);
       if (!(beside > 0 && beside <= seam.farthest())) continue;
@@ -177,6 +184,15 @@ struct Exposure {
   }
 };
 
+// Whether a plane square to the line of their centres proves that two cores are farther apart.
+bool farther_apart(const CorePair& cores, double distance) {
+  const Vec3 along = cores.b_in_a * cores.b.center() - cores.a.center();
+  const Vec3 back = -(cores.b_in_a.R.transpose() * along);
+  const double a = along.dot(cores.a.vertex(cores.a.support(along, 0)));
+  const double b = along.dot(cores.b_in_a * cores.b.vertex(cores.b.support(back, 0)));
+  return b - a > (1 + 1e-9) * distance * along.norm();
+}
+
 // Leaves each place once and no more points than a manifold has, the deepest.
 void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) {
   const auto first_new = out.begin() + static_cast<std::ptrdiff_t>(from);
@@ -197,6 +213,7 @@ void thin(double same_place, std::size_t from, std::vector<ManifoldPoint>& out) 
 double polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
   const CorePair cores(seam.first(), seam.a.frame, seam.second(), seam.b.frame);
+  if (farther_apart(cores, seam.farthest())) return std::numeric_limits<double>::infinity();
   const NearestFeatures near = nearest_features(cores.a, cores.b, cores.b_in_a, seam.reach);
   if (near.distance > seam.farthest()) return near.distance;
   const bool reached = near.distance <= seam.reach;
