@@ -181,15 +181,16 @@ void Renderer::set_poses(const DrawFrame& frame) {
   }
 }
 
-void Renderer::set_view() {
+void Renderer::set_view(double time) {
   Vec3 displacement = Vec3::Zero();
   if (scene_.camera.follow) {
     const std::size_t body = *scene_.camera.follow;
-    displacement = poses_[body].p - scene_.bodies[body].pose.p;
+    displacement = poses_[body].p - scene_.camera.follow_from.value_or(scene_.bodies[body].pose.p);
     // a lost body is not followed
     if (!is_finite(displacement)) displacement.setZero();
   }
-  view_ = make_view(scene_.camera, first_bounds_, settings_.size, displacement);
+  view_ = make_view(scene_.camera, scene_.camera.in_view.value_or(first_bounds_), settings_.size,
+                    displacement, time);
   projection_ = projection_of(view_);
   cell_size_ = round_size(view_.focus_distance / 8);
 }
@@ -346,13 +347,25 @@ void Renderer::finish_hud(Image& image, const DrawFrame& frame) const {
   draw_hud(image, {frame.time, frame.hud, settings_.footer, view_.pixels_per_metre()});
 }
 
-Image Renderer::draw(const DrawFrame& frame) {
+void Renderer::set_looks(const DrawFrame& frame) {
   if (frame.camera) {
     check_camera(*frame.camera, scene_.bodies.size() + frame.added.size());
     scene_.camera = *frame.camera;
   }
+  if (frame.light) {
+    check_light(*frame.light);
+    scene_.light = *frame.light;
+  }
+  if (frame.sky) {
+    check_sky(*frame.sky);
+    scene_.sky = *frame.sky;
+  }
+}
+
+Image Renderer::draw(const DrawFrame& frame) {
+  set_looks(frame);
   set_poses(frame);
-  set_view();
+  set_view(frame.time);
   bodies_.place(poses_, view_.eye);
   fit_shadows();
   sun_map_.draw(bodies_, programs_->mesh_shadow, programs_->sphere_shadow, view_.eye);

@@ -59,8 +59,9 @@ class Renderer {
 
   void make_targets();
   void register_body(const DrawBody& body);
+  void set_looks(const DrawFrame& frame);
   void set_poses(const DrawFrame& frame);
-  void set_view();
+  void set_view(double time);
   void fit_shadows();
   void draw_surfaces();
   void draw_bodies();

@@ -62,6 +62,23 @@ void fit_box(View& view, const Aabb& box, Vec3 center, bool may_shift) {
   view.eye = center - view.focus_distance * view.forward;
 }
 
+// The upright box that holds a box turned about its upright middle line.
+Aabb turned_box(const Aabb& box) {
+  const Vec3 half = 0.5 * box.size();
+  const double radius = half.head<2>().norm();
+  Aabb turned;
+  turned.add(box.center() - Vec3(radius, radius, half.z()));
+  turned.add(box.center() + Vec3(radius, radius, half.z()));
+  return turned;
+}
+
+void turn_about_target(View& view, const Vec3& up, double angle) {
+  const Eigen::AngleAxisd turn(std::remainder(angle, 2 * pi), up.normalized());
+  const Vec3 target = view.eye + view.focus_distance * view.forward;
+  view.eye = target + turn * (view.eye - target);
+  for (Vec3* axis : {&view.right, &view.up, &view.forward}) *axis = turn * *axis;
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> View::project(const Vec3& point) const {
@@ -91,8 +108,9 @@ Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses)
   return bounds;
 }
 
-View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
-               const Vec3& displacement) {
+View make_view(const Camera& camera, const Aabb& all_bounds, const ImageSize& size,
+               const Vec3& displacement, double time) {
+  const Aabb bounds = camera.turn == 0 ? all_bounds : turned_box(all_bounds);
   View view;
   view.tan_half_fov = std::tan(0.5 * camera.fov);
   view.aspect = static_cast<double>(size.width) / size.height;
@@ -109,6 +127,7 @@ View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
     fit_box(view, bounds, target, !camera.target);
   }
   TW_REQUIRE(view.focus_distance > 0, "camera: eye and target coincide");
+  if (camera.turn != 0) turn_about_target(view, camera.up, camera.turn * time);
   view.eye += displacement;
   view.near_distance = 1e-3 * view.focus_distance;
   return view;

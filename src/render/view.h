@@ -34,9 +34,10 @@ struct View {
 // 2 m about the origin where there is nothing.
 Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses);
 
-// The view that a camera gives.  `displacement` is that of the followed body.  What the camera
-// leaves open is chosen to show `bounds`.  Raises UserError where eye and target coincide.
+// The view that a camera gives at a time.  `displacement` is that of the followed body.  What the
+// camera leaves open is chosen to show `bounds`, from all sides where the camera goes round. Raises
+// UserError where eye and target coincide.
 View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
-               const Vec3& displacement);
+               const Vec3& displacement, double time);
 
 }  // namespace tw
