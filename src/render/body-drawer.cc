@@ -15,6 +15,13 @@ double linear_channel(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
+// What stands fixed is dull.  A gloss of 0.1 tells the light (picture-shaders.cc) that it has a
+// grain, too: rocks and ground of hulls have, made things have not.
+float gloss_of(const ConvexPart& part, const DrawBody& body) {
+  const bool rough = part.kind == PartKind::polyhedron && !part.is_box;
+  return !body.fixed ? 0.5f : rough ? 0.1f : 0.04f;
+}
+
 const void* offset_pointer(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
 
 // Declares the vertex input `location` as `count` floats of the bound buffer.
@@ -59,7 +66,7 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     Part record;
     record.body = index;
     record.placement = part.placement;
-    record.color << color.cast<float>(), body.fixed ? 0.1f : 0.5f;
+    record.color << color.cast<float>(), gloss_of(part, body);
     add_part(part, body, record);
   }
 }

@@ -38,7 +38,6 @@ class PipedProgram {
   std::string last_words() const;
 
  private:
-
   pid_t process_ = -1;
   int pipe_ = -1, errors_ = -1;
 };

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "render/grain.h"
 #include "render/hud.h"
 #include "render/shaders.h"
 
@@ -26,23 +27,13 @@ bool drawable(const Pose& pose) {
   return is_finite(pose.p) && is_finite(pose.q) && pose.p.cwiseAbs().maxCoeff() <= farthest_pose;
 }
 
-// Reversed depth with an infinite far plane: x f/aspect, y f, near, -z with f = 1/tan(fov/2), so
-// that depth = near/distance.
-Matrix4f projection_of(const View& view) {
-  const double f = 1 / view.tan_half_fov;
-  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
-  p.row(0).head<3>() = f / view.aspect * view.right.transpose();
-  p.row(1).head<3>() = f * view.up.transpose();
-  p(2, 3) = view.near_distance;
-  p.row(3).head<3>() = view.forward.transpose();
-  return p.cast<float>();
-}
-
 // 1, 2 or 5 times a power of ten, nearest below.
 double round_size(double size) {
   const double power = std::pow(10.0, std::floor(std::log10(size)));
   return size >= 5 * power ? 5 * power : size >= 2 * power ? 2 * power : power;
 }
+
+double within_four(double x) { return std::fmod(x, 4.0); }
 
 std::string define(const char* name, int value) {
   return std::string("#define ") + name + " " + std::to_string(value) + "\n";
@@ -83,7 +74,7 @@ double median_radius(const std::vector<DrawBody>& bodies) {
 }  // namespace
 
 struct Renderer::Programs {
-  GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, fxaa, average;
+  GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, sky, fxaa, average;
 
   Programs(const GlApi& gl, const Effort& effort)
       : mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
@@ -93,18 +84,20 @@ struct Renderer::Programs {
         sphere_shadow(gl, shaders::sphere_shadow_vertex, shaders::sphere_shadow_fragment),
         light(gl, shaders::picture_vertex, shaders::light_fragment,
               define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
-                  spiral_points(effort.overhead_taps)),
+                  (effort.grain ? "#define GRAIN\n" : "") + spiral_points(effort.overhead_taps)),
+        sky(gl, shaders::picture_vertex, shaders::light_fragment,
+            "#define SKY\n#define SOFTNESS 1\n"),
         fxaa(gl, shaders::picture_vertex, shaders::fxaa_fragment),
         average(gl, shaders::picture_vertex, shaders::average_fragment) {}
 };
 
 Renderer::Effort Renderer::effort_of(Quality quality) {
   switch (quality) {
-    case Quality::draft: return {1024, 1, 16, 0, 1, false};
+    case Quality::draft: return {1024, 1, 16, 0, 1, false, false};
     case Quality::normal: break;
-    case Quality::best: return {4096, 5, 2048, 6, 2, false};
+    case Quality::best: return {4096, 5, 2048, 6, 2, false, true};
   }
-  return {2048, 3, 1024, 8, 1, true};
+  return {2048, 3, 1024, 8, 1, true, true};
 }
 
 Renderer::Renderer(const RenderSettings& settings, const DrawScene& scene)
@@ -143,12 +136,19 @@ void Renderer::make_targets() {
   gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   // FXAA works on the bytes as they are; the mean of samples is one of light
   if (effort_.fxaa) gl_->TexParameteri(GL_TEXTURE_2D, texture_srgb_decode, skip_decode);
-  lit_buffer_ = make_framebuffer(*gl_, lit_, 0, 0);
+  lit_buffer_ = make_framebuffer(*gl_, lit_, 0, depth_);
   final_buffer_ = lit_buffer_;
   if (effort_.fxaa || effort_.samples > 1) {
     final_ = make_texture(*gl_, GL_SRGB8_ALPHA8, settings_.size.width, settings_.size.height);
     final_buffer_ = make_framebuffer(*gl_, final_, 0, 0);
   }
+  if (effort_.grain) grain_ = make_grain_texture(*gl_);
+  gl_->GenSamplers(1, &unfiltered_);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl_->SamplerParameteri(unfiltered_, filter, GL_NEAREST);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl_->SamplerParameteri(unfiltered_, axis, GL_CLAMP_TO_EDGE);
+  if (effort_.fxaa) gl_->SamplerParameteri(unfiltered_, texture_srgb_decode, skip_decode);
   gl_->GenVertexArrays(1, &empty_array_);
   gl_->GenVertexArrays(1, &ground_array_);
   gl_->BindVertexArray(ground_array_);
@@ -277,13 +277,28 @@ void Renderer::draw_ground(const HalfSpacePolygon& polygon) {
 
 void Renderer::light_picture() {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, lit_buffer_);
+  gl_->BindVertexArray(empty_array_);
+  // By depth alone llvmpipe skips blocks of pixels that are sky or are not, before it computes
+  // anything; branches and `discard` don't save it that.  Depth is read in the same pass, but
+  // nobody writes it.
+  gl_->DepthMask(GL_FALSE);
+  for (const GlProgram* program : {&programs_->light, &programs_->sky}) {
+    gl_->DepthFunc(program == &programs_->light ? GL_LESS : GL_EQUAL);
+    set_light(*program);
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  gl_->DepthMask(GL_TRUE);
   gl_->Disable(GL_DEPTH_TEST);
-  const GlProgram& program = programs_->light;
+}
+
+void Renderer::set_light(const GlProgram& program) const {
   program.use();
   set_rays(program);
-  const GLuint textures[] = {color_, normal_, depth_, sun_map_.texture(), overhead_map_.texture()};
-  const char* const names[] = {"color_map", "normal_map", "depth_map", "sun_map", "overhead_map"};
-  for (int i = 0; i < 5; ++i) {
+  const GLuint textures[] = {color_, normal_, depth_, sun_map_.texture(), overhead_map_.texture(),
+                             grain_};
+  const char* const names[] = {"color_map", "normal_map",   "depth_map",
+                               "sun_map",   "overhead_map", "grain_map"};
+  for (int i = 0; i < 6; ++i) {
     gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
     gl_->BindTexture(GL_TEXTURE_2D, textures[i]);
     program.set(names[i], i);
@@ -295,6 +310,12 @@ void Renderer::light_picture() {
   program.set("sun_map_share", sun_map_.texel_share());
   program.set("overhead_texel", overhead_map_.texel());
   program.set("occlusion_radius", std::max(1.6 * body_size_, 3 * overhead_map_.texel()));
+  // the grain repeats after four tiles: single precision needs no more of the eye's place
+  const double tile = 4 * cell_size_;
+  program.set("grain_origin", Vec3((view_.eye / tile).unaryExpr(&within_four)));
+  program.set("grain_scale", 1 / tile);
+  program.set("grain_level",
+              std::log2(2 * view_.tan_half_fov / surface_height_ * grain_side / tile));
   program.set("near_distance", view_.near_distance);
   program.set("to_sun", Vec3(-scene_.light.direction.normalized()));
   program.set("sun_color", linear_color(scene_.light.color));
@@ -302,8 +323,6 @@ void Renderer::light_picture() {
   program.set("horizon", linear_color(scene_.sky.horizon));
   program.set("ground", linear_color(scene_.sky.ground));
   program.set("fog", scene_.sky.fog.value_or(0.04 / view_.focus_distance));
-  gl_->BindVertexArray(empty_array_);
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void Renderer::smooth_edges() {
@@ -313,10 +332,16 @@ void Renderer::smooth_edges() {
   if (effort_.fxaa) gl_->Disable(GL_FRAMEBUFFER_SRGB);
   const GlProgram& program = effort_.fxaa ? programs_->fxaa : programs_->average;
   program.use();
-  gl_->BindTexture(GL_TEXTURE_2D, lit_);
+  for (const GLenum unit : {0u, 1u}) {
+    gl_->ActiveTexture(GL_TEXTURE0 + unit);
+    gl_->BindTexture(GL_TEXTURE_2D, lit_);
+  }
+  gl_->BindSampler(1, unfiltered_);
   program.set("picture", 0);
+  program.set("pixels", 1);
   program.set("pixel_share", 1.0 / settings_.size.width, 1.0 / settings_.size.height);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->BindSampler(1, 0);
 }
 
 Image Renderer::read_picture() const {

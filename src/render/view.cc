@@ -81,6 +81,17 @@ void turn_about_target(View& view, const Vec3& up, double angle) {
 
 }  // namespace
 
+// x f/aspect, y f, near, z along the view, with f = 1/tan(fov/2).
+Eigen::Matrix4f projection_of(const View& view) {
+  const double f = 1 / view.tan_half_fov;
+  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
+  p.row(0).head<3>() = f / view.aspect * view.right.transpose();
+  p.row(1).head<3>() = f * view.up.transpose();
+  p(2, 3) = view.near_distance;
+  p.row(3).head<3>() = view.forward.transpose();
+  return p.cast<float>();
+}
+
 std::optional<Eigen::Vector2d> View::project(const Vec3& point) const {
   const Vec3 d = point - eye;
   const double depth = d.dot(forward);

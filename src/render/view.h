@@ -30,6 +30,10 @@ struct View {
   double pixels_per_metre() const;
 };
 
+// Eye-relative world to clip space, for ClipControl(ZERO_TO_ONE): reversed depth with an infinite
+// far plane, near_distance over the distance along the view.
+Eigen::Matrix4f projection_of(const View& view);
+
 // Bounds of the visible bodies that are bounded, and of rooms that half-spaces enclose; a cube of
 // 2 m about the origin where there is nothing.
 Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses);
