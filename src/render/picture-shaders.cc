@@ -143,9 +143,9 @@ vec3 tone(vec3 c) {
   return mix(c, 1 - (1 - a) * exp(-(c - a) / (1 - a)), step(a, c));
 }
 
-// Gives ground and rocks that stand fixed a grain: lighter and darker spots, and a rough face.  Their
-// gloss tells them from others (body-drawer.cc).  The grain is laid on along an axis of the world,
-// one that the face looks at.
+// Gives ground and rocks that stand fixed a grain: lighter and darker spots, and a rough face.
+// Their gloss tells them from others (body-drawer.cc).  The grain is laid on along an axis of the
+// world, one that the face looks at.
 void add_grain(inout vec4 surface, vec3 position, inout vec3 n) {
 #ifdef GRAIN
   float rough = abs(surface.a - 0.1) < 0.03 ? 1.0 : 0.0;

@@ -217,6 +217,7 @@
     ((fog) (one-of '(0 0.1 0.9)))
     ((file frames) (one-of files))
     ((poses events) (one-of files))
+    ((movie) (one-of '("a.mp4" "b.gif" "c.avi" "" "none/d.webm")))
     ((quality) ''draft)
     ((vertices) (one-of '(8 16 4 200)))
     (else (a-wild-value))))
