@@ -64,7 +64,7 @@ what it leaves out is as at the start.
 #:color      #(r g b), sRGB, 0 to 1; #(1 0.97 0.91)"
   (keep! 'light `((direction . ,direction) (color . ,color)) '()))
 
-(define-keyword-procedure (sky #:key zenith horizon ground fog)
+(define-keyword-procedure (sky #:key zenith horizon ground fog grain)
   "Set the sky of the current world.  A call says all: what it leaves out is as at the start.
 Colours are #(r g b), sRGB, 0 to 1.
 
@@ -72,7 +72,11 @@ Colours are #(r g b), sRGB, 0 to 1.
 #:horizon  colour of the sky at the horizon, and of the fog; #(0.8 0.86 0.92)
 #:ground   colour below the horizon where there is no body; #(0.48 0.51 0.55)
 #:fog      1/m, the share of the light that is lost in a metre, 0 to 1; 0.04 over the distance of
-           the camera from its target"
+           the camera from its target
+#:grain    how rough ground and rocks look, fixed bodies of convex hulls, 0 to 1, not at quality
+           'draft; 1 where there are a hundred of them, else 0"
   (when fog
     (unless (and (real? fog) (<= 0 fog) (< fog 1)) (bad-value "fog" fog "a share per metre, 0..1")))
-  (keep! 'sky `((zenith . ,zenith) (horizon . ,horizon) (ground . ,ground)) `((fog . ,fog))))
+  (when grain
+    (unless (and (real? grain) (<= 0 grain 1)) (bad-value "grain" grain "a number from 0 to 1")))
+  (keep! 'sky `((zenith . ,zenith) (horizon . ,horizon) (ground . ,ground)) `((fog . ,fog) (grain . ,grain))))

@@ -15,11 +15,14 @@ double linear_channel(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// What stands fixed is dull.  A gloss of 0.1 tells the light (picture-shaders.cc) that it has a
-// grain, too: rocks and ground of hulls have, made things have not.
+// Ground and rocks are, made things aren't.
+bool has_grain(const ConvexPart& part, const DrawBody& body) {
+  return body.fixed && part.kind == PartKind::polyhedron && !part.is_box;
+}
+
+// What stands fixed is dull; 0.1 tells the light (picture-shaders.cc) that it has a grain, too.
 float gloss_of(const ConvexPart& part, const DrawBody& body) {
-  const bool rough = part.kind == PartKind::polyhedron && !part.is_box;
-  return !body.fixed ? 0.5f : rough ? 0.1f : 0.04f;
+  return !body.fixed ? 0.5f : has_grain(part, body) ? 0.1f : 0.04f;
 }
 
 const void* offset_pointer(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
@@ -67,6 +70,7 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     record.body = index;
     record.placement = part.placement;
     record.color << color.cast<float>(), gloss_of(part, body);
+    if (has_grain(part, body)) ++grainy_parts_;
     add_part(part, body, record);
   }
 }

@@ -68,6 +68,8 @@ void check_sky(const Sky& sky) {
   TW_REQUIRE(!sky.fog || (std::isfinite(*sky.fog) && *sky.fog >= 0),
              "sky: fog is " + show(*sky.fog) +
                  "; expected the share of light lost per metre, not negative");
+  TW_REQUIRE(!sky.grain || (*sky.grain >= 0 && *sky.grain <= 1),
+             "sky: grain is " + show(*sky.grain) + "; expected a number from 0 to 1");
 }
 
 void check_scene(const DrawScene& scene) {

@@ -55,6 +55,9 @@ struct Sky {
   Vec3 ground{0.48, 0.51, 0.55};  // seen below the horizon where there is no ground
   // Share of the light lost per metre.  Absent: 1/25 of the camera's distance from its target.
   std::optional<double> fog;
+  // How rough ground and rocks look, fixed bodies of hulls: 0..1.  Absent: 1 in a landscape, which
+  // has a hundred of them, else 0.
+  std::optional<double> grain;
 };
 
 struct DrawScene {

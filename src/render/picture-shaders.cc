@@ -46,6 +46,7 @@ uniform sampler2D grain_map;
 uniform vec3 grain_origin;         // the eye's place, in tiles of the grain
 uniform float grain_scale;         // tiles per metre
 uniform float grain_level;         // of the map's smaller versions, at 1 m
+uniform float grain_strength;      // 0..1
 #endif
 in vec3 ray;
 layout(location = 0) out vec4 out_color;
@@ -131,9 +132,12 @@ float sky_light(vec3 position, vec3 n) {
   sum += in_map(overhead_map, (to_overhead_map * vec4(base + occlusion_radius * offset, 1)).xyz); \
   count += 1;
   EACH_POINT(LOOK)
-  vec3 high = position + vec3(0, 0, 2.5 * occlusion_radius);
-  float near_only = in_map(overhead_map, (to_overhead_map * vec4(high, 1)).xyz);
-  return mix(1.0, sum / count, 0.3 + 0.7 * near_only);
+  // what is 1.5 radii above fades out, from 3 on it hardly counts
+  vec3 low = position + vec3(0, 0, 1.5 * occlusion_radius);
+  vec3 high = position + vec3(0, 0, 3.0 * occlusion_radius);
+  float near_only = in_map(overhead_map, (to_overhead_map * vec4(low, 1)).xyz) +
+                    in_map(overhead_map, (to_overhead_map * vec4(high, 1)).xyz);
+  return mix(1.0, sum / count, 0.12 + 0.44 * near_only);
 #endif
 }
 
@@ -148,7 +152,7 @@ vec3 tone(vec3 c) {
 // world, one that the face looks at.
 void add_grain(inout vec4 surface, vec3 position, inout vec3 n) {
 #ifdef GRAIN
-  float rough = abs(surface.a - 0.1) < 0.03 ? 1.0 : 0.0;
+  float rough = abs(surface.a - 0.1) < 0.03 ? grain_strength : 0.0;
   vec3 place = position * grain_scale + grain_origin;
   vec3 size = abs(n);
   bool on_top = size.z >= 0.5, facing_x = size.x > size.y;

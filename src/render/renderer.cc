@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "render/grain.h"
@@ -21,6 +22,7 @@ constexpr GLenum texture_srgb_decode = 0x8A48;
 constexpr GLint skip_decode = 0x8A4A;
 
 constexpr double farthest_pose = 1e12;  // m; beyond, products overflow single precision
+constexpr int landscape_parts = 100;    // fixed hulls, from which on they are taken for ground
 constexpr double ground_reach = 4000;   // of an unbounded plane, in distances of the target
 
 bool drawable(const Pose& pose) {
@@ -74,21 +76,36 @@ double median_radius(const std::vector<DrawBody>& bodies) {
 }  // namespace
 
 struct Renderer::Programs {
+  const GlApi& gl;
+  const Effort effort;
   GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, sky, fxaa, average;
+  // made when a scene first has a grain
+  std::optional<GlProgram> light_with_grain;
 
-  Programs(const GlApi& gl, const Effort& effort)
-      : mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
+  Programs(const GlApi& api, const Effort& pays)
+      : gl(api),
+        effort(pays),
+        mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
         sphere(gl, shaders::sphere_vertex, shaders::sphere_fragment, shaders::surface_preamble),
         ground(gl, shaders::ground_vertex, shaders::ground_fragment, shaders::surface_preamble),
         mesh_shadow(gl, shaders::mesh_shadow_vertex, shaders::mesh_shadow_fragment),
         sphere_shadow(gl, shaders::sphere_shadow_vertex, shaders::sphere_shadow_fragment),
-        light(gl, shaders::picture_vertex, shaders::light_fragment,
-              define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
-                  (effort.grain ? "#define GRAIN\n" : "") + spiral_points(effort.overhead_taps)),
+        light(make_light("")),
         sky(gl, shaders::picture_vertex, shaders::light_fragment,
             "#define SKY\n#define SOFTNESS 1\n"),
         fxaa(gl, shaders::picture_vertex, shaders::fxaa_fragment),
         average(gl, shaders::picture_vertex, shaders::average_fragment) {}
+
+  GlProgram make_light(const std::string& definitions) const {
+    return {gl, shaders::picture_vertex, shaders::light_fragment,
+            definitions + define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
+                spiral_points(effort.overhead_taps)};
+  }
+  const GlProgram& light_for(double grain) {
+    if (grain == 0) return light;
+    if (!light_with_grain) light_with_grain = make_light("#define GRAIN\n");
+    return *light_with_grain;
+  }
 };
 
 Renderer::Effort Renderer::effort_of(Quality quality) {
@@ -282,13 +299,19 @@ void Renderer::light_picture() {
   // anything; branches and `discard` don't save it that.  Depth is read in the same pass, but
   // nobody writes it.
   gl_->DepthMask(GL_FALSE);
-  for (const GlProgram* program : {&programs_->light, &programs_->sky}) {
-    gl_->DepthFunc(program == &programs_->light ? GL_LESS : GL_EQUAL);
+  const GlProgram &light = programs_->light_for(grain()), &sky = programs_->sky;
+  for (const GlProgram* program : {&light, &sky}) {
+    gl_->DepthFunc(program == &light ? GL_LESS : GL_EQUAL);
     set_light(*program);
     gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl_->DepthMask(GL_TRUE);
   gl_->Disable(GL_DEPTH_TEST);
+}
+
+double Renderer::grain() const {
+  if (!effort_.grain) return 0;
+  return scene_.sky.grain.value_or(bodies_.grainy_parts() >= landscape_parts ? 1 : 0);
 }
 
 void Renderer::set_light(const GlProgram& program) const {
@@ -314,6 +337,7 @@ void Renderer::set_light(const GlProgram& program) const {
   const double tile = 4 * cell_size_;
   program.set("grain_origin", Vec3((view_.eye / tile).unaryExpr(&within_four)));
   program.set("grain_scale", 1 / tile);
+  program.set("grain_strength", grain());
   program.set("grain_level",
               std::log2(2 * view_.tan_half_fov / surface_height_ * grain_side / tile));
   program.set("near_distance", view_.near_distance);

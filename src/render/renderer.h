@@ -69,6 +69,7 @@ class Renderer {
   void draw_grounds();
   void draw_ground(const HalfSpacePolygon& polygon);
   void light_picture();
+  double grain() const;
   void set_light(const GlProgram& program) const;
   void smooth_edges();
   void set_rays(const GlProgram& program) const;

@@ -90,6 +90,7 @@ Sky to_sky(SCM alist) {
   set_vec3(sky.horizon, alist, "horizon");
   set_vec3(sky.ground, alist, "ground");
   if (scm_is_true(entry(alist, "fog"))) sky.fog = to_real(entry(alist, "fog"), "fog");
+  if (scm_is_true(entry(alist, "grain"))) sky.grain = to_real(entry(alist, "grain"), "grain");
   return sky;
 }
 

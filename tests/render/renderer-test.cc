@@ -119,9 +119,10 @@ TEST(Renderer, a_pose_that_is_not_finite_is_left_out_and_counted) {
 }
 
 // The spread of brightness over the middle of a picture of one plate.
-double spread_on_plate(ShapePtr shape, bool fixed) {
+double spread_on_plate(ShapePtr shape, bool fixed, std::optional<double> grain = 1) {
   DrawScene scene;
   scene.bodies.push_back(make_body(std::move(shape), {0, 0, 0}, {0.5, 0.5, 0.5}, fixed));
+  scene.sky.grain = grain;
   scene.camera.eye = Vec3(0, -0.1, 4);
   scene.camera.target = Vec3(0, 0, 0);
   const Image image = Renderer(small_settings(Quality::normal), scene).draw(frame_at(0));
@@ -141,6 +142,7 @@ TEST(Renderer, hulls_that_stand_fixed_have_a_grain_and_others_have_not) {
   };
   EXPECT_GT(spread_on_plate(hull(), true), 0.04);
   EXPECT_LT(spread_on_plate(hull(), false), 0.03);
+  EXPECT_LT(spread_on_plate(hull(), true, std::nullopt), 0.03);
   EXPECT_LT(spread_on_plate(make_box({8, 8, 0.1}), true), 0.03);
 }
 

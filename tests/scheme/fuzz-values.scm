@@ -213,6 +213,7 @@
     ((accuracy) (one-of '(1e-6 1e-4 1e-12 0.1)))
     ((seed) (one-of '(0 1 7 18446744073709551615)))
     ((fov) (one-of '(0.5 1 3 1e-300)))
+    ((grain) (one-of '(0 0.3 1 7)))
     ((turn) (one-of '(0 0.5 -3 1e300)))
     ((fog) (one-of '(0 0.1 0.9)))
     ((file frames) (one-of files))
