@@ -27,13 +27,14 @@ uniform sampler2D color_map;
 uniform sampler2D normal_map;
 uniform sampler2D depth_map;
 uniform sampler2DShadow sun_map;
-uniform sampler2DShadow overhead_map;
+uniform sampler2D overhead_map;
 uniform mat4 to_sun_map;           // eye-relative world to texture space, depth in z
 uniform mat4 to_overhead_map;
 uniform float sun_texel;           // side of a texel of the sun's map, m
 uniform float sun_map_share;       // one texel as a share of the map
 uniform float occlusion_radius;    // m
 uniform float overhead_texel;      // m
+uniform float overhead_depth;      // from its first depth to its last, radii of occlusion
 uniform float near_distance;
 uniform vec3 to_sun;
 uniform vec3 sun_color;
@@ -109,9 +110,10 @@ float sun_light(vec3 position, vec3 n) {
   return soft_light((to_sun_map * vec4(lifted, 1)).xyz);
 }
 
-// Share of the sky seen: is there something straight above points spread over the half-ball
-// around the normal?  What is far above counts less.  The renderer writes out the points, as
-// EACH_POINT(look) look(x, y, share of the radius) ..., for loops are slow here.
+// Share of the sky seen: how far above points spread over the half-ball around the normal is what
+// lies straight above them?  What is less than 1.5 radii above hides all, what is more than 3 hides
+// nothing.  The renderer writes out the points, as EACH_POINT(look) look(x, y, share of the radius)
+// ..., for loops are slow here.
 float sky_light(vec3 position, vec3 n) {
 #ifndef EACH_POINT
   return 1.0;
@@ -123,21 +125,19 @@ float sky_light(vec3 position, vec3 n) {
 #else
   const float turned = 1;
 #endif
-  float sum = 0, count = 0;
+  float hidden = 0, count = 0;
   vec3 base = position + n * max(0.06 * occlusion_radius, 2 * overhead_texel);
-  vec3 offset;
+  vec3 offset, at;
+  float above;   // radii
 #define LOOK(x, y, s)                                                                        \
   offset = vec3(turned * vec2(x, y), 0.35) * s;                                              \
   offset += n * (0.30 * s - 2 * min(dot(offset, n) + 0.30 * s, 0));                          \
-  sum += in_map(overhead_map, (to_overhead_map * vec4(base + occlusion_radius * offset, 1)).xyz); \
+  at = (to_overhead_map * vec4(base + occlusion_radius * offset, 1)).xyz;                    \
+  above = (at.z - texture(overhead_map, at.xy).r) * overhead_depth;                          \
+  hidden += clamp(8 * above, 0, 1) * clamp(2 - above / 1.5, 0, 1);                           \
   count += 1;
   EACH_POINT(LOOK)
-  // what is 1.5 radii above fades out, from 3 on it hardly counts
-  vec3 low = position + vec3(0, 0, 1.5 * occlusion_radius);
-  vec3 high = position + vec3(0, 0, 3.0 * occlusion_radius);
-  float near_only = in_map(overhead_map, (to_overhead_map * vec4(low, 1)).xyz) +
-                    in_map(overhead_map, (to_overhead_map * vec4(high, 1)).xyz);
-  return mix(1.0, sum / count, 0.12 + 0.44 * near_only);
+  return 1 - hidden / count;
 #endif
 }
 

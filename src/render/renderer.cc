@@ -125,8 +125,8 @@ Renderer::Renderer(const RenderSettings& settings, const DrawScene& scene)
       gl_(&context_->gl()),
       programs_(std::make_unique<Programs>(*gl_, effort_)),
       bodies_(*gl_),
-      sun_map_(*gl_, effort_.shadow_side),
-      overhead_map_(*gl_, effort_.overhead_side) {
+      sun_map_(*gl_, effort_.shadow_side, ShadowMap::LookUp::comparison),
+      overhead_map_(*gl_, effort_.overhead_side, ShadowMap::LookUp::depth) {
   check_scene(scene);
   make_targets();
   scene_.bodies.clear();
@@ -332,7 +332,9 @@ void Renderer::set_light(const GlProgram& program) const {
   program.set("sun_texel", sun_map_.texel());
   program.set("sun_map_share", sun_map_.texel_share());
   program.set("overhead_texel", overhead_map_.texel());
-  program.set("occlusion_radius", std::max(1.6 * body_size_, 3 * overhead_map_.texel()));
+  const double occlusion_radius = std::max(1.6 * body_size_, 3 * overhead_map_.texel());
+  program.set("occlusion_radius", occlusion_radius);
+  program.set("overhead_depth", overhead_map_.depth() / occlusion_radius);
   // the grain repeats after four tiles: single precision needs no more of the eye's place
   const double tile = 4 * cell_size_;
   program.set("grain_origin", Vec3((view_.eye / tile).unaryExpr(&within_four)));

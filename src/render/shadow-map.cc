@@ -7,14 +7,15 @@
 
 namespace tw {
 
-ShadowMap::ShadowMap(const GlApi& gl, int side) : gl_(&gl), side_(side) {
+ShadowMap::ShadowMap(const GlApi& gl, int side, LookUp look_up) : gl_(&gl), side_(side) {
   texture_ = make_texture(gl, GL_DEPTH_COMPONENT32F, side, side);
+  framebuffer_ = make_framebuffer(gl, 0, 0, texture_);
+  if (look_up == LookUp::depth) return;
   // a look-up compares four texels and blends the answers
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  framebuffer_ = make_framebuffer(gl, 0, 0, texture_);
 }
 
 void ShadowMap::fit(const Vec3& direction, std::span<const Ball> casters, const Vec3& target,
@@ -53,11 +54,10 @@ void ShadowMap::fit(const Vec3& direction, std::span<const Ball> casters, const 
 
 // clip.x = (right.x - middle)/half side, likewise y; clip.z = (along.x - first)/(last - first).
 Matrix4f ShadowMap::to_clip(const Vec3& eye) const {
-  const double depth = last_ - first_;
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m.row(0) << right_.transpose() / half_side_, (right_.dot(eye) - middle_right_) / half_side_;
   m.row(1) << up_.transpose() / half_side_, (up_.dot(eye) - middle_up_) / half_side_;
-  m.row(2) << along_.transpose() / depth, (along_.dot(eye) - first_) / depth;
+  m.row(2) << along_.transpose() / depth(), (along_.dot(eye) - first_) / depth();
   return m.cast<float>();
 }
 
