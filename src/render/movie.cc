@@ -111,7 +111,7 @@ Words ffmpeg_command(const std::string& file, const std::string& output, ImageSi
   const Format& format = format_of(file);
   const ImageSize even = movie_size(file, size);
   const std::string sides = std::to_string(even.width) + "x" + std::to_string(even.height);
-  Words command = {"ffmpeg",     "-hide_banner", "-nostdin", "-y",    "-loglevel",   "error",
+  Words command = {"ffmpeg",     "-hide_banner", "-nostdin", "-y",    "-loglevel",   "repeat+error",
                    "-f",         "rawvideo",     "-pix_fmt", "rgb24", "-video_size", sides,
                    "-framerate", show(fps),      "-i",       "pipe:0"};
   command.insert(command.end(), format.options.begin(), format.options.end());
