@@ -213,5 +213,6 @@
       (loop (1+ index) (cons (cons place radius) balls)))))
 
 (camera #:eye #(7.5 -29 12.5) #:target #(0.3 6 8.5) #:fov 0.9)
-(light #:direction #(-0.6 0.5 -0.75) #:color #(1.0 0.95 0.86))
+;; a low sun at the side shows how steep it is
+(light #:direction #(-1 0.3 -0.65) #:color #(1.0 0.95 0.86))
 (sky #:zenith #(0.22 0.42 0.72) #:horizon #(0.74 0.83 0.92) #:ground #(0.46 0.45 0.42) #:fog 0.002)

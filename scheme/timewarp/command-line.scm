@@ -59,7 +59,7 @@
 ;; ---- the run ----
 
 (define override-keys
-  '(accuracy seed threads fps size quality part contacts hash check undo-redo gvt-interval window
+  '(accuracy seed threads fps size quality part contacts no-overlay hash check undo-redo gvt-interval window
     group-check-rate integrator policy adversary write-states compare-states))
 
 (define (take-overrides! options)
@@ -77,7 +77,7 @@
 
 ;; Runs to the end in pieces, by default one; a scene may have run farther by itself.
 (define (run-to-end! world options)
-  (let* ((end (or (option-ref options 'until) (world-duration world)))
+  (let* ((end (or (option-ref options 'until) (option-ref options 'at) (world-duration world)))
          (start (%world-time world))
          (pieces (or (option-ref options 'pieces) 1)))
     (when (> end start)
@@ -98,6 +98,8 @@
       (check-definitions)
       (run-to-end! (current-world) options))
     #:frames (option-ref options 'frames)
+    #:movie (option-ref options 'movie)
+    #:at (option-ref options 'at)
     #:poses (option-ref options 'poses)
     #:events (option-ref options 'events)))
 
@@ -159,11 +161,26 @@
 (define (check-usage options scene)
   (when (and (not scene)
              (any (lambda (key) (option-ref options key))
-                  '(until frames poses events stats hash)))
+                  '(until frames movie at poses events stats hash)))
     (usage-error "there is no scene; expected timewarp [OPTION]... SCENE.scm"))
-  (when (and (option-ref options 'frames) (not (%drawing?)))
-    (usage-error "--frames needs drawing, which was left out when timewarp was built ~a"
-                 "(--disable-render)")))
+  (for-each (lambda (key)
+              (when (and (option-ref options key) (not (%drawing?)))
+                (usage-error "--~a needs drawing, which was left out when timewarp was built ~a"
+                             key "(--disable-render)")))
+            '(frames movie))
+  (when (and (option-ref options 'movie) (option-ref options 'part))
+    (usage-error "--movie has all frames, --part draws some of them; expected one of the two"))
+  (check-at (option-ref options 'at) options))
+
+(define (check-at time options)
+  (when time
+    (let ((file (option-ref options 'frames)))
+      (unless (and file (string-suffix-ci? ".png" file))
+        (usage-error "--at draws one picture~a; expected --frames=FILE.png"
+                     (if file (format #f ", --frames is ~s" file) ""))))
+    (when (< (or (option-ref options 'until) time) time)
+      (usage-error "--at is ~a, after --until, ~a; expected a time of the run" time
+                   (option-ref options 'until)))))
 
 (define (work options)
   (let ((scene (scene-operand options)))

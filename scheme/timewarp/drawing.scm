@@ -10,9 +10,13 @@
   ;; for the other modules
   #:export (open-frames
             attach-frames!
+            show-new-looks!
             await-frames
             close-frames!
             frames-written
+            check-shot
+            keep-first-view!
+            draw-world!
             require-drawing))
 
 (define (require-drawing what)
@@ -41,18 +45,28 @@
 (define (draw-contacts? contacts?)
   (->bool (or contacts? (override 'contacts))))
 
-(define (looks world)
-  (list (world-ref world 'camera '()) (world-ref world 'light '()) (world-ref world 'sky '())))
+(define (draw-overlay? bare?)
+  (not (or bare? (override 'no-overlay))))
 
-(define (open-frames frames size quality)
-  "Prepare drawing into the folder or pattern FRAMES; refuse at once what cannot be written."
+(define (looks world)
+  ;; a box to be in view, where a picture of a later time is to look like the first
+  (list (append (world-ref world 'camera '()) (world-ref world 'in-view '())) (world-ref world 'light '()) (world-ref world 'sky '())))
+
+(define (open-frames frames movie size quality bare?)
+  "Prepare drawing into the folder or pattern FRAMES, the file MOVIE, or both (#f: neither); refuse
+at once what cannot be written."
   (require-drawing "drawing frames")
   ;; a pattern says what the files are called, a folder does not
   (when (and (string? frames) (string-index frames #\%))
     (check-picture-name "the pattern of frames" frames))
+  ;; a movie of every N-th frame would run N times too fast
+  (when (and movie (override 'part))
+    (raise-error (string-append "a movie has all frames, --part draws some of them; expected "
+                                "--frames with --part, or a movie without it")))
   (call-with-values (lambda () (picture-size size))
     (lambda (width height)
-      (%open-frames frames width height (picture-quality quality)))))
+      (%open-frames frames movie width height (picture-quality quality)
+                    (draw-overlay? bare?)))))
 
 (define (attach-frames! world drawer fps contacts?)
   "Let WORLD feed DRAWER with FPS frames per second, or with what --part says of them, its contacts
@@ -60,6 +74,11 @@ drawn if CONTACTS? is true."
   (world-set! world 'drawer drawer)
   (%attach-frames! world drawer fps (override 'part) (looks world) (world-ref world 'title #f)
                    (draw-contacts? contacts?)))
+
+(define (show-new-looks! world)
+  "Let the frames of WORLD, if any are being drawn, have the camera, light and sky that it has now."
+  (let ((drawer (world-ref world 'drawer #f)))
+    (when drawer (%set-looks! world drawer (looks world)))))
 
 ;; s of wall time: Ctrl-C has its say between two waits
 (define patience 0.05)
@@ -88,19 +107,35 @@ interrupts the waiting, only the one that is being drawn."
   (let ((drawer (world-ref world 'drawer #f)))
     (and drawer (%frames-written drawer))))
 
-(define-keyword-procedure (render! file #:key size quality contacts?)
+(define (check-shot file size quality)
+  "Refuse at once what draw-world! could not draw into FILE; make its folder."
+  (require-drawing "drawing a picture")
+  (check-picture-name "the picture's file" file)
+  (call-with-values (lambda () (picture-size size))
+    (lambda (width height)
+      (%check-picture file width height (picture-quality quality)))))
+
+(define (keep-first-view! world)
+  "Let a camera of WORLD that is placed so that the scene is in view stay where it is now."
+  (world-set! world 'in-view (list (cons 'in-view (%bounds-in-view world)))))
+
+(define (draw-world! world file size quality contacts? bare?)
+  "Draw WORLD as it is now into FILE."
+  (call-with-values (lambda () (picture-size size))
+    (lambda (width height)
+      (%render! world file width height (picture-quality quality) (draw-overlay? bare?)
+                (looks world) (world-ref world 'title #f) (draw-contacts? contacts?)))))
+
+(define-keyword-procedure (render! file #:key size quality contacts? bare?)
   "Draw the current world as it is now into FILE (PNG), a name relative to the scene's file.
 
 #:size       (WIDTH HEIGHT) in pixels, 1 to 16384 each; --size, else (1280 720)
 #:quality    'draft, 'normal or 'best; --quality, else 'normal
 #:contacts?  #t: a line along the normal shows each contact that carries load, its length by the
              logarithm of the force, its colour whether it sticks or slips; #f, or #t with
-             --contacts"
+             --contacts
+#:bare?      #t: no title, time and scale in the picture; #f, or #t with --no-overlay"
   (%require-outside-callbacks "render!")
   (require-drawing "render!")
   (check-picture-name "the picture's file" file)
-  (let ((world (current-world)))
-    (call-with-values (lambda () (picture-size size))
-      (lambda (width height)
-        (%render! world (scene-file file) width height (picture-quality quality)
-                  (looks world) (world-ref world 'title #f) (draw-contacts? contacts?))))))
+  (draw-world! (current-world) (scene-file file) size quality contacts? bare?))

@@ -53,15 +53,33 @@
                       (lambda (world interrupted?)
                         (%close-recorder! (or world (current-world)) recorder)))))
 
-(define (frames-recorder frames size quality contacts?)
-  (let ((drawer (open-frames frames size quality)))
-    (record-one-world "frames"
+(define (frames-recorder frames movie size quality contacts? bare?)
+  (let ((drawer (open-frames frames movie size quality bare?)))
+    (record-one-world (if frames "frames" "a movie")
                       (lambda (world) (attach-frames! world drawer (world-fps world) contacts?))
-                      ;; one is being drawn, one is waiting: more would only fill memory
-                      (lambda () (await-frames drawer 2))
+                      ;; one is being written, one drawn, one is waiting: more would only fill memory
+                      (lambda () (await-frames drawer 3))
                       (const #f)
                       (lambda (world interrupted?)
                         (when world (close-frames! world drawer interrupted?))))))
+
+;; One picture, of the moment TIME.
+(define (shot-recorder file time size quality contacts? bare?)
+  (let ((drawn? #f))
+    (check-shot file size quality)
+    (record-one-world "a picture"
+                      (lambda (world)
+                        (keep-first-view! world)
+                        (stop-at! world time
+                          (lambda ()
+                            (draw-world! world file size quality contacts? bare?)
+                            (set! drawn? #t))))
+                      (const #f)
+                      (const #f)
+                      (lambda (world interrupted?)
+                        (unless (or drawn? interrupted?)
+                          (raise-error (format #f "no run! reached ~a s, of which ~a was to be drawn"
+                                               time file)))))))
 
 ;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a
 ;; second, and a full disk shows as soon.
@@ -91,12 +109,16 @@
                        (or failure raised))))))))
 
 ;; Two recorders would write over one another, and so would pictures over tables.
-(define (check-files poses events)
+(define (check-files poses events movie)
   (define (check-table what file)
     (when (and (string? file) (string-suffix-ci? ".png" file))
       (bad-value what file "a name for a CSV file, not for a picture")))
   (check-table "the poses file" poses)
   (check-table "the events file" events)
+  (for-each (lambda (table)
+              (when (and movie table (same-file? movie table))
+                (bad-value "the movie" movie "another file than those of poses and events")))
+            (list poses events))
   (when (and poses events (same-file? poses events))
     (bad-value "the events file" events "another file than that of the poses")))
 
@@ -111,19 +133,25 @@
   (let ((one (identity a)))
     (and one (equal? one (identity b)))))
 
-(define* (call-with-recorders thunk #:key frames size quality contacts? poses events)
+(define* (call-with-recorders thunk #:key frames movie at size quality contacts?
+                              bare? poses events)
   "Call THUNK while the current world, or one that takes its place before anything has run, is
-recorded: frames to pictures, poses and events to CSV files.  Every file is closed however THUNK is
+recorded: frames to pictures and to a movie, poses and events to CSV files.  With AT, FRAMES is a
+file, for one picture of that time.  Every file is closed however THUNK is
 left, by SIGTERM and SIGHUP too."
-  (check-files poses events)
-  (call-with-ending-signals (lambda () (record thunk frames size quality contacts? poses events))))
+  (check-files poses events movie)
+  (call-with-ending-signals
+   (lambda ()
+     (record thunk
+             (append (if poses (list (csv-recorder "poses" %open-poses poses)) '())
+                     (if events (list (csv-recorder "events" %open-events events)) '())
+                     (if at (list (shot-recorder frames at size quality contacts? bare?)) '())
+                     (if (or movie (and frames (not at)))
+                         (list (frames-recorder (and (not at) frames) movie size quality contacts? bare?))
+                         '()))))))
 
-(define (record thunk frames size quality contacts? poses events)
-  (let* ((recorders
-          (append (if poses (list (csv-recorder "poses" %open-poses poses)) '())
-                  (if events (list (csv-recorder "events" %open-events events)) '())
-                  (if frames (list (frames-recorder frames size quality contacts?)) '())))
-         (follows (map recorder-follow recorders)))
+(define (record thunk recorders)
+  (let ((follows (map recorder-follow recorders)))
     (for-each (lambda (follow) (follow (current-world))) follows)
     (call-with-values
         (lambda ()

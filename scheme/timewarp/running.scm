@@ -10,6 +10,7 @@
   #:export (run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
   ;; for the other modules
   #:export (run-world!
+            stop-at!
             current-slice-hooks))
 
 ;; s of wall time: between slices no C++ frame is on the stack
@@ -24,6 +25,21 @@
     (bad-value "until" until "a finite time in seconds"))
   (%require-outside-callbacks "run!")
   (start-first-run! world)
+  (match (world-ref world 'stop #f)
+    (((? (lambda (time) (<= (%world-time world) time until)) time) . look)
+     (advance-to! world time)
+     (world-set! world 'stop #f)
+     (look))
+    (_ #t))
+  (advance-to! world until)
+  (if #f #f))
+
+;; Splitting a run changes nothing.
+(define (stop-at! world time look)
+  "Let the run of WORLD that reaches TIME stop there to call LOOK, once."
+  (world-set! world 'stop (cons time look)))
+
+(define (advance-to! world until)
   (call-with-interrupts
    (lambda ()
      (%forget-interrupt!)
@@ -31,8 +47,7 @@
        (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
          (%check-interrupt!)
          (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
-         (unless finished? (loop))))))
-  (if #f #f))
+         (unless finished? (loop)))))))
 
 (define-keyword-procedure (run! #:key until)
   "Run the current world; return when everything up to and including the time to run to is committed

@@ -85,7 +85,7 @@
 ;; may list values
 (define swept '(define until fps size quality policy integrator accuracy seed group-check-rate))
 ;; name a file in the folder of each run
-(define output-options '(frames poses events write-states))
+(define output-options '(frames movie poses events write-states))
 ;; make no sense here
 (define refused
   '((stats . "the statistics of every run are in FOLDER/runs.jsonl")

@@ -63,7 +63,7 @@
   (for-each (lambda (key)
               (when (and (given 'parts) (given key))
                 (usage-error "--~a is written by every part of --parts; expected one of them" key)))
-            '(poses events write-states))
+            '(movie poses events write-states))
   (when (and (given 'keep) (given 'again))
     (usage-error "--keep and --again contradict each other; expected one of them"))
   (when (and (given 'slurm) (given 'jobs) (string-suffix? "%" (given 'jobs)))

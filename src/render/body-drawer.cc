@@ -15,6 +15,16 @@ double linear_channel(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
+// Ground and rocks are, made things aren't.
+bool has_grain(const ConvexPart& part, const DrawBody& body) {
+  return body.fixed && part.kind == PartKind::polyhedron && !part.is_box;
+}
+
+// What stands fixed is dull; 0.1 tells the light (picture-shaders.cc) that it has a grain, too.
+float gloss_of(const ConvexPart& part, const DrawBody& body) {
+  return !body.fixed ? 0.5f : has_grain(part, body) ? 0.1f : 0.04f;
+}
+
 const void* offset_pointer(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
 
 // Declares the vertex input `location` as `count` floats of the bound buffer.
@@ -59,7 +69,8 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     Part record;
     record.body = index;
     record.placement = part.placement;
-    record.color << color.cast<float>(), body.fixed ? 0.1f : 0.5f;
+    record.color << color.cast<float>(), gloss_of(part, body);
+    if (has_grain(part, body)) ++grainy_parts_;
     add_part(part, body, record);
   }
 }

@@ -28,6 +28,9 @@ class BodyDrawer {
   // Registers the next body; half-spaces are not drawn here.
   void add_body(const DrawBody& body, std::size_t index);
 
+  // How many parts have a grain, as those of fixed hulls have.
+  int grainy_parts() const { return grainy_parts_; }
+
   // Sets the instances of all bodies whose pose is finite.
   void place(std::span<const Pose> poses, const Vec3& eye);
 
@@ -66,6 +69,7 @@ class BodyDrawer {
   void upload(GLuint buffer, const void* data, std::size_t size) const;
 
   const GlApi* gl_;
+  int grainy_parts_ = 0;
   std::vector<MeshGroup> groups_;
   std::map<MeshKey, std::size_t> group_index_;
   // keeps the cores alive whose addresses are keys

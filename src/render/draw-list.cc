@@ -46,6 +46,8 @@ void check_camera(const Camera& camera, std::size_t body_count) {
   TW_REQUIRE(camera.up.norm() > 0, "camera: up is zero; expected a direction");
   TW_REQUIRE(camera.fov > 0 && camera.fov < pi,
              "camera: fov is " + show(camera.fov) + "; expected an angle between 0 and pi radians");
+  TW_REQUIRE(std::isfinite(camera.turn),
+             "camera: turn is " + show(camera.turn) + "; expected a rate in radians per second");
   TW_REQUIRE(!camera.eye || !camera.target || *camera.eye != *camera.target,
              "camera: eye and target are both " + show_vector(*camera.eye) +
                  "; expected two different points");
@@ -66,6 +68,8 @@ void check_sky(const Sky& sky) {
   TW_REQUIRE(!sky.fog || (std::isfinite(*sky.fog) && *sky.fog >= 0),
              "sky: fog is " + show(*sky.fog) +
                  "; expected the share of light lost per metre, not negative");
+  TW_REQUIRE(!sky.grain || (*sky.grain >= 0 && *sky.grain <= 1),
+             "sky: grain is " + show(*sky.grain) + "; expected a number from 0 to 1");
 }
 
 void check_scene(const DrawScene& scene) {

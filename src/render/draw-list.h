@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geometry/shape.h"
+#include "math/aabb.h"
 #include "math/vec.h"
 #include "render/hud.h"
 
@@ -32,8 +33,15 @@ struct Camera {
   std::optional<Vec3> eye, target;
   Vec3 up = Vec3::UnitZ();
   double fov = 0.7;  // vertical, radians, inside (0, pi)
-  // Eye and target move with this body: by its displacement from the pose of its registration.
+  // Eye and target move with this body, by its displacement from `follow_from`; absent: from the
+  // position of its registration.
   std::optional<std::size_t> follow;
+  std::optional<Vec3> follow_from;
+  // Rate at which the eye goes round the target about `up`, counter-clockwise as seen from above,
+  // from where it is at time 0, rad/s.
+  double turn = 0;
+  // What is to be in view where eye or target are absent; absent: the scene as registered.
+  std::optional<Aabb> in_view;
 };
 
 struct Light {
@@ -47,6 +55,9 @@ struct Sky {
   Vec3 ground{0.48, 0.51, 0.55};  // seen below the horizon where there is no ground
   // Share of the light lost per metre.  Absent: 1/25 of the camera's distance from its target.
   std::optional<double> fog;
+  // How rough ground and rocks look, fixed bodies of hulls: 0..1.  Absent: 1 in a landscape, which
+  // has a hundred of them, else 0.
+  std::optional<double> grain;
 };
 
 struct DrawScene {
@@ -66,10 +77,12 @@ struct DrawContact {
 
 struct DrawFrame {
   double time = 0;
-  std::vector<Pose> poses;            // by body; bodies past its end keep the pose they had
-  std::vector<DrawBody> added;        // registered before this frame is drawn
-  std::vector<std::size_t> removed;   // bodies that are not seen any more
-  std::optional<Camera> camera;       // from this frame on
+  std::vector<Pose> poses;           // by body; bodies past its end keep the pose they had
+  std::vector<DrawBody> added;       // registered before this frame is drawn
+  std::vector<std::size_t> removed;  // bodies that are not seen any more
+  std::optional<Camera> camera;      // from this frame on; so are light and sky
+  std::optional<Light> light;
+  std::optional<Sky> sky;
   std::vector<HudLine> hud;           // lines below the time, UTF-8 (Latin-1 is drawn)
   std::vector<DrawContact> contacts;  // drawn over the picture
 };

@@ -1,4 +1,4 @@
-// The drawing thread and its queue.
+// The two threads and their queues.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/frame-pipeline.h"
 
@@ -10,6 +10,8 @@
 #include "base/cpu-clock.h"
 #include "base/error.h"
 #include "render/floating-point-guard.h"
+#include "render/movie.h"
+#include "render/picture-files.h"
 #include "render/png.h"
 #include "render/whole-file.h"
 
@@ -19,6 +21,8 @@ namespace {
 
 // a bound for memory; those who feed the queue keep it shorter, by wait()
 constexpr std::size_t queue_length = 64;
+
+constexpr std::size_t pictures_waiting = 2;
 
 // Starts a thread in which no signal handler ever runs: signals are for the main thread.
 template <class Work>
@@ -45,14 +49,40 @@ double drawing_cpu_seconds() {
 
 }  // namespace
 
-FramePipeline::FramePipeline(const FrameSettings& settings, const DrawScene& scene)
-    : settings_(settings), name_(settings.frames), scene_(scene) {
+void check_frames(const FrameSettings& settings) {
   check_size(settings.render.size, settings.render.quality);
+  if (!settings.frames.empty()) make_writable_folder(FrameName(settings.frames).folder());
+  if (!settings.movie.empty()) check_movie(settings.movie);
+}
+
+FramePipeline::FramePipeline(const FrameSettings& settings, const DrawScene& scene)
+    : settings_(settings), scene_(scene) {
+  check_frames(settings);
   check_scene(scene);
-  make_writable_folder(name_.folder());
   // here, where changing the environment disturbs no other thread
   gl_library();
-  thread_ = start_quiet_thread([this] { work(); });
+  drawing_ = start_quiet_thread([this] {
+    guarded([this] { draw_all(); });
+    const std::lock_guard lock(mutex_);
+    all_drawn_ = true;
+    changed_.notify_all();
+  });
+  try {
+    writing_ = start_quiet_thread([this] { write_all(); });
+  } catch (...) {
+    abandon();
+    throw;
+  }
+}
+
+FramePipeline::Outputs FramePipeline::open_outputs(const FrameSettings& settings) {
+  Outputs outputs;
+  if (!settings.frames.empty())
+    outputs.push_back(std::make_unique<PictureFiles>(FrameName(settings.frames),
+                                                     settings.first_frame, settings.stride));
+  if (!settings.movie.empty())
+    outputs.push_back(std::make_unique<Movie>(settings.movie, settings.render.size, settings.fps));
+  return outputs;
 }
 
 FramePipeline::~FramePipeline() { abandon(); }
@@ -60,7 +90,8 @@ FramePipeline::~FramePipeline() { abandon(); }
 void FramePipeline::abandon() {
   {
     const std::lock_guard lock(mutex_);
-    abandoned_ = true;
+    unwritten_ -= queue_.size();
+    queue_.clear();
   }
   join();
 }
@@ -71,7 +102,29 @@ void FramePipeline::join() {
     closing_ = true;
   }
   changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
+  if (drawing_.joinable()) drawing_.join();
+  if (writing_.joinable()) writing_.join();
+}
+
+// ---- errors ----
+
+void FramePipeline::guarded(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (...) {
+    fail(std::current_exception());
+  }
+}
+
+// After an error nothing more is drawn or written.
+void FramePipeline::fail(std::exception_ptr error) {
+  const std::lock_guard lock(mutex_);
+  if (!failed_) error_ = std::move(error);
+  failed_ = true;
+  queue_.clear();
+  pictures_.clear();
+  unwritten_ = 0;
+  changed_.notify_all();
 }
 
 void FramePipeline::raise_error(std::unique_lock<std::mutex>& lock) {
@@ -81,22 +134,23 @@ void FramePipeline::raise_error(std::unique_lock<std::mutex>& lock) {
   std::rethrow_exception(error);
 }
 
+// ---- the side of the simulation ----
+
 void FramePipeline::submit(DrawFrame frame) {
   std::unique_lock lock(mutex_);
   TW_ASSERT(!closing_, "a frame after the last");
   changed_.wait(lock, [this] { return failed_ || queue_.size() < queue_length; });
   raise_error(lock);
-  // after an error nothing more is drawn
   if (failed_) return;
   queue_.push_back(std::move(frame));
+  ++unwritten_;
   changed_.notify_all();
 }
 
 bool FramePipeline::wait(std::size_t most, double seconds) {
   std::unique_lock lock(mutex_);
-  const bool reached = changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
-    return failed_ || queue_.size() + (in_hand_ ? 1 : 0) <= most;
-  });
+  const bool reached = changed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                                         [&] { return failed_ || unwritten_ <= most; });
   raise_error(lock);
   return reached;
 }
@@ -107,56 +161,83 @@ void FramePipeline::finish() {
   raise_error(lock);
 }
 
-void FramePipeline::work() {
-  try {
-    draw_all();
-  } catch (...) {
-    const std::lock_guard lock(mutex_);
-    error_ = std::current_exception();
-    failed_ = true;
-    in_hand_ = false;
-    queue_.clear();
-  }
-  changed_.notify_all();
-}
+// ---- the thread that draws ----
 
 void FramePipeline::draw_all() {
   Renderer renderer(settings_.render, scene_);
-  long index = settings_.first_frame;
   while (std::optional<DrawFrame> frame = next_frame()) {
-    const Image image = renderer.draw(*frame);
-    write_whole_file(name_.name(index), encode_png(image));
-    index += settings_.stride;
-    note_progress(renderer, *frame);
+    Image picture = renderer.draw(*frame);
+    note_drawn(renderer, *frame);
+    hand_over(std::move(picture));
   }
 }
 
 // Waits for a frame; nothing after the last.
 std::optional<DrawFrame> FramePipeline::next_frame() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return abandoned_ || closing_ || !queue_.empty(); });
-  if (abandoned_ || queue_.empty()) return std::nullopt;
+  changed_.wait(lock, [this] { return failed_ || closing_ || !queue_.empty(); });
+  if (queue_.empty()) return std::nullopt;
   DrawFrame frame = std::move(queue_.front());
   queue_.pop_front();
-  in_hand_ = true;
   changed_.notify_all();
   return frame;
 }
 
-void FramePipeline::note_progress(const Renderer& renderer, const DrawFrame& frame) {
+void FramePipeline::hand_over(Image picture) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return failed_ || pictures_.size() < pictures_waiting; });
+  if (failed_) return;
+  pictures_.push_back(std::move(picture));
+  changed_.notify_all();
+}
+
+void FramePipeline::note_drawn(const Renderer& renderer, const DrawFrame& frame) {
   // the threads of the renderer must still live to be asked
   const double cpu_seconds = drawing_cpu_seconds();
   const std::lock_guard lock(mutex_);
-  ++written_;
-  in_hand_ = false;
-  changed_.notify_all();
-  cpu_seconds_ = cpu_seconds;
+  drawing_seconds_ = cpu_seconds;
   if (skipped_ == 0 && renderer.skipped_poses() > 0)
     std::fprintf(stderr,
                  "timewarp: warning: at %s s the pose of a body is not finite; it is not drawn\n",
                  show(frame.time).c_str());
   skipped_ = renderer.skipped_poses();
 }
+
+// ---- the thread that writes ----
+
+void FramePipeline::write_all() {
+  Outputs outputs;
+  guarded([&] {
+    outputs = open_outputs(settings_);
+    write_pictures(outputs);
+  });
+  // also after an error: what was written is to be whole
+  for (const auto& output : outputs) guarded([&] { output->close(); });
+}
+
+void FramePipeline::write_pictures(Outputs& outputs) {
+  while (const std::optional<Image> picture = next_picture()) {
+    for (const auto& output : outputs) output->write(*picture);
+    const std::lock_guard lock(mutex_);
+    ++written_;
+    if (!failed_) --unwritten_;
+    writing_seconds_ = thread_cpu_seconds();
+    changed_.notify_all();
+  }
+}
+
+// Waits for a picture; nothing after the last.
+std::optional<Image> FramePipeline::next_picture() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return failed_ || all_drawn_ || !pictures_.empty(); });
+  if (pictures_.empty()) return std::nullopt;
+  Image picture = std::move(pictures_.front());
+  pictures_.pop_front();
+  changed_.notify_all();
+  return picture;
+}
+
+// ---- counts ----
 
 long FramePipeline::frames_written() const {
   const std::lock_guard lock(mutex_);
@@ -165,7 +246,7 @@ long FramePipeline::frames_written() const {
 
 double FramePipeline::draw_cpu_seconds() const {
   const std::lock_guard lock(mutex_);
-  return cpu_seconds_;
+  return drawing_seconds_ + writing_seconds_;
 }
 
 long FramePipeline::skipped_poses() const {

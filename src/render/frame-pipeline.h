@@ -1,7 +1,9 @@
-// Draws frames into numbered PNG files beside the simulation, in a thread of its own.
+// Draws frames beside the simulation and writes them: into numbered PNG files, a movie, or both.
 //
-// The thread owns the OpenGL context from its beginning to its end.  It runs with all signals
-// blocked and without floating-point traps, and knows no Scheme object.
+// One thread draws, another writes (compressing a picture takes a fifth of the time of drawing it);
+// up to two pictures wait between them.  The drawing thread owns the OpenGL context from its
+// beginning to its end.  Both run with all signals blocked and without floating-point traps, and
+// know no Scheme object.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -9,13 +11,17 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "render/draw-list.h"
-#include "render/frame-name.h"
+#include "render/image.h"
+#include "render/picture-output.h"
 #include "render/renderer.h"
 
 namespace tw {
@@ -23,15 +29,20 @@ namespace tw {
 struct FrameSettings {
   RenderSettings render;
   std::string frames;    // a folder, made where it is missing, or a pattern like out/%05d.png
+  std::string movie;     // a file; of frames and movie one may be empty
+  double fps = 30;       // of the movie
   long first_frame = 0;  // the number of the first frame submitted
   long stride = 1;       // by which the numbers of those submitted go up
 };
 
+// Raises UserError where the folder cannot be made or written to, where the pattern, the movie's
+// name or the size are wrong, and where a movie is wanted without ffmpeg.
+void check_frames(const FrameSettings& settings);
+
 class FramePipeline {
  public:
-  // Raises UserError at once where the folder cannot be made or written to, where the pattern, the
-  // size or the scene's camera, light, sky or colours are wrong, and where no OpenGL library is
-  // found.  Call it from the main thread.
+  // Raises UserError at once as check_frames() does, and where the scene's camera, light, sky or
+  // colours are wrong or no OpenGL library is found.  Call it from the main thread.
   FramePipeline(const FrameSettings& settings, const DrawScene& scene);
   // Abandons, unless finish() was called.
   ~FramePipeline();
@@ -39,43 +50,53 @@ class FramePipeline {
   FramePipeline& operator=(const FramePipeline&) = delete;
 
   // Queues the next frame; waits while 64 are queued.  Raises the first error of drawing or
-  // writing, once the thread has met one; frames before it stay on disk.
+  // writing, once a thread has met one; frames before it stay on disk.
   void submit(DrawFrame frame);
-  // Waits until at most `most` of the frames submitted are not on disk, but no longer than
+  // Waits until at most `most` of the frames submitted are not written, but no longer than
   // `seconds`; tells whether it is so.  Raises as submit() does.
   bool wait(std::size_t most, double seconds);
   // Waits until all frames are written.  Raises the first error, once.  No submit() afterwards.
   void finish();
-  // Waits until the frame in hand is written and drops those queued.  No submit() afterwards.
+  // Waits until the frame in hand and those drawn before are written, and drops those queued.  A
+  // movie is whole up to there.  No submit() afterwards.
   void abandon();
 
   long frames_written() const;
-  // Of drawing and writing so far, in all threads.
+  // Of drawing and writing so far, in all threads; without ffmpeg's.
   double draw_cpu_seconds() const;
   // Poses that were not finite and so not drawn; a warning went to standard error once.
   long skipped_poses() const;
 
  private:
-  void work();
+  using Outputs = std::vector<std::unique_ptr<PictureOutput>>;
+
+  static Outputs open_outputs(const FrameSettings& settings);
+  void guarded(const std::function<void()>& work);
   void draw_all();
+  void write_all();
+  void write_pictures(Outputs& outputs);
   std::optional<DrawFrame> next_frame();
-  void note_progress(const Renderer& renderer, const DrawFrame& frame);
+  void hand_over(Image picture);
+  std::optional<Image> next_picture();
+  void note_drawn(const Renderer& renderer, const DrawFrame& frame);
+  void fail(std::exception_ptr error);
   void raise_error(std::unique_lock<std::mutex>& lock);
   void join();
 
   const FrameSettings settings_;
-  const FrameName name_;
-  DrawScene scene_;  // read by the thread only
+  DrawScene scene_;  // read by the drawing thread only
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<DrawFrame> queue_;
-  std::exception_ptr error_;
-  bool closing_ = false, abandoned_ = false, failed_ = false;
-  bool in_hand_ = false;  // the thread draws a frame
+  std::deque<DrawFrame> queue_;  // to be drawn
+  std::deque<Image> pictures_;   // to be written
+  std::size_t unwritten_ = 0;    // frames submitted, not written
+  std::exception_ptr error_;     // the first, until it is raised
+  bool closing_ = false, failed_ = false;
+  bool all_drawn_ = false;
   long written_ = 0, skipped_ = 0;
-  double cpu_seconds_ = 0;
-  std::thread thread_;
+  double drawing_seconds_ = 0, writing_seconds_ = 0;
+  std::thread drawing_, writing_;
 };
 
 // Draws one picture into a PNG file, in a thread of its own.  The folder must exist.  Raises

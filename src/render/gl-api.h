@@ -16,6 +16,7 @@
   X(AttachShader, ATTACHSHADER)                       \
   X(BindBuffer, BINDBUFFER)                           \
   X(BindFramebuffer, BINDFRAMEBUFFER)                 \
+  X(BindSampler, BINDSAMPLER)                         \
   X(BindTexture, BINDTEXTURE)                         \
   X(BindVertexArray, BINDVERTEXARRAY)                 \
   X(BufferData, BUFFERDATA)                           \
@@ -43,6 +44,7 @@
   X(FrontFace, FRONTFACE)                             \
   X(GenBuffers, GENBUFFERS)                           \
   X(GenFramebuffers, GENFRAMEBUFFERS)                 \
+  X(GenSamplers, GENSAMPLERS)                         \
   X(GenTextures, GENTEXTURES)                         \
   X(GenVertexArrays, GENVERTEXARRAYS)                 \
   X(GetError, GETERROR)                               \
@@ -59,9 +61,10 @@
   X(PolygonOffset, POLYGONOFFSET)                     \
   X(ReadBuffer, READBUFFER)                           \
   X(ReadPixels, READPIXELS)                           \
+  X(SamplerParameteri, SAMPLERPARAMETERI)             \
+  X(Scissor, SCISSOR)                                 \
   X(ShaderSource, SHADERSOURCE)                       \
   X(TexImage2D, TEXIMAGE2D)                           \
-  X(TexParameterfv, TEXPARAMETERFV)                   \
   X(TexParameteri, TEXPARAMETERI)                     \
   X(Uniform1f, UNIFORM1F)                             \
   X(Uniform1i, UNIFORM1I)                             \

@@ -51,8 +51,9 @@ const GlLibrary& gl_library() {
   const char* wanted = std::getenv("TIMEWARP_OPENGL");
   if (!is_one_of(wanted, {"egl"})) library = open_osmesa_library(osmesa_reason);
   if (!library && !is_one_of(wanted, {"osmesa"})) library = open_egl_library(egl_reason);
-  TW_REQUIRE(library, "cannot draw: " + osmesa_reason + "; " + egl_reason +
-                          "; install the Debian package libosmesa6");
+  TW_REQUIRE(library,
+             "cannot draw: " + osmesa_reason + "; " + egl_reason +
+                 "; on Debian: apt-get install libosmesa6, or libegl1 where there is none");
   return *library;
 }
 

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
+#include "render/grain.h"
 #include "render/hud.h"
 #include "render/shaders.h"
 
@@ -20,22 +22,11 @@ constexpr GLenum texture_srgb_decode = 0x8A48;
 constexpr GLint skip_decode = 0x8A4A;
 
 constexpr double farthest_pose = 1e12;  // m; beyond, products overflow single precision
+constexpr int landscape_parts = 100;    // fixed hulls, from which on they are taken for ground
 constexpr double ground_reach = 4000;   // of an unbounded plane, in distances of the target
 
 bool drawable(const Pose& pose) {
   return is_finite(pose.p) && is_finite(pose.q) && pose.p.cwiseAbs().maxCoeff() <= farthest_pose;
-}
-
-// Reversed depth with an infinite far plane: x f/aspect, y f, near, -z with f = 1/tan(fov/2), so
-// that depth = near/distance.
-Matrix4f projection_of(const View& view) {
-  const double f = 1 / view.tan_half_fov;
-  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
-  p.row(0).head<3>() = f / view.aspect * view.right.transpose();
-  p.row(1).head<3>() = f * view.up.transpose();
-  p(2, 3) = view.near_distance;
-  p.row(3).head<3>() = view.forward.transpose();
-  return p.cast<float>();
 }
 
 // 1, 2 or 5 times a power of ten, nearest below.
@@ -43,6 +34,8 @@ double round_size(double size) {
   const double power = std::pow(10.0, std::floor(std::log10(size)));
   return size >= 5 * power ? 5 * power : size >= 2 * power ? 2 * power : power;
 }
+
+double within_four(double x) { return std::fmod(x, 4.0); }
 
 std::string define(const char* name, int value) {
   return std::string("#define ") + name + " " + std::to_string(value) + "\n";
@@ -83,28 +76,45 @@ double median_radius(const std::vector<DrawBody>& bodies) {
 }  // namespace
 
 struct Renderer::Programs {
-  GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, fxaa, average;
+  const GlApi& gl;
+  const Effort effort;
+  GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, sky, fxaa, average;
+  // made when a scene first has a grain
+  std::optional<GlProgram> light_with_grain;
 
-  Programs(const GlApi& gl, const Effort& effort)
-      : mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
+  Programs(const GlApi& api, const Effort& pays)
+      : gl(api),
+        effort(pays),
+        mesh(gl, shaders::mesh_vertex, shaders::mesh_fragment, shaders::surface_preamble),
         sphere(gl, shaders::sphere_vertex, shaders::sphere_fragment, shaders::surface_preamble),
         ground(gl, shaders::ground_vertex, shaders::ground_fragment, shaders::surface_preamble),
         mesh_shadow(gl, shaders::mesh_shadow_vertex, shaders::mesh_shadow_fragment),
         sphere_shadow(gl, shaders::sphere_shadow_vertex, shaders::sphere_shadow_fragment),
-        light(gl, shaders::picture_vertex, shaders::light_fragment,
-              define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
-                  spiral_points(effort.overhead_taps)),
+        light(make_light("")),
+        sky(gl, shaders::picture_vertex, shaders::light_fragment,
+            "#define SKY\n#define SOFTNESS 1\n"),
         fxaa(gl, shaders::picture_vertex, shaders::fxaa_fragment),
         average(gl, shaders::picture_vertex, shaders::average_fragment) {}
+
+  GlProgram make_light(const std::string& definitions) const {
+    return {gl, shaders::picture_vertex, shaders::light_fragment,
+            definitions + define("SOFTNESS", effort.softness) + define("SAMPLES", effort.samples) +
+                spiral_points(effort.overhead_taps)};
+  }
+  const GlProgram& light_for(double grain) {
+    if (grain == 0) return light;
+    if (!light_with_grain) light_with_grain = make_light("#define GRAIN\n");
+    return *light_with_grain;
+  }
 };
 
 Renderer::Effort Renderer::effort_of(Quality quality) {
   switch (quality) {
-    case Quality::draft: return {1024, 1, 16, 0, 1, false};
+    case Quality::draft: return {1024, 1, 16, 0, 1, false, false};
     case Quality::normal: break;
-    case Quality::best: return {4096, 5, 2048, 6, 2, false};
+    case Quality::best: return {4096, 5, 2048, 6, 2, false, true};
   }
-  return {2048, 3, 1024, 8, 1, true};
+  return {2048, 3, 1024, 8, 1, true, true};
 }
 
 Renderer::Renderer(const RenderSettings& settings, const DrawScene& scene)
@@ -115,8 +125,8 @@ Renderer::Renderer(const RenderSettings& settings, const DrawScene& scene)
       gl_(&context_->gl()),
       programs_(std::make_unique<Programs>(*gl_, effort_)),
       bodies_(*gl_),
-      sun_map_(*gl_, effort_.shadow_side),
-      overhead_map_(*gl_, effort_.overhead_side) {
+      sun_map_(*gl_, effort_.shadow_side, ShadowMap::LookUp::comparison),
+      overhead_map_(*gl_, effort_.overhead_side, ShadowMap::LookUp::depth) {
   check_scene(scene);
   make_targets();
   scene_.bodies.clear();
@@ -143,12 +153,19 @@ void Renderer::make_targets() {
   gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   // FXAA works on the bytes as they are; the mean of samples is one of light
   if (effort_.fxaa) gl_->TexParameteri(GL_TEXTURE_2D, texture_srgb_decode, skip_decode);
-  lit_buffer_ = make_framebuffer(*gl_, lit_, 0, 0);
+  lit_buffer_ = make_framebuffer(*gl_, lit_, 0, depth_);
   final_buffer_ = lit_buffer_;
   if (effort_.fxaa || effort_.samples > 1) {
     final_ = make_texture(*gl_, GL_SRGB8_ALPHA8, settings_.size.width, settings_.size.height);
     final_buffer_ = make_framebuffer(*gl_, final_, 0, 0);
   }
+  if (effort_.grain) grain_ = make_grain_texture(*gl_);
+  gl_->GenSamplers(1, &unfiltered_);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl_->SamplerParameteri(unfiltered_, filter, GL_NEAREST);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl_->SamplerParameteri(unfiltered_, axis, GL_CLAMP_TO_EDGE);
+  if (effort_.fxaa) gl_->SamplerParameteri(unfiltered_, texture_srgb_decode, skip_decode);
   gl_->GenVertexArrays(1, &empty_array_);
   gl_->GenVertexArrays(1, &ground_array_);
   gl_->BindVertexArray(ground_array_);
@@ -181,15 +198,16 @@ void Renderer::set_poses(const DrawFrame& frame) {
   }
 }
 
-void Renderer::set_view() {
+void Renderer::set_view(double time) {
   Vec3 displacement = Vec3::Zero();
   if (scene_.camera.follow) {
     const std::size_t body = *scene_.camera.follow;
-    displacement = poses_[body].p - scene_.bodies[body].pose.p;
+    displacement = poses_[body].p - scene_.camera.follow_from.value_or(scene_.bodies[body].pose.p);
     // a lost body is not followed
     if (!is_finite(displacement)) displacement.setZero();
   }
-  view_ = make_view(scene_.camera, first_bounds_, settings_.size, displacement);
+  view_ = make_view(scene_.camera, scene_.camera.in_view.value_or(first_bounds_), settings_.size,
+                    displacement, time);
   projection_ = projection_of(view_);
   cell_size_ = round_size(view_.focus_distance / 8);
 }
@@ -276,13 +294,34 @@ void Renderer::draw_ground(const HalfSpacePolygon& polygon) {
 
 void Renderer::light_picture() {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, lit_buffer_);
+  gl_->BindVertexArray(empty_array_);
+  // By depth alone llvmpipe skips blocks of pixels that are sky or are not, before it computes
+  // anything; branches and `discard` don't save it that.  Depth is read in the same pass, but
+  // nobody writes it.
+  gl_->DepthMask(GL_FALSE);
+  const GlProgram &light = programs_->light_for(grain()), &sky = programs_->sky;
+  for (const GlProgram* program : {&light, &sky}) {
+    gl_->DepthFunc(program == &light ? GL_LESS : GL_EQUAL);
+    set_light(*program);
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  gl_->DepthMask(GL_TRUE);
   gl_->Disable(GL_DEPTH_TEST);
-  const GlProgram& program = programs_->light;
+}
+
+double Renderer::grain() const {
+  if (!effort_.grain) return 0;
+  return scene_.sky.grain.value_or(bodies_.grainy_parts() >= landscape_parts ? 1 : 0);
+}
+
+void Renderer::set_light(const GlProgram& program) const {
   program.use();
   set_rays(program);
-  const GLuint textures[] = {color_, normal_, depth_, sun_map_.texture(), overhead_map_.texture()};
-  const char* const names[] = {"color_map", "normal_map", "depth_map", "sun_map", "overhead_map"};
-  for (int i = 0; i < 5; ++i) {
+  const GLuint textures[] = {color_, normal_, depth_, sun_map_.texture(), overhead_map_.texture(),
+                             grain_};
+  const char* const names[] = {"color_map", "normal_map",   "depth_map",
+                               "sun_map",   "overhead_map", "grain_map"};
+  for (int i = 0; i < 6; ++i) {
     gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
     gl_->BindTexture(GL_TEXTURE_2D, textures[i]);
     program.set(names[i], i);
@@ -293,7 +332,16 @@ void Renderer::light_picture() {
   program.set("sun_texel", sun_map_.texel());
   program.set("sun_map_share", sun_map_.texel_share());
   program.set("overhead_texel", overhead_map_.texel());
-  program.set("occlusion_radius", std::max(1.6 * body_size_, 3 * overhead_map_.texel()));
+  const double occlusion_radius = std::max(1.6 * body_size_, 3 * overhead_map_.texel());
+  program.set("occlusion_radius", occlusion_radius);
+  program.set("overhead_depth", overhead_map_.depth() / occlusion_radius);
+  // the grain repeats after four tiles: single precision needs no more of the eye's place
+  const double tile = 4 * cell_size_;
+  program.set("grain_origin", Vec3((view_.eye / tile).unaryExpr(&within_four)));
+  program.set("grain_scale", 1 / tile);
+  program.set("grain_strength", grain());
+  program.set("grain_level",
+              std::log2(2 * view_.tan_half_fov / surface_height_ * grain_side / tile));
   program.set("near_distance", view_.near_distance);
   program.set("to_sun", Vec3(-scene_.light.direction.normalized()));
   program.set("sun_color", linear_color(scene_.light.color));
@@ -301,8 +349,6 @@ void Renderer::light_picture() {
   program.set("horizon", linear_color(scene_.sky.horizon));
   program.set("ground", linear_color(scene_.sky.ground));
   program.set("fog", scene_.sky.fog.value_or(0.04 / view_.focus_distance));
-  gl_->BindVertexArray(empty_array_);
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void Renderer::smooth_edges() {
@@ -312,10 +358,16 @@ void Renderer::smooth_edges() {
   if (effort_.fxaa) gl_->Disable(GL_FRAMEBUFFER_SRGB);
   const GlProgram& program = effort_.fxaa ? programs_->fxaa : programs_->average;
   program.use();
-  gl_->BindTexture(GL_TEXTURE_2D, lit_);
+  for (const GLenum unit : {0u, 1u}) {
+    gl_->ActiveTexture(GL_TEXTURE0 + unit);
+    gl_->BindTexture(GL_TEXTURE_2D, lit_);
+  }
+  gl_->BindSampler(1, unfiltered_);
   program.set("picture", 0);
+  program.set("pixels", 1);
   program.set("pixel_share", 1.0 / settings_.size.width, 1.0 / settings_.size.height);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->BindSampler(1, 0);
 }
 
 Image Renderer::read_picture() const {
@@ -346,13 +398,25 @@ void Renderer::finish_hud(Image& image, const DrawFrame& frame) const {
   draw_hud(image, {frame.time, frame.hud, settings_.footer, view_.pixels_per_metre()});
 }
 
-Image Renderer::draw(const DrawFrame& frame) {
+void Renderer::set_looks(const DrawFrame& frame) {
   if (frame.camera) {
     check_camera(*frame.camera, scene_.bodies.size() + frame.added.size());
     scene_.camera = *frame.camera;
   }
+  if (frame.light) {
+    check_light(*frame.light);
+    scene_.light = *frame.light;
+  }
+  if (frame.sky) {
+    check_sky(*frame.sky);
+    scene_.sky = *frame.sky;
+  }
+}
+
+Image Renderer::draw(const DrawFrame& frame) {
+  set_looks(frame);
   set_poses(frame);
-  set_view();
+  set_view(frame.time);
   bodies_.place(poses_, view_.eye);
   fit_shadows();
   sun_map_.draw(bodies_, programs_->mesh_shadow, programs_->sphere_shadow, view_.eye);

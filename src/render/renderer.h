@@ -1,8 +1,9 @@
 // Draws frames of one scene into pictures in memory.
 //
-// Passes: two shadow maps (sun; straight above), surfaces (colour, normal, depth), light with sky
-// and fog, smoothing of edges; then, in memory, contacts and the HUD.  Light is computed once per
-// pixel, not per triangle, since llvmpipe shades whole blocks of pixels for each triangle.  Depth
+// Passes: two shadow maps (sun; straight above), surfaces (colour, normal, depth), light with fog
+// where there is a surface, sky where there is none, smoothing of edges; then, in memory, contacts
+// and the HUD.  Light is computed once per pixel, not per triangle, since llvmpipe shades whole
+// blocks of pixels for each triangle.  Depth
 // is reversed (1 at the near plane, 0 at infinity) in 32-bit floats: two planes 2 cm apart stay
 // apart at 5 km.
 //
@@ -53,20 +54,23 @@ class Renderer {
   // what each quality pays for
   struct Effort {
     int shadow_side, softness, overhead_side, overhead_taps, samples;
-    bool fxaa;
+    bool fxaa, grain;
   };
   static Effort effort_of(Quality quality);
 
   void make_targets();
   void register_body(const DrawBody& body);
+  void set_looks(const DrawFrame& frame);
   void set_poses(const DrawFrame& frame);
-  void set_view();
+  void set_view(double time);
   void fit_shadows();
   void draw_surfaces();
   void draw_bodies();
   void draw_grounds();
   void draw_ground(const HalfSpacePolygon& polygon);
   void light_picture();
+  double grain() const;
+  void set_light(const GlProgram& program) const;
   void smooth_edges();
   void set_rays(const GlProgram& program) const;
   Image read_picture() const;
@@ -92,6 +96,8 @@ class Renderer {
   int surface_width_ = 0, surface_height_ = 0;
   GLuint color_ = 0, normal_ = 0, depth_ = 0, lit_ = 0, final_ = 0;
   GLuint surface_buffer_ = 0, lit_buffer_ = 0, final_buffer_ = 0;
+  GLuint grain_ = 0;
+  GLuint unfiltered_ = 0;  // a sampler
   GLuint empty_array_ = 0, ground_array_ = 0, ground_buffer_ = 0;
 };
 

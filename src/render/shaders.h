@@ -1,7 +1,8 @@
 // The programs that run per vertex and per pixel, in GLSL 3.30.
 //
-// Passes: shadow maps; surfaces (colour and normal of what is nearest); light (shadow, sky, fog,
-// tone); edges (FXAA or 2x2 averaging).  Positions are relative to the eye, in axes of the world.
+// Passes: shadow maps; surfaces (colour and normal of what is nearest); light (shadow, grain, fog,
+// tone), or sky; edges (FXAA or 2x2 averaging).  Positions are relative to the eye, in axes of the
+// world.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

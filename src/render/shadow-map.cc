@@ -7,19 +7,15 @@
 
 namespace tw {
 
-ShadowMap::ShadowMap(const GlApi& gl, int side) : gl_(&gl), side_(side) {
+ShadowMap::ShadowMap(const GlApi& gl, int side, LookUp look_up) : gl_(&gl), side_(side) {
   texture_ = make_texture(gl, GL_DEPTH_COMPONENT32F, side, side);
-  // lit beyond the edge
-  const GLfloat border[] = {1, 1, 1, 1};
-  gl.TexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, border);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  framebuffer_ = make_framebuffer(gl, 0, 0, texture_);
+  if (look_up == LookUp::depth) return;
   // a look-up compares four texels and blends the answers
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  framebuffer_ = make_framebuffer(gl, 0, 0, texture_);
 }
 
 void ShadowMap::fit(const Vec3& direction, std::span<const Ball> casters, const Vec3& target,
@@ -58,11 +54,10 @@ void ShadowMap::fit(const Vec3& direction, std::span<const Ball> casters, const 
 
 // clip.x = (right.x - middle)/half side, likewise y; clip.z = (along.x - first)/(last - first).
 Matrix4f ShadowMap::to_clip(const Vec3& eye) const {
-  const double depth = last_ - first_;
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m.row(0) << right_.transpose() / half_side_, (right_.dot(eye) - middle_right_) / half_side_;
   m.row(1) << up_.transpose() / half_side_, (up_.dot(eye) - middle_up_) / half_side_;
-  m.row(2) << along_.transpose() / depth, (along_.dot(eye) - first_) / depth;
+  m.row(2) << along_.transpose() / depth(), (along_.dot(eye) - first_) / depth();
   return m.cast<float>();
 }
 
@@ -82,6 +77,9 @@ void ShadowMap::draw(const BodyDrawer& bodies, const GlProgram& mesh_program,
   gl_->Clear(GL_DEPTH_BUFFER_BIT);
   // what lies before the first limit is drawn at it
   gl_->Enable(GL_DEPTH_CLAMP);
+  // the outermost texels stay infinitely deep: what lies beyond the edge is lit
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->Scissor(1, 1, side_ - 2, side_ - 2);
   gl_->Enable(GL_CULL_FACE);
   gl_->Enable(GL_POLYGON_OFFSET_FILL);
   gl_->PolygonOffset(1.5f, 2.0f);
@@ -96,6 +94,7 @@ void ShadowMap::draw(const BodyDrawer& bodies, const GlProgram& mesh_program,
   sphere_program.set("light_right", right_);
   sphere_program.set("light_up", up_);
   bodies.draw_spheres();
+  gl_->Disable(GL_SCISSOR_TEST);
   gl_->Disable(GL_DEPTH_CLAMP);
 }
 

@@ -24,8 +24,11 @@ struct Ball {
 
 class ShadowMap {
  public:
+  // Look-ups compare with depths and blend the answers, or give the nearest depth.
+  enum class LookUp { comparison, depth };
+
   // `side` in texels.
-  ShadowMap(const GlApi& gl, int side);
+  ShadowMap(const GlApi& gl, int side, LookUp look_up);
 
   // Light flies along `direction` (any length but zero).  Casters farther than `reach` from the
   // target are left out.
@@ -35,6 +38,7 @@ class ShadowMap {
 
   GLuint texture() const { return texture_; }
   double texel() const { return 2 * half_side_ / side_; }  // m
+  double depth() const { return last_ - first_; }          // from 0 to 1 in the map, m
   double texel_share() const { return 1.0 / side_; }
   // From eye-relative world coordinates to the texture's, depth in z, all 0..1.
   Matrix4f to_texture(const Vec3& eye) const;

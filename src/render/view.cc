@@ -62,7 +62,35 @@ void fit_box(View& view, const Aabb& box, Vec3 center, bool may_shift) {
   view.eye = center - view.focus_distance * view.forward;
 }
 
+// The upright box that holds a box turned about its upright middle line.
+Aabb turned_box(const Aabb& box) {
+  const Vec3 half = 0.5 * box.size();
+  const double radius = half.head<2>().norm();
+  Aabb turned;
+  turned.add(box.center() - Vec3(radius, radius, half.z()));
+  turned.add(box.center() + Vec3(radius, radius, half.z()));
+  return turned;
+}
+
+void turn_about_target(View& view, const Vec3& up, double angle) {
+  const Eigen::AngleAxisd turn(std::remainder(angle, 2 * pi), up.normalized());
+  const Vec3 target = view.eye + view.focus_distance * view.forward;
+  view.eye = target + turn * (view.eye - target);
+  for (Vec3* axis : {&view.right, &view.up, &view.forward}) *axis = turn * *axis;
+}
+
 }  // namespace
+
+// x f/aspect, y f, near, z along the view, with f = 1/tan(fov/2).
+Eigen::Matrix4f projection_of(const View& view) {
+  const double f = 1 / view.tan_half_fov;
+  Eigen::Matrix4d p = Eigen::Matrix4d::Zero();
+  p.row(0).head<3>() = f / view.aspect * view.right.transpose();
+  p.row(1).head<3>() = f * view.up.transpose();
+  p(2, 3) = view.near_distance;
+  p.row(3).head<3>() = view.forward.transpose();
+  return p.cast<float>();
+}
 
 std::optional<Eigen::Vector2d> View::project(const Vec3& point) const {
   const Vec3 d = point - eye;
@@ -91,8 +119,9 @@ Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses)
   return bounds;
 }
 
-View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
-               const Vec3& displacement) {
+View make_view(const Camera& camera, const Aabb& all_bounds, const ImageSize& size,
+               const Vec3& displacement, double time) {
+  const Aabb bounds = camera.turn == 0 ? all_bounds : turned_box(all_bounds);
   View view;
   view.tan_half_fov = std::tan(0.5 * camera.fov);
   view.aspect = static_cast<double>(size.width) / size.height;
@@ -109,6 +138,7 @@ View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
     fit_box(view, bounds, target, !camera.target);
   }
   TW_REQUIRE(view.focus_distance > 0, "camera: eye and target coincide");
+  if (camera.turn != 0) turn_about_target(view, camera.up, camera.turn * time);
   view.eye += displacement;
   view.near_distance = 1e-3 * view.focus_distance;
   return view;

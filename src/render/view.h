@@ -30,13 +30,18 @@ struct View {
   double pixels_per_metre() const;
 };
 
+// Eye-relative world to clip space, for ClipControl(ZERO_TO_ONE): reversed depth with an infinite
+// far plane, near_distance over the distance along the view.
+Eigen::Matrix4f projection_of(const View& view);
+
 // Bounds of the visible bodies that are bounded, and of rooms that half-spaces enclose; a cube of
 // 2 m about the origin where there is nothing.
 Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses);
 
-// The view that a camera gives.  `displacement` is that of the followed body.  What the camera
-// leaves open is chosen to show `bounds`.  Raises UserError where eye and target coincide.
+// The view that a camera gives at a time.  `displacement` is that of the followed body.  What the
+// camera leaves open is chosen to show `bounds`, from all sides where the camera goes round. Raises
+// UserError where eye and target coincide.
 View make_view(const Camera& camera, const Aabb& bounds, const ImageSize& size,
-               const Vec3& displacement);
+               const Vec3& displacement, double time);
 
 }  // namespace tw

@@ -38,12 +38,12 @@ int write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes)
   return error;
 }
 
+}  // namespace
+
 bool is_special_file(const std::string& path) {
   struct stat status;
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
 }
-
-}  // namespace
 
 void write_whole_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
   if (is_special_file(path)) {

@@ -13,6 +13,9 @@ namespace tw {
 // written to directly.  Raises UserError naming the file and the reason.
 void write_whole_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
+// A device, a pipe or the like: there already, and nothing to be renamed to.
+bool is_special_file(const std::string& path);
+
 // Makes the folder, and those above it, where they are not there yet; "" is the current one.
 // Raises UserError where that fails, or where one may not write into it.
 void make_writable_folder(const std::string& folder);

@@ -131,10 +131,10 @@ TW_PRIMITIVE(view_body, "%view-body", (SCM view), "Return the handle of a view's
   return from_body(view_world(view), to_view(view).body());
 }
 
-TW_PRIMITIVE(check_followed, "%check-followed", (SCM world, SCM body),
-             "Raise an error unless the body is one of the world.") {
-  to_body(world, body, "follow");
-  return SCM_UNSPECIFIED;
+TW_PRIMITIVE(followed_from, "%followed-from", (SCM world, SCM body),
+             "Return where a body is that a camera is to follow.") {
+  const BodyId followed = to_body(world, body, "follow");
+  return from_vec3(to_world(world).state(followed).position);
 }
 
 // ---- motion ----

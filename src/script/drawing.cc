@@ -67,6 +67,13 @@ Camera to_camera(SCM world, SCM alist) {
   if (scm_is_true(entry(alist, "fov"))) camera.fov = to_real(entry(alist, "fov"), "fov");
   if (scm_is_true(entry(alist, "follow")))
     camera.follow = to_body(world, entry(alist, "follow"), "follow");
+  set_vec3(camera.follow_from, alist, "follow-from");
+  if (scm_is_true(entry(alist, "turn"))) camera.turn = to_real(entry(alist, "turn"), "turn");
+  if (const SCM bounds = entry(alist, "in-view"); scm_is_true(bounds)) {
+    camera.in_view.emplace();
+    camera.in_view->add(to_vec3(SCM_CAR(bounds), "in-view"));
+    camera.in_view->add(to_vec3(SCM_CADR(bounds), "in-view"));
+  }
   return camera;
 }
 
@@ -83,6 +90,7 @@ Sky to_sky(SCM alist) {
   set_vec3(sky.horizon, alist, "horizon");
   set_vec3(sky.ground, alist, "ground");
   if (scm_is_true(entry(alist, "fog"))) sky.fog = to_real(entry(alist, "fog"), "fog");
+  if (scm_is_true(entry(alist, "grain"))) sky.grain = to_real(entry(alist, "grain"), "grain");
   return sky;
 }
 
@@ -101,8 +109,9 @@ int to_side(SCM value) {
   return static_cast<int>(side);
 }
 
-RenderSettings to_render_settings(SCM width, SCM height, SCM quality) {
+RenderSettings to_render_settings(SCM width, SCM height, SCM quality, SCM overlay) {
   RenderSettings settings;
+  settings.hud = to_bool(overlay);
   settings.size = {to_side(width), to_side(height)};
   settings.quality = to_quality(quality);
   check_size(settings.size, settings.quality);
@@ -138,13 +147,15 @@ std::vector<HudLine> hud_lines(SCM title) {
 
 }  // namespace
 
-// Refuses at once what no run could draw; the drawing library is not opened yet.
-TW_PRIMITIVE(open_frames, "%open-frames", (SCM frames, SCM width, SCM height, SCM quality),
-             "Prepare drawing frames into a folder.") {
+// Refuses at once what no run could draw or write; the drawing library is not opened yet.
+TW_PRIMITIVE(open_frames, "%open-frames",
+             (SCM frames, SCM movie, SCM width, SCM height, SCM quality, SCM overlay),
+             "Prepare drawing frames into a folder, a movie or both.") {
   auto box = std::make_unique<DrawerBox>();
-  box->settings.frames = to_file_name(frames, "the folder for frames");
-  box->settings.render = to_render_settings(width, height, quality);
-  make_writable_folder(FrameName(box->settings.frames).folder());
+  if (scm_is_true(frames)) box->settings.frames = to_file_name(frames, "the folder for frames");
+  if (scm_is_true(movie)) box->settings.movie = to_file_name(movie, "the movie");
+  box->settings.render = to_render_settings(width, height, quality, overlay);
+  check_frames(box->settings);
   return scm_make_foreign_object_1(drawer_type, box.release());
 }
 
@@ -155,12 +166,22 @@ TW_PRIMITIVE(attach_frames, "%attach-frames!",
   DrawerBox& box = to_drawer(object);
   const double rate = to_real(fps, "fps");
   const FrameShare of_frames = to_share(share);
+  box.settings.fps = rate;
   box.settings.first_frame = first_frame(w, rate);
   while (!of_frames.includes(box.settings.first_frame)) ++box.settings.first_frame;
   box.settings.stride = of_frames.parts;
   box.drawer = std::make_shared<FrameDrawer>(w, box.settings, of_frames, scene_of(world, looks),
                                              hud_lines(title), to_bool(contacts));
   w.add_frame_sink(box.drawer, rate);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(set_looks, "%set-looks!", (SCM world, SCM object, SCM looks),
+             "Let frames from now on have other looks.") {
+  const DrawerBox& box = to_drawer(object);
+  if (!box.drawer) return SCM_UNSPECIFIED;
+  box.drawer->set_looks(to_camera(world, SCM_CAR(looks)), to_light(SCM_CADR(looks)),
+                        to_sky(SCM_CADDR(looks)));
   return SCM_UNSPECIFIED;
 }
 
@@ -195,9 +216,25 @@ TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object, SCM all),
   return SCM_UNSPECIFIED;
 }
 
+TW_PRIMITIVE(check_picture, "%check-picture", (SCM file, SCM width, SCM height, SCM quality),
+             "Refuse a picture that could not be drawn or written; make its folder.") {
+  to_render_settings(width, height, quality, SCM_BOOL_T);
+  make_writable_folder(folder_of(to_file_name(file, "the picture's file")));
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(bounds_in_view, "%bounds-in-view", (SCM world),
+             "Return two corners of the box that a camera without eye and target shows.") {
+  std::vector<Pose> poses;
+  const std::vector<DrawBody> bodies = draw_scene(to_world(world)).bodies;
+  for (const DrawBody& body : bodies) poses.push_back(body.pose);
+  const Aabb bounds = scene_bounds(bodies, poses);
+  return scm_list_2(from_vec3(bounds.lo), from_vec3(bounds.hi));
+}
+
 TW_PRIMITIVE(render, "%render!",
-             (SCM world, SCM file, SCM width, SCM height, SCM quality, SCM looks, SCM title,
-              SCM contacts),
+             (SCM world, SCM file, SCM width, SCM height, SCM quality, SCM overlay, SCM looks,
+              SCM title, SCM contacts),
              "Draw the world as it is now.") {
   require_outside_callbacks("render!");
   const World& w = to_world(world);
@@ -207,8 +244,8 @@ TW_PRIMITIVE(render, "%render!",
   for (const DrawBody& body : scene.bodies) frame.poses.push_back(body.pose);
   frame.hud = hud_lines(title);
   if (to_bool(contacts)) add_contacts(frame, w);
-  render_image(to_file_name(file, "the picture's file"), to_render_settings(width, height, quality),
-               scene, frame);
+  render_image(to_file_name(file, "the picture's file"),
+               to_render_settings(width, height, quality, overlay), scene, frame);
   return SCM_UNSPECIFIED;
 }
 

@@ -57,6 +57,12 @@ void FrameDrawer::note_bodies(std::span<const BodyPose> poses) {
     poses_[pose.body] = {pose.state.position, pose.state.orientation};
 }
 
+void FrameDrawer::set_looks(const Camera& camera, const Light& light, const Sky& sky) {
+  next_.camera = camera;
+  next_.light = light;
+  next_.sky = sky;
+}
+
 void FrameDrawer::frame(long index, double frame_time, std::span<const BodyPose> poses) {
   ++frames_;
   note_bodies(poses);

@@ -25,6 +25,8 @@ class FrameDrawer : public FrameSink {
               DrawScene scene, std::vector<HudLine> hud, bool contacts);
 
   void frame(long index, double frame_time, std::span<const BodyPose> poses) override;
+  // From the next frame on.
+  void set_looks(const Camera& camera, const Light& light, const Sky& sky);
   FramePipeline& pipeline() { return pipeline_; }
   // How many frames have come so far, drawn or not.
   long frames() const { return frames_; }
@@ -34,7 +36,7 @@ class FrameDrawer : public FrameSink {
 
   const World& world_;
   FrameShare share_;
-  DrawFrame next_;           // bodies that came and went since the last frame that was drawn
+  DrawFrame next_;           // what has changed since the last frame that was drawn
   std::vector<Pose> poses_;  // by body, as last known
   std::vector<HudLine> hud_;
   bool contacts_;

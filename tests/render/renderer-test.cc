@@ -118,6 +118,56 @@ TEST(Renderer, a_pose_that_is_not_finite_is_left_out_and_counted) {
   EXPECT_TRUE(is_reddish(again, static_cast<int>(ball->x()), static_cast<int>(ball->y())));
 }
 
+// The spread of brightness over the middle of a picture of one plate.
+double spread_on_plate(ShapePtr shape, bool fixed, std::optional<double> grain = 1) {
+  DrawScene scene;
+  scene.bodies.push_back(make_body(std::move(shape), {0, 0, 0}, {0.5, 0.5, 0.5}, fixed));
+  scene.sky.grain = grain;
+  scene.camera.eye = Vec3(0, -0.1, 4);
+  scene.camera.target = Vec3(0, 0, 0);
+  const Image image = Renderer(small_settings(Quality::normal), scene).draw(frame_at(0));
+  double sum = 0, squares = 0, count = 0;
+  for (int y = 30; y < 90; ++y)
+    for (int x = 40; x < 120; ++x, ++count) {
+      sum += brightness(image, x, y);
+      squares += brightness(image, x, y) * brightness(image, x, y);
+    }
+  return std::sqrt(squares / count - (sum / count) * (sum / count)) / (sum / count);
+}
+
+TEST(Renderer, hulls_that_stand_fixed_have_a_grain_and_others_have_not) {
+  TW_SKIP_WITHOUT_OPENGL();
+  const auto hull = [] {
+    return make_hull({{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}, {0, 0, -1}});
+  };
+  EXPECT_GT(spread_on_plate(hull(), true), 0.04);
+  EXPECT_LT(spread_on_plate(hull(), false), 0.03);
+  EXPECT_LT(spread_on_plate(hull(), true, std::nullopt), 0.03);
+  EXPECT_LT(spread_on_plate(make_box({8, 8, 0.1}), true), 0.03);
+}
+
+TEST(Renderer, camera_light_and_sky_can_change_between_frames) {
+  TW_SKIP_WITHOUT_OPENGL();
+  Renderer renderer(small_settings(), ball_over_ground());
+  const auto place = [&] { return renderer.view().project({0, 0, 1.5}); };
+  Image image = renderer.draw(frame_at(0));
+  EXPECT_TRUE(is_reddish(image, static_cast<int>(place()->x()), static_cast<int>(place()->y())));
+  DrawFrame frame = frame_at(1);
+  frame.camera = Camera();
+  frame.camera->eye = Vec3(0, -6, 3);
+  frame.camera->target = Vec3(0, 0, 9);
+  frame.light = Light();
+  frame.light->color = {0, 0, 0};
+  frame.sky = Sky();
+  frame.sky->zenith = frame.sky->horizon = {0.1, 0.8, 0.1};
+  image = renderer.draw(frame);
+  EXPECT_GT(green(image, 80, 20), 60 + std::max(red(image, 80, 20), blue(image, 80, 20)));
+  // and stay so
+  EXPECT_EQ(hash_of(renderer.draw(frame_at(1))), hash_of(image));
+  frame.light->direction.setZero();
+  EXPECT_TRUE(contains(user_error_of([&] { renderer.draw(frame); }), "direction is zero"));
+}
+
 TEST(Renderer, a_camera_that_follows_keeps_the_body_in_its_place) {
   TW_SKIP_WITHOUT_OPENGL();
   DrawScene scene = ball_over_ground();

@@ -1,7 +1,7 @@
 ;; Drawing from scenes and the command line; and that nothing of it is loaded where nothing is drawn.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
-(use-modules (timewarp primitives) (ice-9 ftw))
+(use-modules (timewarp primitives) (timewarp recorders) (ice-9 ftw))
 
 (test-begin "drawing")
 
@@ -29,7 +29,9 @@
   (test-message "camera" "eye is 5; expected a vector" (camera #:eye 5))
   (test-message "field of view" "fov is 4; expected an angle" (camera #:fov 4))
   (test-message "whom to follow" "follow is \"ball\"; expected a body" (camera #:follow "ball"))
+  (test-message "turning" "turn is \"left\"; expected a rate" (camera #:turn "left"))
   (test-message "light" "direction is .*; expected a vector" (light #:direction #(0 1)))
+  (test-message "grain" "grain is 2; expected a number from 0 to 1" (sky #:grain 2))
   (test-message "sky" "unknown keyword #:colour; expected one of #:zenith" (sky #:colour #(1 1 1))))
 
 (define (png? name)
@@ -54,6 +56,16 @@
 
 (define (bytes name)
   (call-with-input-file (in-folder name) get-string-all #:encoding "ISO-8859-1"))
+
+(define (shot-of file . options)
+  (apply run "ball.scm" "--fps=4" "--size=160x90" "--quality=draft" "--quiet" "--hash"
+         (string-append "--frames=" file) options))
+
+;; how many frames a movie holds, as text
+(define (frames-of movie)
+  (string-trim-both
+   (run-output (shell (string-append "ffprobe -v error -count_frames -of csv=p=0 -show_entries "
+                                     "stream=nb_read_frames " movie)))))
 
 (cond
  ((%drawing?)
@@ -137,6 +149,70 @@
         (files (every (lambda (file)
                         (and (string-suffix? ".png" file) (whole-png? (string-append "slow/" file))))
                       files)))))
+  ;; ---- one picture, with or without what is written over it ----
+  (let ((whole (shot-of "all")) (shot (shot-of "one/shot.png" "--at=0.25" "--until=0.5")))
+    (test-equal "--at: status 0" 0 (run-status shot))
+    (test-assert "--at draws the frame of that time"
+      (equal? (bytes "all/00001.png") (bytes "one/shot.png")))
+    (test-equal "and only that" '("shot.png") (list-files "one"))
+    (test-equal "and doesn't change the history" (run-output whole) (run-output shot)))
+  (shot-of "first.png" "--at=0")
+  (test-assert "--at=0 is the first frame" (equal? (bytes "all/00000.png") (bytes "first.png")))
+  (shot-of "bare.png" "--at=0.25" "--no-overlay")
+  (test-assert "--no-overlay leaves title and time out"
+    (and (png? "bare.png") (not (equal? (bytes "bare.png") (bytes "first.png")))
+         (< (string-length (bytes "bare.png")) (string-length (bytes "one/shot.png")))))
+  (for-each
+   (lambda (options message)
+     (let ((result (apply run "ball.scm" options)))
+       (test-equal (format #f "~a: status 2" options) 2 (run-status result))
+       (test-assert (run-errors result) (string-match message (run-errors result)))))
+   '(("--at=0.2") ("--at=0.2" "--frames=out") ("--at=3" "--until=2" "--frames=x.png")
+     ("--movie=x.mp4" "--part=1/2"))
+   '("expected --frames=FILE.png" "--frames is \"out\"; expected" "--at is 3.*, after --until"
+     "--part draws some"))
+  (in-world ()
+    (test-message "a time that no run came to" "no run! reached 0.2 s, of which .*y.png was to be drawn"
+      (call-with-recorders (lambda () (run! #:until 0.1)) #:frames (in-folder "y.png") #:at 0.2)))
+  ;; ---- cuts: frames after a run have the camera, light and sky that were set since ----
+  (write-file "cut.scm" "(load \"ball.scm\")"
+              "(run! #:until 0.25)" "(camera #:eye #(0 -9 1) #:target #(0 0 0.4))"
+              "(sky #:zenith #(1 0 0))")
+  (run "cut.scm" "--fps=4" "--size=160x90" "--quality=draft" "--quiet" "--frames=cut")
+  (test-assert "frames before a new camera are as they were"
+    (equal? (bytes "all/00001.png") (bytes "cut/00001.png")))
+  (test-assert "and those after it are not"
+    (not (equal? (bytes "all/00002.png") (bytes "cut/00002.png"))))
+  ;; ---- movies ----
+  (test-assert "a movie's name must end in a format's name"
+    (string-match "'x.avi' has no ending that is known; expected .mp4"
+                  (run-errors (run "ball.scm" "--movie=x.avi"))))
+  (let ((result (shell (string-append "mkdir -p nothing; PATH=nothing " timewarp
+                                      " ball.scm --quiet --poses=unborn.csv -m x.mp4"))))
+    (test-equal "without ffmpeg: status 1" 1 (run-status result))
+    (test-assert (run-errors result)
+      (string-match "needs ffmpeg, which is not in PATH; on Debian: apt-get install ffmpeg"
+                    (run-errors result))))
+  (when (search-path (parse-path (getenv "PATH")) "ffmpeg")
+    (let ((result (run "ball.scm" "--quiet" "--hash" "--movie=new/ball.mp4" "--fps=20" "--size=64x36"
+                       "--quality=draft")))
+      (test-equal "--movie: status 0" 0 (run-status result))
+      (test-equal "and the history is the same" (hash-of) (last (lines-of (run-output result)))))
+    (test-equal "a movie has all frames" "11" (frames-of "new/ball.mp4"))
+    (write-file "own-movie.scm"
+                "(load \"ball.scm\")"
+                "(simulate! #:until 0.1 #:movie \"own.webm\" #:size '(65 37) #:quality 'draft #:bare? #t)")
+    (test-equal "simulate! makes movies" 0 (run-status (run "own-movie.scm" "--quiet" "--until=0")))
+    (test-equal "of odd sizes, too" "4" (frames-of "own.webm"))
+    (let ((result
+           (shell (string-append
+                   "{ " timewarp " ball.scm --quiet --until=1000 --size=320x180 --quality=draft"
+                   " --movie=cut.mp4 & p=$!; until [ -s cut.mp4.part ]; do sleep 0.1; done;"
+                   " sleep 0.5; kill -INT $p; wait $p; }"))))
+      (test-equal "Ctrl-C while a movie is made: status 130" 130 (run-status result))
+      (test-assert "leaves a movie that plays"
+        (let ((count (string->number (frames-of "cut.mp4")))) (and count (> count 0))))
+      (test-assert "under its own name only" (not (file-exists? (in-folder "cut.mp4.part"))))))
   (let ((result (run "ball.scm" "--frames=out" "--size=99999x10")))
     (test-equal "a picture too large: status 2" 2 (run-status result)))
   (write-file "bad-size.scm" "(use-modules (timewarp))" "(render! \"x.png\" #:size 5)")
