@@ -114,7 +114,7 @@
                         (lambda () (values (const #f) (const #f)))
                         make-progress)
     (lambda (progress end-progress)
-      (parameterize ((current-slice-hooks (list progress)))
+      (parameterize ((current-slice-hooks (cons progress (current-slice-hooks))))
         (dynamic-wind
           (const #t)
           (lambda () (simulate-scene! scene options))
@@ -134,7 +134,24 @@
 
 (define (start-repl* options)
   ((module-ref (resolve-interface '(timewarp repl)) 'start-timewarp-repl)
-   #:init? (not (option-ref options 'no-init))))
+   #:init? (not (option-ref options 'no-init))
+   #:poll (and (option-ref options 'listen) (from-server 'poll-server!))))
+
+;; Loaded where it is asked for only: ports behave otherwise then.
+(define (from-server name) (module-ref (resolve-interface '(timewarp server)) name))
+
+(define (call-with-listening options thunk)
+  (match (option-ref options 'listen)
+    (#f (thunk))
+    (where
+     (let ((poll! (from-server 'poll-server!)))
+       ((from-server 'call-with-server) ((from-server 'parse-address) where)
+        (lambda (text)
+          (unless (option-ref options 'quiet) (complain "listening on ~a" text)))
+        (lambda ()
+          (parameterize ((current-slice-hooks
+                          (cons (lambda (world until) (poll!)) (current-slice-hooks))))
+            (thunk))))))))
 
 (define (evaluate-command text)
   (call-with-input-string text
@@ -175,13 +192,15 @@
       (take-overrides! options)
       (parameterize ((current-world (make-world)))
         (enter-user-module)
-        (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
-        (for-each evaluate-command (option-values options 'command))
-        (cond ((and scene (option-ref options 'interactive))
-               (run-scene-then-repl scene options))
-              (scene (run-scene scene options))
-              ((or (option-ref options 'interactive) (not (option-ref options 'command)))
-               (start-repl* options))))))))
+        (call-with-listening options (lambda () (do-operands scene options))))))))
+
+(define (do-operands scene options)
+  (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
+  (for-each evaluate-command (option-values options 'command))
+  (cond ((and scene (option-ref options 'interactive)) (run-scene-then-repl scene options))
+        (scene (run-scene scene options))
+        ((or (option-ref options 'interactive) (not (option-ref options 'command)))
+         (start-repl* options))))
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."

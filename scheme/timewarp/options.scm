@@ -92,7 +92,7 @@
     (group-check-rate ("group-check-rate") "HZ" ,positive "finest rate of contact checks (by size)")
     (check ("check") #f #f "run all validators after every event, and watch callbacks for side effects")
     (interactive (#\i "interactive") #f #f "REPL after the run (or at once with --until=0)")
-    (listen ("listen") ("SOCKET") ,(later "the REPL server") "not there yet")
+    (listen ("listen") ("SOCKET") ,optional-text "REPL server that answers while the simulation runs: a file, or a port of this machine")
     (load-path (#\L) "DIR" ,text "add DIR to the front of the load path")
     (load (#\l) "FILE" ,text "load a Scheme file before anything else")
     (command (#\c) "EXPR" ,text "evaluate EXPR and exit")
