@@ -176,20 +176,31 @@
 (define (check-usage options scene)
   (when (and (not scene)
              (any (lambda (key) (option-ref options key))
-                  '(until frames poses events stats hash)))
+                  '(until frames poses events stats hash watch)))
     (usage-error "there is no scene; expected timewarp [OPTION]... SCENE.scm"))
+  (when (and (option-ref options 'watch) (option-ref options 'interactive))
+    (usage-error "--watch starts afresh with each save, and has no prompt; expected no -i (~a)"
+                 "--listen has prompts"))
   (when (and (option-ref options 'frames) (not (%drawing?)))
     (usage-error "--frames needs drawing, which was left out when timewarp was built ~a"
                  "(--disable-render)")))
 
-(define (work options)
+(define (work options args)
   (let ((scene (scene-operand options)))
     (cond
      ((option-ref options 'version) (show-version))
      ((option-ref options 'help) (show-help scene))
+     ((option-ref options 'watch)
+      (check-usage options scene)
+      ((module-ref (resolve-interface '(timewarp watch)) 'watch-scene)
+       scene (delete "--watch" args)
+       (lambda (text) (unless (option-ref options 'quiet) (complain "timewarp: ~a" text)))))
      (else
       (check-usage options scene)
       (take-overrides! options)
+      (match (option-ref options 'files-read)
+        (#f #t)
+        (report ((module-ref (resolve-interface '(timewarp watch)) 'report-files-read) report)))
       (parameterize ((current-world (make-world)))
         (enter-user-module)
         (call-with-listening options (lambda () (do-operands scene options))))))))
@@ -216,6 +227,6 @@
              (for-each (lambda (folder) (set! %load-path (cons folder %load-path)))
                        (reverse (option-values options 'load-path)))
              (call-with-interrupts
-              (lambda () (call-with-bounded-stack (lambda () (work options)))))
+              (lambda () (call-with-bounded-stack (lambda () (work options args)))))
              (flush-output)))))
     (exit-program status)))

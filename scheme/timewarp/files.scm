@@ -2,7 +2,7 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp files)
   #:use-module (timewarp errors)
-  #:export (current-scene-directory scene-file))
+  #:export (current-scene-directory scene-file current-file-reader note-file-read))
 
 ;; The folder of the scene that is being loaded, or #f: the current folder.
 (define current-scene-directory (make-parameter #f))
@@ -13,3 +13,10 @@
   (if (or (absolute-file-name? name) (not (current-scene-directory)))
       name
       (in-vicinity (current-scene-directory) name)))
+
+;; A procedure that is told of each file that is read for a scene, but by Guile's `load'.
+(define current-file-reader (make-parameter (const #f)))
+
+(define (note-file-read file)
+  "Tell that FILE is read for the scene."
+  ((current-file-reader) file))

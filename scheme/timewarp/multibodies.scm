@@ -3,6 +3,7 @@
 (define-module (timewarp multibodies)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module ((timewarp files) #:select (note-file-read))
   #:use-module (timewarp worlds)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
@@ -259,6 +260,7 @@ floating and planar joints, <mimic>, moving links without mass.
          (found (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file))
          (made (%load-urdf (current-world) found name (or base 'fixed) position orientation place)))
     (set! (given-names (car made)) (cdr made))
+    (note-file-read found)
     (car made)))
 
 ;; Of each multibody, the names of its links as they were given.
