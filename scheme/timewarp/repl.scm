@@ -14,6 +14,7 @@
   #:use-module (timewarp line-editing)
   #:use-module (system repl repl)
   #:use-module (system repl common)
+  #:use-module ((system base compile) #:select (compile))
   #:use-module (ice-9 match)
   #:export (start-timewarp-repl prepare-repl!))
 
@@ -52,6 +53,9 @@
         (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
         (module-set! (resolve-module '(system repl common)) '*version* (banner))
         (repl-default-option-set! 'on-error 'report)
+        ;; the compiler's parts are loaded when they are first needed, and what Ctrl-C keeps from
+        ;; being loaded is missing from then on
+        (compile '(if #f #f) #:env (resolve-module '(guile-user)))
         (add-hook! before-read-hook leave-if-ending)
         (add-hook! before-eval-hook hold-now-and-then)
         (add-hook! after-error-hook (lambda () (print-user-frames (current-error-port))))))))
