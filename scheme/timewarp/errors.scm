@@ -25,6 +25,7 @@
             call-with-bounded-stack
             call-with-run-stack
             error-text
+            writing-briefly?
             not-there-yet))
 
 ;; ---- places ----
@@ -194,8 +195,14 @@
 (define (start-of vector)
   (map (lambda (i) (vector-ref vector i)) (iota (min most-characters (vector-length vector)))))
 
+;; Objects are named only, not described, while this is true.
+(define writing-briefly? (make-parameter #f))
+
 ;; VALUE as it is written, cut where it is long; a circular one is long.
 (define (short-text value)
+  (parameterize ((writing-briefly? #t)) (cut-text value)))
+
+(define (cut-text value)
   (define left most-characters)
   (call-with-output-string
     (lambda (port)
