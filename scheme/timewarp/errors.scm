@@ -45,7 +45,7 @@
                  "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
-                 "exit-status" "completion" "history" "line-editing" "server" "watch" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
+                 "exit-status" "completion" "effects" "history" "line-editing" "server" "watch" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
                  "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
                  "sweep-values")))))
 

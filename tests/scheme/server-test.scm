@@ -181,6 +181,31 @@
 (close-port (cdr prompt))
 (test-equal "the user's (exit) ends it" 7 (status:exit-val (wait pid)))
 
+;; ---- in Guile's place, as Geiser starts it and talks to it ----
+
+(test-equal "its version" (version) (run-output (run "-c" "'(display (version))'")))
+(mkdir (in-folder "editor"))
+(write-file "editor/talk.scm"
+            "(define-module (talk) #:use-module (system repl command))"
+            "(define datum syntax->datum)"
+            "(define-meta-command ((talk-eval talk) repl (module form) . rest)"
+            "  \"talk-eval MODULE FORM\nEvaluate FORM in MODULE.\""
+            "  (write (list 'result (eval (datum form) (resolve-module (datum module)))))"
+            "  (newline))")
+(write-file "init.scm" "(define from-init 5)")
+(write-file "talk.txt" ",use (talk)" "'done" ",talk-eval (guile-user) (world-time)"
+            ",talk-eval (guile-user) from-init" "(exit)")
+(test-assert "options of Guile, and commands of an editor's own"
+  (string-match "= done\n.*\\(result 0.0\\)\n.*\\(result 5\\)"
+                (run-output (run "-q -L editor -l init.scm <talk.txt"))))
+(define pid (start (string-append "--listen=" socket-file) "-L" "editor" "bounce.scm"))
+(define one (connect-unix))
+(answer one)
+(test-answer "the same through a socket" "done" one ",use (talk)\n'done")
+(test-answer "evaluates" "result \"ball\"" one ",talk-eval (guile-user) (body-name ball)")
+(kill pid SIGINT)
+(wait pid)
+
 ;; ---- wrong addresses ----
 
 (define (refused pattern where)
