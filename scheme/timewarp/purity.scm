@@ -9,6 +9,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
+  #:use-module (ice-9 match)
   #:use-module (system vm program)
   #:export (watched))
 
@@ -44,10 +45,27 @@
           ((array? value) (array-copy* value))
           (else value))))
 
-;; What a closure has of the variables around it.
+;; What a closure has of the variables around it.  The interpreter's have its own notes, too, which
+;; it adds to as it goes; what a scene defines is compiled.
 (define (kept-variables procedure)
   (let ((kept (program-free-variables procedure)))
-    (if (vector? kept) (vector->list kept) kept)))
+    (cond ((interpreted? procedure) '())
+          ((vector? kept) (vector->list kept))
+          (else kept))))
+
+;; Looking where code comes from takes a millisecond; code never moves.
+(define interpreted-by-address (make-hash-table))
+
+(define (interpreted? procedure)
+  (let* ((address (program-code procedure))
+         (known (hashv-get-handle interpreted-by-address address)))
+    (if known
+        (cdr known)
+        (let ((found (match (program-source procedure 0)
+                       ((_ "ice-9/eval.scm" . _) #t)
+                       (_ #f))))
+          (hashv-set! interpreted-by-address address found)
+          found))))
 
 (define (array-copy* array)
   (let ((new (apply make-typed-array (array-type array) *unspecified* (array-dimensions array))))
