@@ -116,7 +116,7 @@
                         (lambda () (values (const #f) (const #f)))
                         make-progress)
     (lambda (progress end-progress)
-      (parameterize ((current-slice-hooks (list progress)))
+      (parameterize ((current-slice-hooks (cons progress (current-slice-hooks))))
         (dynamic-wind
           (const #t)
           (lambda () (simulate-scene! scene options))
@@ -136,7 +136,24 @@
 
 (define (start-repl* options)
   ((module-ref (resolve-interface '(timewarp repl)) 'start-timewarp-repl)
-   #:init? (not (option-ref options 'no-init))))
+   #:init? (not (option-ref options 'no-init))
+   #:poll (and (option-ref options 'listen) (from-server 'poll-server!))))
+
+;; Loaded where it is asked for only: ports behave otherwise then.
+(define (from-server name) (module-ref (resolve-interface '(timewarp server)) name))
+
+(define (call-with-listening options thunk)
+  (match (option-ref options 'listen)
+    (#f (thunk))
+    (where
+     (let ((poll! (from-server 'poll-server!)))
+       ((from-server 'call-with-server) ((from-server 'parse-address) where)
+        (lambda (text)
+          (unless (option-ref options 'quiet) (complain "listening on ~a" text)))
+        (lambda ()
+          (parameterize ((current-slice-hooks
+                          (cons (lambda (world until) (poll!)) (current-slice-hooks))))
+            (thunk))))))))
 
 (define (evaluate-command text)
   (call-with-input-string text
@@ -161,8 +178,11 @@
 (define (check-usage options scene)
   (when (and (not scene)
              (any (lambda (key) (option-ref options key))
-                  '(until frames movie at poses events stats hash)))
+                  '(until frames movie at poses events stats hash watch)))
     (usage-error "there is no scene; expected timewarp [OPTION]... SCENE.scm"))
+  (when (and (option-ref options 'watch) (option-ref options 'interactive))
+    (usage-error "--watch starts afresh with each save, and has no prompt; expected no -i (~a)"
+                 "--listen has prompts"))
   (for-each (lambda (key)
               (when (and (option-ref options key) (not (%drawing?)))
                 (usage-error "--~a needs drawing, which was left out when timewarp was built ~a"
@@ -182,23 +202,33 @@
       (usage-error "--at is ~a, after --until, ~a; expected a time of the run" time
                    (option-ref options 'until)))))
 
-(define (work options)
+(define (work options args)
   (let ((scene (scene-operand options)))
     (cond
      ((option-ref options 'version) (show-version))
      ((option-ref options 'help) (show-help scene))
+     ((option-ref options 'watch)
+      (check-usage options scene)
+      ((module-ref (resolve-interface '(timewarp watch)) 'watch-scene)
+       scene (delete "--watch" args)
+       (lambda (text) (unless (option-ref options 'quiet) (complain "timewarp: ~a" text)))))
      (else
       (check-usage options scene)
       (take-overrides! options)
+      (match (option-ref options 'files-read)
+        (#f #t)
+        (report ((module-ref (resolve-interface '(timewarp watch)) 'report-files-read) report)))
       (parameterize ((current-world (make-world)))
         (enter-user-module)
-        (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
-        (for-each evaluate-command (option-values options 'command))
-        (cond ((and scene (option-ref options 'interactive))
-               (run-scene-then-repl scene options))
-              (scene (run-scene scene options))
-              ((or (option-ref options 'interactive) (not (option-ref options 'command)))
-               (start-repl* options))))))))
+        (call-with-listening options (lambda () (do-operands scene options))))))))
+
+(define (do-operands scene options)
+  (for-each (lambda (file) (primitive-load file)) (option-values options 'load))
+  (for-each evaluate-command (option-values options 'command))
+  (cond ((and scene (option-ref options 'interactive)) (run-scene-then-repl scene options))
+        (scene (run-scene scene options))
+        ((or (option-ref options 'interactive) (not (option-ref options 'command)))
+         (start-repl* options))))
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."
@@ -214,6 +244,6 @@
              (for-each (lambda (folder) (set! %load-path (cons folder %load-path)))
                        (reverse (option-values options 'load-path)))
              (call-with-interrupts
-              (lambda () (call-with-bounded-stack (lambda () (work options)))))
+              (lambda () (call-with-bounded-stack (lambda () (work options args)))))
              (flush-output)))))
     (exit-program status)))

@@ -25,6 +25,7 @@
             call-with-bounded-stack
             call-with-run-stack
             error-text
+            writing-briefly?
             not-there-yet))
 
 ;; ---- places ----
@@ -44,7 +45,7 @@
                  "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
-                 "exit-status" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
+                 "exit-status" "completion" "effects" "history" "line-editing" "server" "watch" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
                  "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
                  "sweep-values")))))
 
@@ -194,8 +195,14 @@
 (define (start-of vector)
   (map (lambda (i) (vector-ref vector i)) (iota (min most-characters (vector-length vector)))))
 
+;; Objects are named only, not described, while this is true.
+(define writing-briefly? (make-parameter #f))
+
 ;; VALUE as it is written, cut where it is long; a circular one is long.
 (define (short-text value)
+  (parameterize ((writing-briefly? #t)) (cut-text value)))
+
+(define (cut-text value)
   (define left most-characters)
   (call-with-output-string
     (lambda (port)

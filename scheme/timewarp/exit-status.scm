@@ -23,7 +23,8 @@
   (false-if-exception (force-output (current-output-port)))
   (let ((port (current-error-port)))
     (apply format port format-string args)
-    (newline port)))
+    (newline port)
+    (force-output port)))
 
 ;; An error that is no timewarp-error, for instance in -c: as describe-error sees it.
 (define (complain-about program key args description)

@@ -2,7 +2,7 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp files)
   #:use-module (timewarp errors)
-  #:export (current-scene-directory scene-file beside-caller))
+  #:export (current-scene-directory scene-file beside-caller current-file-reader note-file-read))
 
 ;; The folder of the scene that is being loaded, or #f: the current folder.
 (define current-scene-directory (make-parameter #f))
@@ -15,7 +15,15 @@
       (in-vicinity (current-scene-directory) name)))
 
 (define (beside-caller file place)
-  "Return FILE, or, where there is none of that name in the current folder, that beside the file of PLACE."
+  "Return FILE, or, where there is none of that name in the current folder, that beside the file of
+PLACE."
   (let ((beside (and place (string? file) (not (absolute-file-name? file))
                      (in-vicinity (dirname (car place)) file))))
     (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file)))
+
+;; A procedure that is told of each file that is read for a scene, but by Guile's `load'.
+(define current-file-reader (make-parameter (const #f)))
+
+(define (note-file-read file)
+  "Tell that FILE is read for the scene."
+  ((current-file-reader) file))

@@ -9,6 +9,7 @@
 (define-module (timewarp forms)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp effects)
   #:use-module (language tree-il)
   #:use-module (system base compile)
   #:use-module (system vm loader)
@@ -22,9 +23,11 @@
   "Run FORM, syntax or a datum, in the current module."
   ;; as the compiler expands it: definitions of syntax hold from here on
   (let ((expanded (macroexpand form 'c '(compile load eval))))
-    (if (walkable? expanded)
-        (walk-form expanded)
-        ((compiled expanded)))))
+    (let ((walkable? (walkable? expanded)))
+      (look-for-effects! expanded walkable?)
+      (if walkable?
+          (walk-form expanded)
+          ((compiled expanded))))))
 
 ;; ---- compiled ----
 

@@ -63,6 +63,7 @@ A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again
 (help add-body!) or ,describe add-body! shows all of a procedure; ,apropos TEXT finds names.
 Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
 whose description ends with its default.
+Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
 After an error the prompt is as before; ,option on-error debug enters Guile's debugger there.
 (exit) or Ctrl-D leaves.
 ")

@@ -9,6 +9,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:export (call-with-interrupts
+            interrupt-count
             call-with-ending-signals
             call-with-broken-pipes
             ending?
@@ -34,9 +35,17 @@
         (unless (ending?)
           (for-each (lambda (old) (sigaction (car old) (cadr old) (cddr old))) outer))))))
 
+;; How often Ctrl-C came: who evaluates for others sees that they were interrupted.
+(define interrupts 0)
+(define (interrupt-count) interrupts)
+
+(define (interrupt! signal)
+  (set! interrupts (1+ interrupts))
+  (%interrupt! signal))
+
 (define (call-with-interrupts thunk)
   "Call THUNK; Ctrl-C throws timewarp-interrupted where that is safe."
-  (call-with-handlers (list (list SIGINT %interrupt!)) thunk))
+  (call-with-handlers (list (list SIGINT interrupt!)) thunk))
 
 ;; SA_RESETHAND, which Guile doesn't name: a second signal of the kind kills
 (define only-once (- (expt 2 31)))

@@ -36,6 +36,7 @@
                          (list (port-filename port) (1+ (port-line port)) (port-column port))))))))
 
 (define (call-with-scene-port file proc)
+  (note-file-read file)
   (let ((port (fdopen (%open-scene file) "r")))
     (set-port-filename! port file)
     (dynamic-wind
@@ -83,6 +84,14 @@
           ;; where it was thrown the form's place still stands, or a more exact one
           (set! description (describe-error key args)))))))
 
+;; The expander reads what a form includes, relative to the file that the form is in.
+(define (note-include form file)
+  (syntax-case form ()
+    ((head name)
+     (and (eq? (syntax->datum #'head) 'include) (string? (syntax->datum #'name)))
+     (note-file-read (in-vicinity (dirname file) (syntax->datum #'name))))
+    (_ #t)))
+
 (define (run-scene-file file)
   "Run the forms of the scene FILE in the current module, so that they fill the current world.  An
 error is raised as a timewarp-error with its place in the file."
@@ -92,6 +101,7 @@ error is raised as a timewarp-error with its place in the file."
        (save-module-excursion
         (lambda ()
           (for-each-form (lambda (form place)
+                           (note-include form file)
                            (call-placing-errors place
                              (lambda () (call-with-bounded-stack (lambda () (run-form form))))))
                          file)))))))

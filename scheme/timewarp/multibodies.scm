@@ -3,7 +3,7 @@
 (define-module (timewarp multibodies)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
-  #:use-module (timewarp files)
+  #:use-module ((timewarp files) #:select (beside-caller note-file-read))
   #:use-module (timewarp worlds)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
@@ -255,8 +255,10 @@ floating and planar joints, <mimic>, moving links without mass.
 #:position  m, of the first link's frame, in that of the base's body if there is one; #(0 0 0)
 #:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
   (let* ((place (caller-place))
-         (made (%load-urdf (current-world) (beside-caller file place) name (or base 'fixed) position orientation place)))
+         (found (beside-caller file place))
+         (made (%load-urdf (current-world) found name (or base 'fixed) position orientation place)))
     (set! (given-names (car made)) (cdr made))
+    (note-file-read found)
     (car made)))
 
 ;; Of each multibody, the names of its links as they were given.

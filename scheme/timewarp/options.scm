@@ -94,7 +94,8 @@
     (group-check-rate ("group-check-rate") "HZ" ,positive "finest rate of contact checks (by size)")
     (check ("check") #f #f "run all validators after every event, and watch callbacks for side effects")
     (interactive (#\i "interactive") #f #f "REPL after the run (or at once with --until=0)")
-    (listen ("listen") ("SOCKET") ,(later "the REPL server") "not there yet")
+    (listen ("listen") ("SOCKET") ,optional-text "REPL server that answers while the simulation runs: a file, or a port of this machine")
+    (watch ("watch") #f #f "run again whenever the scene, or a file that it loads, is saved")
     (load-path (#\L) "DIR" ,text "add DIR to the front of the load path")
     (load (#\l) "FILE" ,text "load a Scheme file before anything else")
     (command (#\c) "EXPR" ,text "evaluate EXPR and exit")
@@ -109,7 +110,9 @@
     (pieces ("pieces") "N" ,positive-integer #f)
     (undo-redo ("undo-redo") #f #f #f)
     (write-states ("write-states") "FILE" ,text #f)
-    (compare-states ("compare-states") "FILE" ,text #f)))
+    (compare-states ("compare-states") "FILE" ,text #f)
+    ;; what --watch asks of the runs that it starts
+    (files-read ("files-read") "FILE" ,text #f)))
 
 (define (parse-command-line args)
   "Return an alist of options in the order given; operands have the key `operand'."

@@ -1,5 +1,5 @@
-;; The REPL: Guile's own, with (timewarp) at hand, readline where it is installed, and a short
-;; banner.
+;; The REPL: Guile's own, with (timewarp) at hand, lines edited by readline where it is installed, and
+;; a short banner.
 ;;
 ;; There is one level of it: an error is shown with the user's frames, and the prompt is there
 ;; again.  So (exit) and Ctrl-D leave it at any time; `,option on-error debug' brings Guile's nested
@@ -11,16 +11,12 @@
   #:use-module (timewarp interrupts)
   #:use-module (timewarp forms)
   #:use-module (timewarp help)
+  #:use-module (timewarp line-editing)
   #:use-module (system repl repl)
   #:use-module (system repl common)
+  #:use-module ((system base compile) #:select (compile))
   #:use-module (ice-9 match)
-  #:export (start-timewarp-repl))
-
-(define (activate-readline-if-there)
-  (when (and (isatty? (current-input-port))
-             (false-if-exception (resolve-interface '(ice-9 readline))))
-    (let ((activate (module-ref (resolve-interface '(ice-9 readline)) 'activate-readline)))
-      (activate))))
+  #:export (start-timewarp-repl prepare-repl!))
 
 (define (load-user-init)
   (let ((file (string-append (or (getenv "HOME") "/") "/.guile")))
@@ -48,17 +44,44 @@
 (define (leave-if-ending)
   (when (ending?) (throw 'quit)))
 
-(define* (start-timewarp-repl #:key (init? #t))
-  "Run a REPL in (guile-user) until the user leaves it; (exit STATUS) throws quit as everywhere."
-  (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
+(define prepare-repl!
+  (let ((prepared? #f))
+    (lambda ()
+      "Set up what the terminal's REPL and those of a server's clients share."
+      (unless prepared?
+        (set! prepared? #t)
+        (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
+        (module-set! (resolve-module '(system repl common)) '*version* (banner))
+        (repl-default-option-set! 'on-error 'report)
+        ;; the compiler's parts are loaded when they are first needed, and what Ctrl-C keeps from
+        ;; being loaded is missing from then on
+        (compile '(if #f #f) #:env (resolve-module '(guile-user)))
+        (add-hook! before-read-hook leave-if-ending)
+        (add-hook! before-eval-hook hold-now-and-then)
+        (add-hook! after-error-hook (lambda () (print-user-frames (current-error-port))))))))
+
+;; Without readline: IDLE is called until there is something to read.
+(define (wait-while-idle idle)
+  (let ((reader (module-ref the-root-module 'repl-reader)) (terminal (current-input-port)))
+    (module-set! the-root-module 'repl-reader
+                 (lambda* (prompt #:optional (read (fluid-ref current-reader)))
+                   (reader prompt
+                           (lambda* (#:optional (port (current-input-port)))
+                             (when (eq? port terminal)
+                               (let loop ()
+                                 (when (null? (car (select (list port) '() '() 0 20000)))
+                                   (idle)
+                                   (loop))))
+                             (read port)))))))
+
+(define* (start-timewarp-repl #:key (init? #t) poll)
+  "Run a REPL in (guile-user) until the user leaves it; (exit STATUS) throws quit as everywhere.  POLL
+is called again and again while it waits for input, where it is not #f."
+  (prepare-repl!)
   (when init? (load-user-init))
-  (activate-readline-if-there)
+  (unless (activate-line-editing poll)
+    (when poll (wait-while-idle poll)))
   (set-current-module (resolve-module '(guile-user)))
-  (module-set! (resolve-module '(system repl common)) '*version* (banner))
-  (repl-default-option-set! 'on-error 'report)
-  (add-hook! before-read-hook leave-if-ending)
-  (add-hook! before-eval-hook hold-now-and-then)
-  (add-hook! after-error-hook (lambda () (print-user-frames (current-error-port))))
   ;; Ctrl-C while an expression of the user is evaluated raises an error at the prompt
   (match (call-with-interrupts start-repl)
     (() #t)

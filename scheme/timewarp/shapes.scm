@@ -67,7 +67,10 @@ modelling program, or take the hull.
 
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:convex-hull?  whether the hull is taken of parts that are not convex; #f"
-  (%load-shape (beside-caller file (caller-place)) (or scale 1) convex-hull?))
+  (let* ((found (beside-caller file (caller-place)))
+         (shape (%load-shape found (or scale 1) convex-hull?)))
+    (note-file-read found)
+    shape))
 
 ;; ---- rocks ----
 

@@ -91,7 +91,9 @@
   '((stats . "the statistics of every run are in FOLDER/runs.jsonl")
     (part . "--parts=N makes the parts")
     (interactive . "runs of a sweep have no prompt")
-    (listen . "runs of a sweep have no prompt")))
+    (listen . "runs of a sweep have no prompt")
+    (watch . "a sweep runs once; runs that are done are not repeated")
+    (files-read . "it belongs to --watch")))
 
 (define (timewarp-row key) (assq key timewarp-options))
 (define (own-option? key) (->bool (assq key own-options)))

@@ -3,6 +3,7 @@
 (define-module (timewarp worlds)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (ice-9 format)
   #:use-module (ice-9 match)
   #:use-module (oop goops)
   #:export (make-world
@@ -193,14 +194,42 @@ called waits for the next run."
 
 ;; ---- how things are written ----
 
+;;
+;; At the prompt objects tell how they are; messages name them only, and so do callbacks, in which
+;; nobody may read a body.
+
+(define (number-text x)
+  (let ((rounded (round x)))
+    (if (= x rounded)
+        (number->string (inexact->exact rounded))
+        (format #f "~,4f" x))))
+
+(define (vector-text vector)
+  (format #f "#(~a)" (string-join (map number-text (vector->list vector)) " ")))
+
+(define (telling?) (not (or (writing-briefly?) (%inside-callback?))))
+
 (define-method (write (world <world>) port)
-  (format port "#<world ~a bodies>" (length (%world-bodies world))))
+  (format port "#<world ~a bodies~a>" (length (%world-bodies world))
+          (if (telling?) (format #f " at ~a s" (number-text (%world-time world))) "")))
 
 (define-method (write (body <body>) port)
-  (format port "#<body ~a~a>" (%body-name body) (if (%removed? body) " (removed)" "")))
+  (format port "#<body ~a~a>" (%body-name body)
+          (cond ((%removed? body) " (removed)")
+                ((telling?) (format #f " ~a at ~a" (%body-kind body)
+                                    (vector-text (%position body))))
+                (else ""))))
 
 (define-method (write (view <view>) port)
-  (display "#<view>" port))
+  (match (false-if-exception (%body-name (%view-body view)))
+    (#f (display "#<view of the past>" port))
+    (name (format port "#<view ~a>" name))))
+
+(define-method (write (checkpoint <checkpoint>) port)
+  (display "#<checkpoint>" port))
+
+(define-method (write (motion <motion>) port)
+  (display "#<keyframes>" port))
 
 (define-method (write (shape <shape>) port)
   (format port "#<shape ~a>" (%shape-kind shape)))

@@ -16,7 +16,8 @@
     (test-equal "mass from shape and density" 500.0 (body-mass a))
     (test-equal "mass as given" 3.0 (body-mass b))
     (test-equal "kinds" '(dynamic fixed) (list (body-kind a) (body-kind g)))
-    (test-equal "a body is written with its name" "#<body a>" (format #f "~s" a))
+    (test-equal "a body is written with its name, its kind and where it is" "#<body a dynamic at #(0 0 5)>"
+      (format #f "~s" a))
     (test-equal "state at the start" '(#(0.0 0.0 5.0) #(1.0 0.0 0.0 0.0) #(1.0 2.0 3.0))
                 (list (position a) (orientation a) (velocity a)))
     (test-equal "kinetic energy" 3500.0 (kinetic-energy a))

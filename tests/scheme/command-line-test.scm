@@ -156,7 +156,7 @@
 
 ;; what is not there yet says so
 (for-each (lambda (args) (apply refused "not there yet" "ball.scm" args))
-          '(("--record=x.twr") ("-o" "x.twr") ("--listen") ("--listen=sock")))
+          '(("--record=x.twr") ("-o" "x.twr")))
 (refused "not there yet" "x.twr")
 (refused "--integrator is \"euler\"; expected auto or rk45" "ball.scm" "--integrator=euler")
 (test-equal "--integrator=rk45 is" 0 (run-status (run "ball.scm" "--integrator=rk45")))
@@ -169,7 +169,11 @@
 
 ;; ---- --check ----
 
-(write-file "impure.scm" "(use-modules (timewarp))"
+(write-file "impure.scm" "(use-modules (timewarp) (srfi srfi-9))"
+            "(define-record-type <tally> (make-tally n) tally? (n tally-n set-tally-n!))"
+            "(define tally (make-tally 0))"
+            "(define next! (let ((n 0)) (lambda () (set! n (1+ n)) n)))"
+            "(define own 0)"
             "(define count 0)" "(define seen (list 1 (vector 2)))" "(define table (make-hash-table))"
             "(define ball (add-body! #:name \"ball\" #:shape (sphere 1) #:slots '((n . 0))))"
             "(define-scene-parameter what 0 \"what to do\")"
@@ -179,9 +183,13 @@
             "    (case what"
             "      ((1) (set! count (1+ count)))"
             "      ((2) (vector-set! (cadr seen) 0 time))"
-            "      ((3) (hash-set! table time #t)))"
+            "      ((3) (hash-set! table time #t))"
+            "      ((4) (set-tally-n! tally time))"
+            "      ((5) (next!))"
+            "      ((6) (random 1.0)))"
             "    #f)"
-            "  #:start 0.1)")
+            "  #:start 0.1)"
+            "(add-callback! ball (let ((n 0)) (lambda (time view) (when (= what 7) (set! n (1+ n))) #f)) #:start 0.2)")
 (define (impure what . options)
   (apply run "impure.scm" "-D" (format #f "what=~a" what) "--until=1" options))
 (test-equal "--check passes a callback that touches what it is handed" 0 (run-status (impure 0 "--check")))
@@ -190,7 +198,41 @@
             (test-assert (string-append "--check finds a change of " name)
               (string-match (string-append "^impure.scm:.*changed the variable " name ",")
                             (run-errors (impure what "--check")))))
-          '(1 2 3) '("count" "seen" "table"))
+          '(1 2 3 4 5) '("count" "seen" "table" "tally" "next!"))
+(test-assert "--check finds draws from Guile's random state"
+  (string-match "^impure.scm:.*drew from Guile's random state" (run-errors (impure 6 "--check"))))
+(test-assert "--check finds what a callback keeps to itself"
+  (string-match "(^|\n)impure.scm:.*a variable of its own" (run-errors (impure 7 "--check"))))
+
+;; ---- warnings at load ----
+
+(write-file "effects.scm"
+            "(use-modules (timewarp))"
+            "(define count 0)"
+            "(define table (make-hash-table))"
+            "(define ball (add-body! #:shape (sphere 0.1) #:slots '((n . 0))))"
+            "(define (bump!) (set! count 1))"
+            "(define (tick time view) (hash-set! table time 1) (bump!) #f)"
+            "(define (fine time view)"
+            "  (let loop ((i 0)) (set! i (1+ i)) (if (< i 3) (loop i)))"
+            "  (set! (slot view 'n) 1) #f)"
+            "(add-callback! ball tick)"
+            "(add-callback! ball fine)"
+            "(add-callback! ball (let ((n 0)) (lambda (time view) (set! n 1) #f)))"
+            "(on-collision! ball #t (lambda (c a b) (set! count 2)))"
+            "(observe! 'collision (lambda (c) (set! count 3)))")
+(let ((result (run "effects.scm" "--until=0.1" "--quiet")))
+  (test-equal "what a rollback does not undo is warned of, with its place"
+    '("effects.scm:6:26: what is in table" "effects.scm:5:17: the variable count"
+      "effects.scm:12:54: the variable n" "effects.scm:13:40: the variable count")
+    (map (lambda (line)
+           (let ((m (string-match "^([^ ]*): warning: .* (what is in|the variable) ([a-z]+), which" line)))
+             (if m
+                 (format #f "~a: ~a ~a" (match:substring m 1) (match:substring m 2)
+                         (match:substring m 3))
+                 line)))
+         (lines-of (run-errors result))))
+  (test-equal "and runs" 0 (run-status result)))
 
 ;; ---- statistics ----
 
