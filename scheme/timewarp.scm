@@ -10,6 +10,7 @@
       ((timewarp shapes))
       ((timewarp bodies))
       ((timewarp contact))
+      ((timewarp queries))
       ((timewarp forces))
       ((timewarp multibodies)
        add-multibody! multibody? multibody-name multibody-links body-multibody link-body

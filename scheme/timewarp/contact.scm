@@ -77,11 +77,17 @@ for all."
   (friction friction-of)
   (slipping? slipping-of?))
 
-(define (contacts)
+(define-keyword-procedure (contacts #:key body)
   "Return a list of the contacts of all contact groups at world-time, by pairs of bodies in the order in
 which they were added; faces that meet have several.  Impacts of bodies that don't stay together are no
-contacts; a contact whose force is 0 is about to touch, or has just lost touch."
-  (map (lambda (parts) (apply make-contact parts)) (%contacts (current-world))))
+contacts; a contact whose force is 0 is about to touch, or has just lost touch.
+
+#:body  a body: its contacts alone; all"
+  (let ((all (map (lambda (parts) (apply make-contact parts)) (%contacts (current-world)))))
+    (if body
+        (let ((wanted (%view-body body)))
+          (filter (lambda (contact) (memq wanted (bodies-of contact))) all))
+        all)))
 
 (define (contact? object)
   "Return #t if OBJECT is a contact, as `contacts' lists them."

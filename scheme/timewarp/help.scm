@@ -25,6 +25,9 @@
      set-contact-parameters! contact-parameters disable-collisions! enable-collisions! contacts
      contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
      contact-slipping? contact?)
+    ("Queries" "rays, distances, what is where"
+     ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
+     bounding-box all-poses)
     ("Forces" "what acts on bodies, from now on"
      add-drag! add-spring! attach! detach! attached? add-force!)
     ("Multibodies" "links that hang on one another by joints"

@@ -4,6 +4,7 @@
 #include "script/body-def.h"
 #include "script/primitive.h"
 #include "script/scm-slots.h"
+#include "script/states.h"
 #include "script/types.h"
 #include "script/values.h"
 
@@ -49,12 +50,6 @@ void read_property(BodyDef& def, SCM name, SCM value, const char* who) {
   throw UserError(std::string(who) + " knows no " + text);
 }
 
-const BodyInfo& info_of(SCM object) {
-  if (is_view(object)) return to_world(view_world(object)).body(to_view(object).body());
-  if (!stands_for_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
-  return to_world(body_world(object)).body(body_number(object));
-}
-
 const char* kind_text(BodyKind kind) {
   switch (kind) {
     case BodyKind::fixed: return "fixed";
@@ -64,6 +59,12 @@ const char* kind_text(BodyKind kind) {
 }
 
 }  // namespace
+
+const BodyInfo& info_of(SCM object) {
+  if (is_view(object)) return to_world(view_world(object)).body(to_view(object).body());
+  if (!stands_for_body(object)) throw BadValue{"the body", object, "a body or a view of one"};
+  return to_world(body_world(object)).body(body_number(object));
+}
 
 BodyDef to_body_def(SCM alist, const char* who) {
   BodyDef def;

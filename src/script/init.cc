@@ -22,6 +22,7 @@ void define_contact();
 void define_callbacks();
 void define_collisions();
 void define_contacts();
+void define_queries();
 void define_forces();
 void define_worlds();
 void define_motions();
@@ -49,6 +50,7 @@ extern "C" void tw_init_guile() {
   tw::define_callbacks();
   tw::define_collisions();
   tw::define_contacts();
+  tw::define_queries();
   tw::define_forces();
   tw::define_worlds();
   tw::define_motions();

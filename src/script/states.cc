@@ -4,6 +4,8 @@
 // world (a discontinuity at the world's time), a view by writing into the state that follows.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "script/states.h"
+
 #include "script/primitive.h"
 #include "script/scm-slots.h"
 #include "script/types.h"
@@ -28,11 +30,6 @@ std::string label(SCM object) {
   const BodyId id = is_view(object) ? to_view(object).body() : to_own_body(object);
   return "body " +
          to_world(is_view(object) ? view_world(object) : body_world(object)).body(id).name;
-}
-
-BodyState read_state(SCM object, const char* what) {
-  if (is_view(object)) return to_view(object).state();
-  return readable_world(object, what).state(to_own_body(object));
 }
 
 // Applies `change` to the state behind a view, or edits the body.
@@ -66,6 +63,11 @@ int find_slot(const SlotsPtr& slots, SCM object, SCM name) {
 }
 
 }  // namespace
+
+BodyState read_state(SCM object, const char* what) {
+  if (is_view(object)) return to_view(object).state();
+  return readable_world(object, what).state(to_own_body(object));
+}
 
 TW_PRIMITIVE(position, "%position", (SCM object), "Position of the body frame, m.") {
   return from_vec3(read_state(object, "position").position);
