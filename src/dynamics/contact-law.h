@@ -15,8 +15,8 @@
 // Rolling and spinning are resisted by a torque on b, of the angular velocity w = w_b - w_a with
 // its parts w_n along the normal and w_t across it,
 //   M = -N (rho_r w_t/sqrt(|w_t|^2 + w0^2) + rho_s w_n/sqrt(|w_n|^2 + w0^2)),
-// rho the lengths of the pair: what the torque holds on a slope creeps, at w0 on a slope of 0.7 of the
-// steepest.
+// rho the lengths of the pair: what the torque holds on a slope creeps, at w0 on a slope of 0.7 of
+// the steepest.
 //
 // Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley,
 // J. Appl. Mech. 42 (1975).

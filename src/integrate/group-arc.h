@@ -81,9 +81,9 @@ enum class ContactFeature : unsigned char { plane, line, point, crossing, rim, t
 //   rim    the same with the tangent of a circle of b, of radius `rim` about point_b, square to
 //          other_direction
 //   tangent_plane  n = normal, and b has an ellipsoid about point_b, the points S u/sqrt(u.S u)
-//          from there (u any vector): p_b is that with u = -n, where it is lowest; gap = n.(p_b - p_a).
-//          S, b's frame, is symmetric: its diagonal is `direction`, (S_yz, S_zx, S_xy) is
-//          `other_direction`
+//          from there (u any vector): p_b is that with u = -n, where it is lowest; gap =
+//          n.(p_b - p_a).  S, b's frame, is symmetric: its diagonal is `direction`, (S_yz, S_zx,
+//          S_xy) is `other_direction`
 // n points from a to b.  The force acts at p_b - radius_b n; of a crossing and a rim p_b is not
 // fixed in b but the point of its line or circle that is nearest to a's: it runs along both as the
 // bodies slide, and a circle may spin.  s is 1, or -1 where n would else turn against `normal`

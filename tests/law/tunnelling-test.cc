@@ -184,9 +184,9 @@ TEST(Tunnelling, any_two_shapes_that_meet_in_flight_hit_when_they_touch) {
       set_contact_for_all(*w, 1, 0);
       for (const BodyDef& def : defs) w->add_body(def);
     }
-    ContactSettings apart;
-    apart.collide = false;
-    ghosts.set_contact({}, {}, apart);
+    ContactSettings ghostly;
+    ghostly.collide = false;
+    ghosts.set_contact({}, {}, ghostly);
     world.add_collision_observer([&](const Collision& c) { hit = hit.value_or(c.time); });
     world.advance(duration);
 

@@ -58,9 +58,10 @@ TEST(Ray, meets_every_kind_of_shape_first_where_it_enters) {
       ASSERT_NEAR(hit->normal.norm(), 1, 1e-12);
       ASSERT_LT(hit->normal.dot(way), 1e-9);
       // the normal leads away from the surface as fast as anything does
-      if (shape->parts().size() == 1 && hit->normal.dot(way) < -1e-3)
+      if (shape->parts().size() == 1 && hit->normal.dot(way) < -1e-3) {
         ASSERT_NEAR(height(*shape, frame, point + 1e-5 * hit->normal), 1e-5, 2e-8)
             << shape->kind_name();
+      }
       ASSERT_FALSE(cast_ray(*shape, frame, from, way, 0.999 * hit->distance - 1e-12).has_value());
     }
   EXPECT_GT(hits, 1000);
