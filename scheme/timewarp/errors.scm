@@ -41,11 +41,12 @@
   (let ((folder (own-directory)))
     (cons (string-append (dirname folder) "/timewarp.scm")
           (map (lambda (name) (string-append folder "/" name ".scm"))
-               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "forces" "multibodies"
-                 "purity" "callbacks" "vectors"
+               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "queries" "forces"
+                 "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
-                 "exit-status" "completion" "effects" "history" "line-editing" "server" "watch" "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
+                 "exit-status" "completion" "effects" "history" "line-editing" "server" "watch"
+                 "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
                  "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
                  "sweep-values")))))
 

@@ -25,7 +25,7 @@
 (test-equal "none that it has already" '()
   (candidates "(add-body! #:position #(0 0 1) #:posi" "#:posi"))
 (test-equal "not those of the call around it" '() (candidates "(add-body! #:shape (sphere #:pos" "#:pos"))
-(test-equal "keywords where nothing is typed" '("#:contacts?" "#:quality" "#:size")
+(test-equal "keywords where nothing is typed" '("#:bare?" "#:contacts?" "#:quality" "#:size")
   (candidates "(render! \"a.png\" " ""))
 (test-assert "what there is where nothing is typed at all"
   (member "add-body!" (candidates "" "")))
