@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "support/schedule.h"
 
@@ -157,19 +158,23 @@ TEST(Rolling, rolling_friction_stops_a_ball_and_a_drum_where_the_closed_form_say
   }
 }
 
-// I w' = -rho m g.
-TEST(Rolling, spinning_friction_stops_a_ball_that_spins) {
+// I w' = -rho m g, for a ball and for a coin on its face, whose points share the weight.
+TEST(Rolling, spinning_friction_stops_a_ball_and_a_coin_that_spin) {
   const double r = 0.1, w = 20, rho = 2e-3;
-  World world;
-  set_contact_for_all(world, 0, 0.5);
-  set_resistance(world, 0, rho);
-  add_wall(world, Vec3::UnitZ(), 0);
-  const BodyId ball = add_ball(world, r, {0, 0, r}, Vec3::Zero(), {0, 0, w});
-  const double stop = w * 0.4 * r * r / (rho * g);
-  world.advance(0.25 * stop);
-  EXPECT_NEAR(world.state(ball).angular_velocity.z(), 0.75 * w, 2e-3 * w);
-  world.advance(1.2 * stop);
-  EXPECT_LT(world.state(ball).angular_velocity.norm(), 1e-3 * w);
+  for (const auto& [shape, height, beta] :
+       {std::tuple(make_sphere(r), r, 0.4), std::tuple(make_cylinder(r, 0.02), 0.01, 0.5)}) {
+    World world;
+    set_contact_for_all(world, 0, 0);
+    set_resistance(world, 0, rho);
+    add_wall(world, Vec3::UnitZ(), 0);
+    BodyDef def = body_of(shape, {0, 0, height}, Vec3::Zero(), {0, 0, w});
+    const BodyId body = world.add_body(def);
+    const double stop = w * beta * r * r / (rho * g);
+    world.advance(0.25 * stop);
+    EXPECT_NEAR(world.state(body).angular_velocity.z(), 0.75 * w, 2e-3 * w);
+    world.advance(1.2 * stop);
+    EXPECT_LT(world.state(body).angular_velocity.norm(), 1e-3 * w);
+  }
 }
 
 // It holds up to a slope of rho/r.
