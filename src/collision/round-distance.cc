@@ -24,7 +24,8 @@ constexpr int most_stalls = 6;
 constexpr double apart_accuracy = 1e-13;
 constexpr double depth_accuracy = 1e-12;
 
-// the same where an axis that errs little leads to the best one; that of an edge is soon left
+// the same where an axis that errs little leads to the best one; that of an edge is soon left;
+// depths relative to half the width of the thinner one
 constexpr double smooth_accuracy = 1e-5, smooth_on_edges = 1e-9;
 
 // below this distance, relative to the size, GJK's direction is not trusted
@@ -183,9 +184,16 @@ Vec3 touch_along(const SupportCore& a, const SupportCore& b, const Vec3& normal)
   return middle + normal.dot(on_a - middle) * normal;
 }
 
+// A tip has no second point along the normal whose middle with it could be on both.
+bool has_tip(const SupportCore& core) {
+  return core.kind == PartKind::frustum && core.radius != core.top_radius;
+}
+
 RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
   const double size = a.size() + b.size();
   const Vec3 plain = best_plain_axis(a, b, d);
+  const bool parted = !d.overlap && d.simplex.v.norm() > 0 && (has_tip(a) || has_tip(b));
+  const Vec3 parting_point = parted ? apart_at(d).point_a : Vec3::Zero();
   // Moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry.
   // Where they touch to rounding GJK's direction is noise and may part them: towards the other's
   // centre whatever touches overlaps, if it is not moved aside and out, as along a wide floor.
@@ -210,19 +218,22 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
     result.point_a = touch_along(a, b, plain);
     return result;
   }
-  const bool edges = a.polyhedron != nullptr || b.polyhedron != nullptr;
-  const double accuracy = !has_ellipsoid(a, b) ? depth_accuracy
-                          : edges              ? smooth_on_edges
-                                               : smooth_accuracy;
-  const PolytopeDepth found = polytope_depth(
-      a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, accuracy * size);
+  double tolerance = depth_accuracy * size;
+  if (has_ellipsoid(a, b)) {
+    const bool edges = a.polyhedron != nullptr || b.polyhedron != nullptr;
+    const double thickness = std::min(a.half_width(), b.half_width());
+    tolerance = std::max((edges ? smooth_on_edges : smooth_accuracy) * thickness, tolerance);
+  }
+  const PolytopeDepth found =
+      polytope_depth(a, b, shift, {d.point(0), d.point(1), d.point(2), d.point(3)}, tolerance);
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;
   // any axis along which they overlap less is nearer to the truth; where they touch along a line or
   // end to end the polytope's errs by its accuracy, and nothing that slides there would be apart
   if (const double bound = distance_along(a, b, plain); bound > result.distance) {
-    if (bound > result.distance + lost_depth * size) result.point_a = touch_along(a, b, plain);
+    if (bound > result.distance + lost_depth * size)
+      result.point_a = parted ? parting_point : touch_along(a, b, plain);
     result.normal = plain;
     result.distance = bound;
   }

@@ -34,6 +34,13 @@ struct SupportCore {
     if (kind == PartKind::ellipsoid) return semi_axes.maxCoeff();
     return std::hypot(std::max(radius, top_radius), half_length);
   }
+  // How thick it is, to either side of its middle; of a polyhedron as wide as it is, of a segment
+  // its length.
+  double half_width() const {
+    if (kind == PartKind::ellipsoid) return semi_axes.minCoeff();
+    const double widest = std::max(radius, top_radius);
+    return polyhedron == nullptr && widest > 0 ? std::min(widest, half_length) : size();
+  }
   // As much smaller about its centre.
   void scale(double factor) {
     radius *= factor;
