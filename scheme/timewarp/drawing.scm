@@ -50,7 +50,9 @@
 
 (define (looks world)
   ;; a box to be in view, where a picture of a later time is to look like the first
-  (list (append (world-ref world 'camera '()) (world-ref world 'in-view '())) (world-ref world 'light '()) (world-ref world 'sky '())))
+  (list (append (world-ref world 'camera '()) (world-ref world 'in-view '()))
+        (world-ref world 'light '())
+        (world-ref world 'sky '())))
 
 (define (open-frames frames movie size quality bare?)
   "Prepare drawing into the folder or pattern FRAMES, the file MOVIE, or both (#f: neither); refuse

@@ -79,4 +79,6 @@ Colours are #(r g b), sRGB, 0 to 1.
     (unless (and (real? fog) (<= 0 fog) (< fog 1)) (bad-value "fog" fog "a share per metre, 0..1")))
   (when grain
     (unless (and (real? grain) (<= 0 grain 1)) (bad-value "grain" grain "a number from 0 to 1")))
-  (keep! 'sky `((zenith . ,zenith) (horizon . ,horizon) (ground . ,ground)) `((fog . ,fog) (grain . ,grain))))
+  (keep! 'sky
+         `((zenith . ,zenith) (horizon . ,horizon) (ground . ,ground))
+         `((fog . ,fog) (grain . ,grain))))

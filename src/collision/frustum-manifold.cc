@@ -71,8 +71,7 @@ struct SideLine {
 
 SideLine side_line(const ConvexPart& part, const Frame& frame, const Vec3& point) {
   const PlacedFrustum c(part, frame);
-  if (c.bottom_radius == c.top_radius)
-    return {c.center, c.axis, c.bottom_radius + c.margin, c.half_length};
+  if (!narrows(part)) return {c.center, c.axis, c.bottom_radius + c.margin, c.half_length};
   const Vec3 from_axis = point - c.center - c.axis * c.axis.dot(point - c.center);
   const double height = from_axis.norm();
   const Vec3 out = height > 0 ? Vec3(from_axis / height) : c.across;
@@ -455,10 +454,6 @@ void two_frustums(const View& of_a, const View& of_b, std::vector<ManifoldPoint>
   two_ends(of_a, of_b, out);
 }
 
-bool has_tip(const ConvexPart& part) {
-  return part.kind == PartKind::frustum && part.radius != part.top_radius;
-}
-
 void half_space_and_frustum(const ConvexPart& half_space, const Frame& frame_h,
                             const ConvexPart& frustum, const Frame& frame_f, double reach,
                             bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
@@ -489,7 +484,10 @@ void frustum_manifold_at(const ConvexPart& a, const Frame& frame_a, const Convex
     polyhedron_and_frustum(of_b, of_a, out);
   else
     two_frustums(of_a, of_b, out);
-  if (!has_tip(a) && !has_tip(b)) return;
+  const auto is_cone = [](const ConvexPart& part) {
+    return part.kind == PartKind::frustum && narrows(part);
+  };
+  if (!is_cone(a) && !is_cone(b)) return;
   // what is nearest to a tip inside the other one, or across a cone that is hardly thicker than the
   // two are deep, may push elsewhere than the axis of least depth does
   for (std::size_t i = from; i < out.size(); ++i) {

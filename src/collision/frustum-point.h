@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "geometry/shape.h"
+#include "math/vec.h"
 
 namespace tw {
 
@@ -14,6 +14,9 @@ struct FrustumProfile {
   FrustumProfile(const Frustum& f)
       : radius(f.radius), top_radius(f.top_radius), half_length(f.half_length), margin(f.margin) {}
 };
+
+// Whether it narrows: a cone to its tip.
+inline bool narrows(const FrustumProfile& frustum) { return frustum.radius != frustum.top_radius; }
 
 enum class FrustumFeature { side, cap, rim };
 

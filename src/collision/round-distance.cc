@@ -104,7 +104,7 @@ Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift,
 Vec3 side_normal(const SupportCore& core, double sign, const Vec3& n) {
   const Vec3 axis = core.axis();
   const Vec3 out = (n - axis.dot(n) * axis).normalized();
-  if (core.radius == core.top_radius) return out;
+  if (!narrows(core)) return out;
   const SideNormal side(core);
   return side.across * out + sign * side.along * axis;
 }
@@ -184,15 +184,14 @@ Vec3 touch_along(const SupportCore& a, const SupportCore& b, const Vec3& normal)
   return middle + normal.dot(on_a - middle) * normal;
 }
 
-// A tip has no second point along the normal whose middle with it could be on both.
-bool has_tip(const SupportCore& core) {
-  return core.kind == PartKind::frustum && core.radius != core.top_radius;
-}
-
 RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
   const double size = a.size() + b.size();
   const Vec3 plain = best_plain_axis(a, b, d);
-  const bool parted = !d.overlap && d.simplex.v.norm() > 0 && (has_tip(a) || has_tip(b));
+  // the middle of two farthest points is on neither where one is a tip: there GJK's witness is kept
+  const auto is_cone = [](const SupportCore& core) {
+    return core.kind == PartKind::frustum && narrows(core);
+  };
+  const bool parted = !d.overlap && d.simplex.v.norm() > 0 && (is_cone(a) || is_cone(b));
   const Vec3 parting_point = parted ? apart_at(d).point_a : Vec3::Zero();
   // Moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry.
   // Where they touch to rounding GJK's direction is noise and may part them: towards the other's

@@ -74,19 +74,27 @@ CoreDistance polyhedron_to_point(const Polyhedron& core, const Vec3& point, Simp
   return result;
 }
 
+// A part and a ball, by what `nearest_to` finds for the ball's centre in the part's frame.
+template <class NearestTo>
+Separation near_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& sphere,
+                       const Frame& frame_s, const NearestTo& nearest_to) {
+  const Frame world_a = frame_a * a.placement;
+  const Vec3 center = frame_s * sphere.placement.p;
+  const CoreDistance near = nearest_to(world_a.to_local(center));
+  Separation result;
+  result.distance = near.distance - sphere.radius;
+  result.normal = world_a.R * near.normal;
+  result.point_a = world_a * near.point_a;
+  result.point_b = center - sphere.radius * result.normal;
+  return result;
+}
+
 Separation polyhedron_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                              const Frame& frame_b, SimplexCache* cache) {
-  const Frame world_a = frame_a * a.placement;
-  const Vec3 center = frame_b * b.placement.p;
-  const Vec3 local = world_a.to_local(center);
-  const CoreDistance core =
-      a.is_box ? box_to_point(a.half_edges, local) : polyhedron_to_point(*a.core, local, cache);
-  Separation result;
-  result.distance = core.distance - b.radius;
-  result.normal = world_a.R * core.normal;
-  result.point_a = world_a * core.point_a;
-  result.point_b = center - b.radius * result.normal;
-  return result;
+  return near_sphere(a, frame_a, b, frame_b, [&](const Vec3& center) {
+    return a.is_box ? box_to_point(a.half_edges, center)
+                    : polyhedron_to_point(*a.core, center, cache);
+  });
 }
 
 // The witness points of an axis of penetration, in A's frame.
@@ -225,28 +233,18 @@ Separation half_space_round(const ConvexPart& a, const Frame& frame_a, const Con
 
 Separation frustum_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                           const Frame& frame_b, SimplexCache*) {
-  const Frame world_a = frame_a * a.placement;
-  const Vec3 center = frame_b * b.placement.p;
-  const NearestOnFrustum near = nearest_on_frustum(a, world_a.to_local(center));
-  Separation result;
-  result.distance = near.distance - b.radius;
-  result.normal = world_a.R * near.normal;
-  result.point_a = world_a * near.point;
-  result.point_b = center - b.radius * result.normal;
-  return result;
+  return near_sphere(a, frame_a, b, frame_b, [&a](const Vec3& center) {
+    const NearestOnFrustum near = nearest_on_frustum(a, center);
+    return CoreDistance{false, near.distance, near.normal, near.point};
+  });
 }
 
 Separation ellipsoid_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                             const Frame& frame_b, SimplexCache*) {
-  const Frame world_a = frame_a * a.placement;
-  const Vec3 center = frame_b * b.placement.p;
-  const NearestOnEllipsoid near = nearest_on_ellipsoid(a.semi_axes, world_a.to_local(center));
-  Separation result;
-  result.distance = near.distance - b.radius;
-  result.normal = world_a.R * near.normal;
-  result.point_a = world_a * near.point;
-  result.point_b = center - b.radius * result.normal;
-  return result;
+  return near_sphere(a, frame_a, b, frame_b, [&a](const Vec3& center) {
+    const NearestOnEllipsoid near = nearest_on_ellipsoid(a.semi_axes, center);
+    return CoreDistance{false, near.distance, near.normal, near.point};
+  });
 }
 
 bool is_segment(const ConvexPart& part) {

@@ -46,6 +46,7 @@ struct SupportCore {
     radius *= factor;
     top_radius *= factor;
     half_length *= factor;
+    margin *= factor;
     semi_axes *= factor;
   }
   // A point farthest along the direction, which need not be a unit vector.

@@ -36,6 +36,9 @@ struct Mesh {
 };
 
 Mesh read_obj(const std::string& file) {
+  std::error_code ignored;
+  TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
+             "the mesh " + file + " is missing; expected a file that can be read");
   tinyobj::ObjReaderConfig config;
   config.triangulate = true;
   tinyobj::ObjReader reader;
@@ -146,9 +149,6 @@ ShapePtr hull_of(const Object& object, const std::vector<Vec3>& points) {
 }  // namespace
 
 ShapePtr read_solid(const std::string& file, const Vec3& scale, bool hulls) {
-  std::error_code ignored;
-  TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
-             "the mesh " + file + " is missing; expected a file that can be read");
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
