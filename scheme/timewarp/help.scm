@@ -14,9 +14,8 @@
      scene define-scene-parameter scene-random-state world-time world-bodies find-body reset!
      load-scene make-world current-world)
     ("Shapes" "what bodies are made of"
-     sphere box capsule cylinder cone ellipsoid convex half-space union placed rock load-shape rotation
-     shape-volume shape-inertia
-     shape-centroid shape-radius shape?)
+     sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
+     rock load-shape rotation shape-volume shape-inertia shape-centroid shape-radius shape?)
     ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
      add-body! remove-body! keyframes position orientation velocity angular-velocity applied-force
      applied-torque kinetic-energy slot slot? random-real! body-name body-mass body-kind view-body

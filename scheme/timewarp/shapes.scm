@@ -6,7 +6,8 @@
   #:use-module (timewarp worlds)
   #:use-module (timewarp vectors)
   #:use-module (timewarp files)
-  #:export (sphere box capsule cylinder cone ellipsoid convex half-space union placed rock load-shape rotation
+  #:export (sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
+            rock load-shape rotation
             shape-volume shape-inertia shape-centroid shape-radius shape?))
 
 (define (sphere radius)
@@ -44,6 +45,26 @@ the points."
   "Return the half-space that is solid where NORMAL.x <= OFFSET.  For fixed or kinematic bodies
 only."
   (%half-space normal offset))
+
+(define-keyword-procedure (height-field heights #:key spacing)
+  "Return ground by its HEIGHTS in metres: an array of rank 2, or a list of its rows, with x growing
+along a row and y from row to row.  The middle of the grid is at x = y = 0 of the body's frame.  For
+fixed or kinematic bodies only.
+
+Cells are cut along the diagonal from their corner of least x and y, but where the four corners lie
+in one plane.  The ground is solid down to a cell's width below the lowest corner of each cell, and
+ends at the edge of the grid.
+
+#:spacing  m, between neighbours of the grid, or #(dx dy) along x and y; 1"
+  (%height-field (if (and (list? heights) (and-map list? heights))
+                     (rows->array heights)
+                     heights)
+                 (or spacing 1)))
+
+(define (rows->array rows)
+  (unless (and (pair? rows) (apply = (map length rows)))
+    (bad-value "heights" (map length rows) "a list of rows of one length"))
+  (list->array 2 rows))
 
 (define (union . shapes)
   "Return the union of SHAPES, a shape that need not be convex.  Where parts overlap, mass properties

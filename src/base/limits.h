@@ -7,11 +7,16 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+
 namespace tw {
 
 // m: of radii, edges, widths and what places parts in shapes.  Below the size of atoms; beyond the
 // orbit of Saturn.  Fifth powers: 1e-60 to 1e60.
 inline constexpr double least_length = 1e-12, greatest_length = 1e12;
+
+// Of one height field.
+inline constexpr std::size_t most_heights = 1'000'000;
 
 // m, of a coordinate of a body: doubles there are an eighth of a metre apart.
 inline constexpr double farthest = 1e15;

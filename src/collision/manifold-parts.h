@@ -48,9 +48,6 @@ inline std::uint64_t feature_name(int pair, FeatureMode mode,
 void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                    const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
                    std::vector<ManifoldPoint>& out);
-// Whether the bounding balls prove a gap above the reach.
-bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, const Frame& frame_b,
-               double reach);
 
 void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                         const Frame& frame_b, double reach, ReferenceChoice choice, int pair,

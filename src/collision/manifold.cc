@@ -6,6 +6,7 @@
 
 #include "base/work-count.h"
 #include "collision/manifold-parts.h"
+#include "collision/near-parts.h"
 #include "collision/nearest-to-point.h"
 #include "collision/separation.h"
 
@@ -109,25 +110,14 @@ void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
   // two half-spaces touch in a plane, which no few points describe
 }
 
-bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, const Frame& frame_b,
-               double reach) {
-  if (a.kind == PartKind::half_space || b.kind == PartKind::half_space) return false;
-  const double near = (a.bound_radius + b.bound_radius) * (1 + 1e-12) + reach;
-  return (frame_b * b.bound_center - frame_a * a.bound_center).squaredNorm() > near * near;
-}
-
 void manifold(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b,
               double reach, std::vector<ManifoldPoint>& out, ReferenceChoice choice) {
-  int pair = 0;
-  for (const ConvexPart& part_a : a.parts())
-    for (const ConvexPart& part_b : b.parts()) {
-      const auto first = static_cast<std::ptrdiff_t>(out.size());
-      if (!far_apart(part_a, frame_a, part_b, frame_b, reach))
-        part_manifold(part_a, frame_a, part_b, frame_b, reach, choice, pair, out);
-      std::sort(out.begin() + first, out.end(),
-                [](const auto& p, const auto& q) { return p.feature < q.feature; });
-      ++pair;
-    }
+  visit_near_parts(a, frame_a, b, frame_b, reach, [&](std::size_t i, std::size_t j) {
+    const auto first = static_cast<std::ptrdiff_t>(out.size());
+    part_manifold(a.part(i), frame_a, b.part(j), frame_b, reach, choice, pair_number(i, j, b), out);
+    std::sort(out.begin() + first, out.end(),
+              [](const auto& p, const auto& q) { return p.feature < q.feature; });
+  });
 }
 
 }  // namespace tw

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "collision/frustum-point.h"
+#include "geometry/part-tree.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -154,26 +156,64 @@ Inside in_part(const Ray& ray, const ConvexPart& part) {
   return inside;
 }
 
+// Where the ray enters the box, and a little before; infinity: not by `most`.
+double entry_of(const Ray& ray, const Aabb& box, double most) {
+  double from = 0, to = most;
+  for (int i = 0; i < 3; ++i) {
+    const double size = std::abs(box.lo[i]) + std::abs(box.hi[i]) + std::abs(ray.from[i]);
+    const double slack = 1e-12 * size;
+    const double low = box.lo[i] - slack - ray.from[i], high = box.hi[i] + slack - ray.from[i];
+    if (ray.direction[i] == 0) {
+      if (low > 0 || high < 0) return infinity;
+      continue;
+    }
+    const double one = low / ray.direction[i], two = high / ray.direction[i];
+    from = std::max(from, std::min(one, two));
+    to = std::min(to, std::max(one, two));
+  }
+  return from <= to ? from : infinity;
+}
+
 }  // namespace
 
 std::optional<RayHit> cast_ray(const Shape& shape, const Frame& frame, const Vec3& from,
                                const Vec3& direction, double most) {
   std::optional<RayHit> nearest;
-  for (const ConvexPart& part : shape.parts()) {
+  const auto try_part = [&](const ConvexPart& part) {
     const Frame place = part.kind == PartKind::half_space ? frame : Frame(frame * part.placement);
     if (part.kind != PartKind::half_space) {
       // past the ball that holds it
       const Vec3 way = frame * part.bound_center - from;
       const double along = way.dot(direction), reach = part.bound_radius * (1 + 1e-12);
-      if ((way - along * direction).norm() > reach || along < -reach) continue;
+      if ((way - along * direction).norm() > reach || along < -reach) return;
     }
     const Ray ray{place.to_local(from), place.R.transpose() * direction};
     const Inside inside = in_part(ray, part);
-    if (!(inside.from <= inside.to) || inside.to < 0) continue;
+    if (!(inside.from <= inside.to) || inside.to < 0) return;
     const double distance = std::max(inside.from, 0.0);
-    if (distance > (nearest ? nearest->distance : most)) continue;
+    if (distance > (nearest ? nearest->distance : most)) return;
     nearest = RayHit{distance, inside.from > 0 ? Vec3(place.R * inside.normal) : Vec3(-direction)};
+  };
+  if (!shape.tree()) {
+    for (const ConvexPart& part : shape.parts()) try_part(part);
+    return nearest;
   }
+  const PartTree& tree = *shape.tree();
+  const Ray ray{frame.to_local(from), frame.R.transpose() * direction};
+  const auto entry = [&](const PartTree::Node& node) {
+    return entry_of(ray, node.box, nearest ? nearest->distance : most);
+  };
+  const auto search = [&](const auto& again, const PartTree::Node& node) -> void {
+    if (node.count > 0) {
+      for (const std::uint32_t number : tree.parts(node)) try_part(shape.part(number));
+      return;
+    }
+    const PartTree::Node *first = &tree.node(node.first), *second = &tree.node(node.first + 1);
+    if (entry(*second) < entry(*first)) std::swap(first, second);
+    if (entry(*first) < infinity) again(again, *first);
+    if (entry(*second) < infinity) again(again, *second);
+  };
+  if (entry(tree.root()) < infinity) search(search, tree.root());
   return nearest;
 }
 

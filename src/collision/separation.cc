@@ -11,6 +11,7 @@
 #include "collision/ellipsoid-point.h"
 #include "collision/frustum-point.h"
 #include "collision/gjk.h"
+#include "collision/near-parts.h"
 #include "collision/part-pairs.h"
 #include "collision/round-distance.h"
 
@@ -360,7 +361,75 @@ Separation part_separation(const ConvexPart& a, const Frame& frame_a, const Conv
   return queries[static_cast<int>(a.kind)][static_cast<int>(b.kind)](a, frame_a, b, frame_b, cache);
 }
 
+namespace {
+
+// The gap between two boxes, lowered by what rounding can do to it.  What is in boxes that overlap
+// may overlap by any depth.
+double box_gap(const Aabb& a, const Aabb& b) {
+  constexpr double rounding = 1e-13;
+  if (a.overlaps(b)) return -std::numeric_limits<double>::infinity();
+  const Vec3 gap = (a.lo - b.hi).cwiseMax(b.lo - a.hi).cwiseMax(0);
+  const double reach = std::max(a.lo.cwiseAbs().maxCoeff(), a.hi.cwiseAbs().maxCoeff());
+  return gap.norm() - rounding * (reach + (b.hi - b.lo).norm());
+}
+
+// The least separation of one part of each of two shapes so far.  Ties: the first pair.
+struct Nearest {
+  const Shape& a;
+  const Frame& frame_a;
+  const Shape& b;
+  const Frame& frame_b;
+  Separation least = {};
+  bool found = false;
+
+  // Whether parts apart by this could be nearer, or first.
+  bool may_hold(double bound) const { return !found || !(bound > least.distance); }
+  void try_parts(std::size_t i, std::size_t j) {
+    const ConvexPart& part_a = a.part(i);
+    const ConvexPart& part_b = b.part(j);
+    if (found && !may_hold(ball_bound(part_a, frame_a, part_b, frame_b))) return;
+    Separation s = part_separation(part_a, frame_a, part_b, frame_b, nullptr);
+    s.part_a = static_cast<int>(i);
+    s.part_b = static_cast<int>(j);
+    const bool first = std::pair(s.part_a, s.part_b) < std::pair(least.part_a, least.part_b);
+    if (found && !(s.distance < least.distance || (s.distance == least.distance && first))) return;
+    least = s;
+    found = true;
+  }
+};
+
+// All parts of one shape beneath a node of its tree against part `few` of the other, whose box in
+// the tree's frame is given: the nearest boxes first.
+void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, bool of_b,
+            std::size_t few, const Aabb& box) {
+  if (!nearest.may_hold(box_gap(node.box, box))) return;
+  if (node.count > 0) {
+    for (const std::uint32_t number : tree.parts(node))
+      of_b ? nearest.try_parts(few, number) : nearest.try_parts(number, few);
+    return;
+  }
+  const PartTree::Node &one = tree.node(node.first), &two = tree.node(node.first + 1);
+  const bool swap = box_gap(two.box, box) < box_gap(one.box, box);
+  search(nearest, tree, swap ? two : one, of_b, few, box);
+  search(nearest, tree, swap ? one : two, of_b, few, box);
+}
+
+Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape& b,
+                               const Frame& frame_b) {
+  Nearest nearest{a, frame_a, b, frame_b};
+  const bool in_b = b.tree() && (!a.tree() || a.part_count() <= b.part_count());
+  const Shape& many = in_b ? b : a;
+  const Shape& few = in_b ? a : b;
+  const Frame frame = in_b ? seen_from(frame_b, frame_a) : seen_from(frame_a, frame_b);
+  for (std::size_t i = 0; i < few.part_count(); ++i)
+    search(nearest, *many.tree(), many.tree()->root(), in_b, i, part_bounds(few.part(i), frame));
+  return nearest.least;
+}
+
+}  // namespace
+
 Separation separation(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b) {
+  if (a.tree() || b.tree()) return separation_by_trees(a, frame_a, b, frame_b);
   const std::vector<ConvexPart>& parts_a = a.parts();
   const std::vector<ConvexPart>& parts_b = b.parts();
   Separation best = part_separation(parts_a[0], frame_a, parts_b[0], frame_b, nullptr);
@@ -377,6 +446,7 @@ Separation separation(const Shape& a, const Frame& frame_a, const Shape& b, cons
 }
 
 double signed_distance(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b) {
+  if (a.tree() || b.tree()) return separation_by_trees(a, frame_a, b, frame_b).distance;
   const std::vector<ConvexPart>& parts_a = a.parts();
   const std::vector<ConvexPart>& parts_b = b.parts();
   double least = part_distance(parts_a[0], frame_a, parts_b[0], frame_b);

@@ -7,6 +7,7 @@
 #include "collision/clip.h"
 #include "collision/gjk.h"
 #include "collision/manifold-parts.h"
+#include "collision/near-parts.h"
 
 namespace tw {
 
@@ -129,13 +130,9 @@ void part_points(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
 
 void touching_points(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b,
                      double tolerance, std::vector<ContactPoint>& out) {
-  int pair = 0;
-  for (const ConvexPart& part_a : a.parts())
-    for (const ConvexPart& part_b : b.parts()) {
-      if (!far_apart(part_a, frame_a, part_b, frame_b, tolerance))
-        part_points(part_a, frame_a, part_b, frame_b, tolerance, pair, out);
-      ++pair;
-    }
+  visit_near_parts(a, frame_a, b, frame_b, tolerance, [&](std::size_t i, std::size_t j) {
+    part_points(a.part(i), frame_a, b.part(j), frame_b, tolerance, pair_number(i, j, b), out);
+  });
 }
 
 }  // namespace tw

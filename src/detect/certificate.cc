@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/constants.h"
 #include "detect/turning-plane.h"
@@ -129,6 +130,34 @@ double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBod
   return std::min(below, part_reach(b, part_b, plane, -1, as_balls));
 }
 
+// The same of all that is in a box of one body (its frame) and of a part of another one by its
+// ball, given n from the box to the ball.
+double box_time_apart(const MovingBody& side, const Aabb& box, const MovingBody& other,
+                      const ConvexPart& part, const Vec3& n, const Vec3& on_box,
+                      const Vec3& on_ball, double allowance) {
+  const double c = 0.5 * n.dot(on_box + on_ball);
+  const double u = 0.5 * n.dot(side.velocity_at(on_box) + other.velocity_at(on_ball));
+  const double alpha = 0.5 * n.dot(side.acceleration + other.acceleration);
+  const double more = 0.5 * allowance;
+  const double above =
+      reach(other, -n, more - c, -u, -alpha, other.frame.R * part.bound_center, part.bound_radius);
+  if (!(above > 0)) return 0;
+  // a corner is the first point of a box to reach a plane; of one that does not turn always the
+  // same
+  const Vec3 along = side.frame.R.transpose() * n;
+  if (!(side.bounds.turn > 0) && side.point.w.isZero()) {
+    const Vec3 top = (along.array() > 0).select(box.hi, box.lo);
+    return std::min(above, reach(side, n, c + more, u, alpha, side.frame.R * top, 0));
+  }
+  double below = never;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 x((corner & 1) ? box.hi.x() : box.lo.x(), (corner & 2) ? box.hi.y() : box.lo.y(),
+                 (corner & 4) ? box.hi.z() : box.lo.z());
+    below = std::min(below, reach(side, n, c + more, u, alpha, side.frame.R * x, 0));
+  }
+  return std::min(below, above);
+}
+
 // Seconds until two bodies may come nearer by `slack`, m > 0, by what their points may move against
 // each other at most.  For those that touch and hardly move: along a line or over a face no plane
 // is so exact that rounding leaves all of both on its sides.
@@ -165,86 +194,144 @@ Certificates::Certificates(const Piece& piece, SimplexCaches& caches, double whe
       b_(*piece.body_b, piece.b->trajectory(), when) {}
 
 const Separation& Certificates::separation(std::size_t i, std::size_t j) {
-  const auto& parts_a = a_.body->shape_P->parts();
-  const auto& parts_b = b_.body->shape_P->parts();
-  const std::size_t place = i * parts_b.size() + j;
+  const Shape& a = *a_.body->shape_P;
+  const Shape& b = *b_.body->shape_P;
+  const std::size_t place = i * b.part_count() + j;
   std::optional<Separation>& found = place < most_kept ? kept_[place] : last_;
   if (found && place < most_kept) return *found;
-  if (caches_.empty()) caches_.resize(parts_a.size() * parts_b.size());
-  found = part_separation(parts_a[i], a_.frame, parts_b[j], b_.frame, &caches_[place]);
+  SimplexCache& cache = caches_.of(place, a.part_count() * b.part_count());
+  found = part_separation(a.part(i), a_.frame, b.part(j), b_.frame, &cache);
   return *found;
 }
 
 std::optional<double> Certificates::overlap() const {
   const auto is_polyhedron = [](const MovingBody& side) {
-    const auto& parts = side.body->shape_P->parts();
-    return parts.size() == 1 && parts.front().kind == PartKind::polyhedron;
+    const Shape& shape = *side.body->shape_P;
+    return shape.part_count() == 1 && shape.part(0).kind == PartKind::polyhedron;
   };
   // of polyhedra that overlap the query is cold, whatever its warm start
   if (!kept_[0] || !(kept_[0]->distance < 0) || !is_polyhedron(a_) || !is_polyhedron(b_)) return {};
   return kept_[0]->distance;
 }
 
-double Certificates::until(double allowance) {
+// A step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where needed.
+template <class Bound>
+double Certificates::by_step(const Bound& bound) {
+  if (!in_steps()) return bound(a_, b_);
+  if (!step_a_) {
+    step_a_.emplace(a_.within_step(piece_.a->trajectory(), when_));
+    step_b_.emplace(b_.within_step(piece_.b->trajectory(), when_));
+  }
+  return std::min(std::min(step_a_->bounds.valid_until, step_b_->bounds.valid_until) - when_,
+                  bound(*step_a_, *step_b_));
+}
+
+template <class Bound>
+double Certificates::longest(const Bound& bound) {
+  const double left = bound(a_, b_);
+  return in_steps() && left < piece_.end.time - when_ ? std::max(left, by_step(bound)) : left;
+}
+
+double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance) {
   const MovingBody &a = a_, &b = b_;
-  const auto& parts_a = a.body->shape_P->parts();
-  const auto& parts_b = b.body->shape_P->parts();
-  double least = std::min(a.bounds.valid_until, b.bounds.valid_until) - when_;
+  const ConvexPart& pa = a.body->shape_P->part(i);
+  const ConvexPart& pb = b.body->shape_P->part(j);
   // less than this is perhaps not apart
   const double sure = distance_rounding(*a.body, a.point.x, *b.body, b.point.x) - allowance;
-  // a step of an arc has narrow bounds, all of them wide ones: by both, the narrow ones where
-  // needed
-  const bool in_steps = a.step_end != never || b.step_end != never;
-  const auto by_step = [&](const auto& bound) {
-    if (!in_steps) return bound(a, b);
-    if (!step_a_) {
-      step_a_.emplace(a.within_step(piece_.a->trajectory(), when_));
-      step_b_.emplace(b.within_step(piece_.b->trajectory(), when_));
-    }
-    return std::min(std::min(step_a_->bounds.valid_until, step_b_->bounds.valid_until) - when_,
-                    bound(*step_a_, *step_b_));
-  };
-  const auto longest = [&](const auto& bound) {
-    const double left = bound(a, b);
-    return in_steps && left < piece_.end.time - when_ ? std::max(left, by_step(bound)) : left;
-  };
 
-  for (std::size_t i = 0; i < parts_a.size(); ++i)
-    for (std::size_t j = 0; j < parts_b.size(); ++j) {
-      const ConvexPart& pa = parts_a[i];
-      const ConvexPart& pb = parts_b[j];
-      const bool balls = std::isfinite(pa.bound_radius) && std::isfinite(pb.bound_radius);
-
-      // far apart: the bounding balls will do
-      if (balls) {
-        const Vec3 ca = a.frame * pa.bound_center, cb = b.frame * pb.bound_center;
-        const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
-        const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
-        if (spheres && !(centers - radii > sure && centers > 0)) return -never;
-        if (spheres || centers - radii > cost::far_in_radii * radii) {
-          const Vec3 n = (cb - ca) / centers;
-          least = std::min(least, longest([&](const MovingBody& x, const MovingBody& y) {
-                             return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n,
-                                               cb - pb.bound_radius * n, allowance, true);
-                           }));
-          continue;
-        }
-      }
-
-      const Separation& s = separation(i, j);
-      if (!(s.distance > sure)) return -never;
-      double apart = longest([&](const MovingBody& x, const MovingBody& y) {
-        return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
+  // far apart: the bounding balls will do
+  if (std::isfinite(pa.bound_radius) && std::isfinite(pb.bound_radius)) {
+    const Vec3 ca = a.frame * pa.bound_center, cb = b.frame * pb.bound_center;
+    const double centers = (cb - ca).norm(), radii = pa.bound_radius + pb.bound_radius;
+    const bool spheres = pa.kind == PartKind::sphere && pb.kind == PartKind::sphere;
+    if (spheres && !(centers - radii > sure && centers > 0)) return -never;
+    if (spheres || centers - radii > cost::far_in_radii * radii) {
+      const Vec3 n = (cb - ca) / centers;
+      return longest([&](const MovingBody& x, const MovingBody& y) {
+        return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n,
+                          allowance, true);
       });
-      // where edges and faces turn past each other, a plane that turns with them lasts longer
-      if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
-        apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
-                           return turning_time_apart(x, pa, y, pb, s, allowance);
-                         }));
-      if (apart < cost::soon)
-        apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
-                           return still_apart(x, y, s.distance + allowance);
-                         }));
+    }
+  }
+
+  const Separation& s = separation(i, j);
+  if (!(s.distance > sure)) return -never;
+  double apart = longest([&](const MovingBody& x, const MovingBody& y) {
+    return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
+  });
+  // where edges and faces turn past each other, a plane that turns with them lasts longer
+  if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
+    apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
+                       return turning_time_apart(x, pa, y, pb, s, allowance);
+                     }));
+  if (apart < cost::soon)
+    apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
+                       return still_apart(x, y, s.distance + allowance);
+                     }));
+  return apart;
+}
+
+// A part by its ball against all parts in a node of the other body's tree by their box.
+double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& node, bool of_b,
+                                 double allowance) {
+  const MovingBody& tree = of_b ? b_ : a_;
+  const MovingBody& other = of_b ? a_ : b_;
+  const Vec3 center = other.frame * part.bound_center;
+  const Vec3 seen = tree.frame.to_local(center);
+  const Vec3 nearest = seen.cwiseMax(node.box.lo).cwiseMin(node.box.hi);
+  const double distance = (seen - nearest).norm();
+  if (!(distance > part.bound_radius)) return 0;
+  const Vec3 out = tree.frame.R * ((seen - nearest) / distance);
+  const Vec3 on_box = tree.frame * nearest, on_ball = center - part.bound_radius * out;
+  return longest([&](const MovingBody& x, const MovingBody& y) {
+    return box_time_apart(of_b ? y : x, node.box, of_b ? x : y, part, out, on_box, on_ball,
+                          allowance);
+  });
+}
+
+void Certificates::search(std::size_t few, const PartTree::Node& node, bool of_b, double allowance,
+                          double& least) {
+  const PartTree& tree = *(of_b ? b_ : a_).body->shape_P->tree();
+  if (node.count > 0) {
+    for (const std::uint32_t number : tree.parts(node)) {
+      least = std::min(
+          least, of_b ? parts_apart(few, number, allowance) : parts_apart(number, few, allowance));
+      if (least == -never) return;
+    }
+    return;
+  }
+  const ConvexPart& part = (of_b ? a_ : b_).body->shape_P->part(few);
+  const PartTree::Node *first = &tree.node(node.first), *second = &tree.node(node.first + 1);
+  double one = boxes_apart(part, *first, of_b, allowance);
+  double two = boxes_apart(part, *second, of_b, allowance);
+  if (two < one) {
+    std::swap(first, second);
+    std::swap(one, two);
+  }
+  // what lasts longer than the least so far says nothing
+  if (one < least) search(few, *first, of_b, allowance, least);
+  if (two < least) search(few, *second, of_b, allowance, least);
+}
+
+double Certificates::until(double allowance) {
+  const Shape& a = *a_.body->shape_P;
+  const Shape& b = *b_.body->shape_P;
+  const double valid = std::min(a_.bounds.valid_until, b_.bounds.valid_until);
+  double least = valid - when_;
+  if (a.tree() || b.tree()) {
+    // what comes after the end of the piece says nothing either
+    const double last = piece_.end.time > when_ ? std::min(valid, piece_.end.time) : valid;
+    least = last - when_;
+    const bool in_b = b.tree() && (!a.tree() || a.part_count() <= b.part_count());
+    const std::size_t few = (in_b ? a : b).part_count();
+    for (std::size_t i = 0; i < few && least > -never; ++i)
+      search(i, (in_b ? b : a).tree()->root(), in_b, allowance, least);
+    return least == -never ? -never : least < last - when_ ? when_ + least : last;
+  }
+  for (std::size_t i = 0; i < a.part_count(); ++i)
+    for (std::size_t j = 0; j < b.part_count(); ++j) {
+      const double apart = parts_apart(i, j, allowance);
+      if (apart == -never) return -never;
       least = std::min(least, apart);
     }
   return when_ + least;

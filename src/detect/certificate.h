@@ -21,17 +21,39 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "collision/separation.h"
 #include "detect/moving-body.h"
 #include "detect/piece.h"
+#include "geometry/part-tree.h"
 
 namespace tw {
 
-// Warm starts of the distance queries, one for each pair of parts; empty: none yet.
-using SimplexCaches = std::vector<SimplexCache>;
+// Warm starts of the distance queries: of few pairs of parts one for each, of many those of the
+// last ones.
+class SimplexCaches {
+ public:
+  // That of the pair with this number, of so many.
+  SimplexCache& of(std::size_t number, std::size_t pairs) {
+    if (places_.empty()) places_.resize(std::min(pairs, most));
+    Place& place = places_[number % places_.size()];
+    if (place.number != number) place = {number, {}};
+    return place.cache;
+  }
+  void clear() { places_.clear(); }
+
+ private:
+  static constexpr std::size_t most = 64;
+  struct Place {
+    std::size_t number = 0;
+    SimplexCache cache;
+  };
+  std::vector<Place> places_;
+};
 
 // The two bodies of a piece as seen at `when`, s.
 class Certificates {
@@ -47,6 +69,18 @@ class Certificates {
 
  private:
   const Separation& separation(std::size_t part_a, std::size_t part_b);
+  // Seconds until two parts may meet, or two balls or boxes around them; -never: perhaps they do.
+  double parts_apart(std::size_t i, std::size_t j, double allowance);
+  double boxes_apart(const ConvexPart& part, const PartTree::Node& node, bool of_b,
+                     double allowance);
+  void search(std::size_t few, const PartTree::Node& node, bool of_b, double allowance,
+              double& least);
+  // Either body's arc has steps.
+  bool in_steps() const { return a_.step_end != never || b_.step_end != never; }
+  template <class Bound>
+  double longest(const Bound& bound);
+  template <class Bound>
+  double by_step(const Bound& bound);
 
   const Piece& piece_;
   SimplexCaches& caches_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "collision/near-parts.h"
+
 namespace tw {
 namespace {
 
@@ -48,16 +50,25 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
   if (!(left > rounding)) {
     const Frame fa = piece.a->trajectory().frame(from), fb = piece.b->trajectory().frame(from);
-    const auto& parts_a = a.shape_P->parts();
-    const auto& parts_b = b.shape_P->parts();
-    if (caches.empty()) caches.resize(parts_a.size() * parts_b.size());
+    const Shape& shape_a = *a.shape_P;
+    const Shape& shape_b = *b.shape_P;
+    const std::size_t pairs = shape_a.part_count() * shape_b.part_count();
     left = never;
-    for (std::size_t i = 0; i < parts_a.size() && left > rounding; ++i)
-      for (std::size_t j = 0; j < parts_b.size() && left > rounding; ++j) {
-        const Separation s =
-            part_separation(parts_a[i], fa, parts_b[j], fb, &caches[i * parts_b.size() + j]);
-        left = std::min(left, s.distance - travel.against(s.normal));
-      }
+    const auto look = [&](std::size_t i, std::size_t j) {
+      if (!(left > rounding)) return;
+      SimplexCache& cache = caches.of(i * shape_b.part_count() + j, pairs);
+      const Separation s = part_separation(shape_a.part(i), fa, shape_b.part(j), fb, &cache);
+      left = std::min(left, s.distance - travel.against(s.normal));
+    };
+    if (shape_a.tree() || shape_b.tree()) {
+      // what is farther than this is not looked at
+      constexpr double looked_at = 4;
+      left = (looked_at - 1) * travel.most();
+      visit_near_parts(shape_a, fa, shape_b, fb, looked_at * travel.most(), look);
+    } else {
+      for (std::size_t i = 0; i < shape_a.part_count() && left > rounding; ++i)
+        for (std::size_t j = 0; j < shape_b.part_count() && left > rounding; ++j) look(i, j);
+    }
   }
   if (!(left > rounding)) return false;
   known = {left, from, to};

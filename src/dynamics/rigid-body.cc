@@ -76,9 +76,12 @@ RigidInertia resolve_inertia(const MassSpecification& given, const Shape* shape,
   require_mass(given.mass, "mass of " + name);
   TW_REQUIRE(!given.density || !given.mass,
              "both #:density and #:mass are given for " + name + "; expected one of them");
-  const bool bounded = shape && shape->bounded();
+  const bool bounded = shape && !shape->is_ground();
   TW_REQUIRE(bounded || (given.mass && given.inertia),
-             name + (shape ? " has an unbounded shape" : " has no shape") +
+             name +
+                 (!shape                  ? " has no shape"
+                  : shape->height_field() ? " is a height field"
+                                          : " has an unbounded shape") +
                  "; expected #:mass and #:inertia, or a bounded #:shape, or #:fixed? #t");
 
   // centre of mass and inertia about it, body axes

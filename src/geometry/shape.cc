@@ -10,8 +10,10 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "geometry/height-field.h"
 #include "geometry/hull.h"
 #include "geometry/mass-properties.h"
+#include "geometry/part-tree.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -19,6 +21,9 @@ namespace tw {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Unions of more parts than these have a tree.
+constexpr std::size_t few_parts = 32;
 
 // The vertices' box in the frame, exact for boxes by half edges, else over all vertices.
 Aabb polyhedron_bounds(const ConvexPart& part, const Frame& frame) {
@@ -75,20 +80,6 @@ Aabb ellipsoid_bounds(const ConvexPart& part, const Frame& frame) {
   Aabb box;
   box.add(world.p - reach);
   box.add(world.p + reach);
-  return box;
-}
-
-Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
-  switch (part.kind) {
-    case PartKind::half_space: return half_space_bounds(part, frame);
-    case PartKind::polyhedron: return polyhedron_bounds(part, frame);
-    case PartKind::frustum: return frustum_bounds(part, frame);
-    case PartKind::ellipsoid: return ellipsoid_bounds(part, frame);
-    case PartKind::sphere: break;
-  }
-  Aabb box;
-  box.add(frame * part.placement.p);
-  box.grow(part.radius);
   return box;
 }
 
@@ -172,6 +163,20 @@ std::string show(const Vec3& v) {
 
 }  // namespace
 
+Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
+  switch (part.kind) {
+    case PartKind::half_space: return half_space_bounds(part, frame);
+    case PartKind::polyhedron: return polyhedron_bounds(part, frame);
+    case PartKind::frustum: return frustum_bounds(part, frame);
+    case PartKind::ellipsoid: return ellipsoid_bounds(part, frame);
+    case PartKind::sphere: break;
+  }
+  Aabb box;
+  box.add(frame * part.placement.p);
+  box.grow(part.radius);
+  return box;
+}
+
 ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
                       const MassProperties& mass) {
   auto shape = std::make_shared<Shape>();
@@ -181,6 +186,11 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
     if (part.kind == PartKind::half_space) shape->bounded_ = false;
     shape->radius_about_origin_ =
         std::max(shape->radius_about_origin_, radius_about_origin_of(part));
+  }
+  if (shape->bounded_ && shape->parts_.size() > few_parts) {
+    std::vector<Aabb> boxes;
+    for (const ConvexPart& part : shape->parts_) boxes.push_back(part_bounds(part, Frame()));
+    shape->tree_ = std::make_shared<const PartTree>(boxes);
   }
   shape->mass_ = shape->bounded_ ? mass : MassProperties{};
   shape->least_width_ = shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
@@ -192,14 +202,31 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
   return shape;
 }
 
+const std::vector<ConvexPart>& Shape::parts() const {
+  TW_ASSERT(!field_, "all parts of a height field were asked for");
+  return parts_;
+}
+
+std::size_t Shape::field_parts() const { return field_->part_count(); }
+const ConvexPart& Shape::field_part(std::size_t i) const { return field_->part(i); }
+
 Aabb Shape::bounds(const Frame& frame) const {
   Aabb box;
+  if (field_) {
+    const Aabb& all = tree_->root().box;
+    const Frame middle(frame.R, frame * all.center());
+    const Vec3 reach = 0.5 * (frame.R.cwiseAbs() * all.size());
+    box.add(middle.p - reach);
+    box.add(middle.p + reach);
+    return box;
+  }
   for (const ConvexPart& part : parts_) box.add(part_bounds(part, frame));
   return box;
 }
 
 double Shape::radius_about_line(const Vec3& direction) const {
   double radius = 0;
+  TW_ASSERT(!field_, "a height field does not turn freely");
   for (const ConvexPart& part : parts_)
     radius = std::max(radius, radius_about_line_of(part, direction.normalized()));
   return radius;
@@ -288,12 +315,47 @@ ShapePtr make_half_space(const Vec3& normal, double offset) {
   return finish_shape({part}, "half-space", MassProperties{});
 }
 
+ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, double spacing_x,
+                           double spacing_y) {
+  require_length("the spacing of a height field along x", spacing_x);
+  require_length("the spacing of a height field along y", spacing_y);
+  TW_ASSERT(columns > 0 && heights.size() % columns == 0, "rows of different lengths");
+  TW_REQUIRE(columns >= 2 && heights.size() / columns >= 2,
+             "a height field has " + std::to_string(heights.size() / columns) + " rows of " +
+                 std::to_string(columns) + " heights; expected at least 2 of 2");
+  TW_REQUIRE(heights.size() <= most_heights,
+             "a height field has " + std::to_string(heights.size()) +
+                 " heights; expected at most " + std::to_string(most_heights));
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    TW_REQUIRE(std::abs(heights[i]) <= greatest_length,
+               "height " + std::to_string(i % columns) + " in row " + std::to_string(i / columns) +
+                   " of a height field is " + show(heights[i]) +
+                   "; expected a number of metres, at most " + tw::show(greatest_length));
+
+  auto shape = std::make_shared<Shape>();
+  shape->kind_name_ = "height field";
+  shape->field_ =
+      std::make_shared<const HeightField>(std::move(heights), columns, spacing_x, spacing_y);
+  const HeightField& field = *shape->field_;
+  // the tree belongs to the field
+  shape->tree_ = std::shared_ptr<const PartTree>(shape->field_, &field.tree());
+  const Aabb& box = field.tree().root().box;
+  shape->least_width_ = std::min(box.size().x(), box.size().y());
+  shape->radius_about_origin_ = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).norm();
+  TW_REQUIRE(shape->radius_about_origin_ <= 4 * greatest_length,
+             "a height field reaches " + show(shape->radius_about_origin_) +
+                 " m from its origin; expected lengths " + lengths_text());
+  return shape;
+}
+
 ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
   TW_REQUIRE(!shapes.empty(), "a union has no parts; expected at least one shape");
   std::vector<ConvexPart> parts;
   std::vector<MassProperties> masses;
   for (const ShapePtr& shape : shapes) {
     TW_REQUIRE(shape != nullptr, "a part of a union is not a shape");
+    TW_REQUIRE(!shape->height_field(),
+               "a part of a union is a height field; expected it to be a body of its own");
     parts.insert(parts.end(), shape->parts().begin(), shape->parts().end());
     masses.push_back(shape->mass_properties());
   }
@@ -302,6 +364,9 @@ ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
 
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {
   TW_REQUIRE(shape != nullptr, "what is to be placed is not a shape");
+  TW_REQUIRE(!shape->height_field(),
+             "what is to be placed is a height field; expected the #:position and #:orientation of "
+             "its body to place it");
   TW_REQUIRE(is_finite(pose.p),
              "a shape is placed at " + show(pose.p) + "; expected finite numbers");
   TW_REQUIRE(pose.p.cwiseAbs().maxCoeff() <= greatest_length,

@@ -3,7 +3,8 @@
 // Every shape is a list of convex parts in the body's frame, of few kinds: a box or hull is a
 // polyhedron; cylinder, cone and capsule are *frustums*: what a line that need not be parallel to
 // the axis sweeps out about it, and all points within a margin of that.  A kind is a row in the
-// tables of pairs in collision/separation.cc and collision/manifold.cc.
+// tables of pairs in collision/separation.cc and collision/manifold.cc.  The parts of a height
+// field are made when they are asked for; shapes of many parts have a tree over them.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
 // flat, and say which value.
@@ -20,6 +21,8 @@
 
 namespace tw {
 
+class HeightField;
+class PartTree;
 class Polyhedron;
 class Shape;
 using ShapePtr = std::shared_ptr<const Shape>;
@@ -54,12 +57,24 @@ struct MassProperties {
 
 class Shape {
  public:
-  const std::vector<ConvexPart>& parts() const { return parts_; }
+  // All parts, of shapes other than height fields.
+  const std::vector<ConvexPart>& parts() const;
+  // Of any shape.  A number may be that of no part: of a height field those that its tree does not
+  // name.
+  std::size_t part_count() const { return field_ ? field_parts() : parts_.size(); }
+  const ConvexPart& part(std::size_t i) const { return field_ ? field_part(i) : parts_[i]; }
+  // Over the parts, in the shape's frame; null: they are few.
+  const PartTree* tree() const { return tree_.get(); }
+  // Null: it is none.
+  const HeightField* height_field() const { return field_.get(); }
   // False for a half-space (and unions that hold one).
   bool bounded() const { return bounded_; }
-  // Exact, the parts of a union added up (an overlap counts twice).  Bounded shapes only.
+  // Half-spaces and height fields are ground, not bodies that could move freely.
+  bool is_ground() const { return !bounded_ || field_; }
+  // Exact, the parts of a union added up (an overlap counts twice).  Not of ground.
   const MassProperties& mass_properties() const { return mass_; }
-  // Least width of the bounding box, m: the `size` of contact parameters.  Infinite if unbounded.
+  // Least width of the bounding box, m: the `size` of contact parameters.  Of a height field the
+  // least of its sides, infinite if unbounded.
   double least_width() const { return least_width_; }
   // The smallest ball around the frame's origin that holds the shape (bound by the parts' farthest
   // points, exact but for ellipsoids about another centre), m.
@@ -67,7 +82,8 @@ class Shape {
   // No point is farther from the line through the origin, m (exact but for tilted frustums and
   // ellipsoids that are off it).
   double radius_about_line(const Vec3& direction) const;
-  // The shape's bounds when its frame is placed at `frame`, m.  Exact.
+  // The shape's bounds when its frame is placed at `frame`, m.  Exact, but of height fields that
+  // are turned: the bounds of their box.
   Aabb bounds(const Frame& frame) const;
   // One word for messages: "sphere", "box", "hull", "cylinder", "cone", "union" and so on.
   const std::string& kind_name() const { return kind_name_; }
@@ -80,7 +96,14 @@ class Shape {
  private:
   friend ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
                                const MassProperties& mass);
+  friend ShapePtr make_height_field(std::vector<double> heights, std::size_t columns,
+                                    double spacing_x, double spacing_y);
+  std::size_t field_parts() const;
+  const ConvexPart& field_part(std::size_t i) const;
+
   std::vector<ConvexPart> parts_;
+  std::shared_ptr<const HeightField> field_;
+  std::shared_ptr<const PartTree> tree_;
   MassProperties mass_;
   bool bounded_ = true;
   double least_width_ = 0;
@@ -104,8 +127,13 @@ ShapePtr make_ellipsoid(const Vec3& semi_axes);
 ShapePtr make_hull(const std::vector<Vec3>& points);
 // Solid where normal.x <= offset; the normal is normalised.
 ShapePtr make_half_space(const Vec3& normal, double offset);
+// Ground by its heights over a rectangular grid: see geometry/height-field.h.
+ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, double spacing_x,
+                           double spacing_y);
 ShapePtr make_union(const std::vector<ShapePtr>& shapes);
 // The shape moved by `pose` within the body's frame.
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose);
+// The bounds of one part when the frame of its shape is placed at `frame`, m.  Exact.
+Aabb part_bounds(const ConvexPart& part, const Frame& frame);
 
 }  // namespace tw

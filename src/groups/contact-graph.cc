@@ -38,9 +38,9 @@ Vec3 turned_into(const Vec3& stretch, const Vec3& normal) {
 
 // The part that a point is on, of the body named; `body_b` is the second of the pair.
 const ConvexPart& part_at(const ManifoldPoint& p, const Body& body, const Body& body_b) {
-  const auto parts_b = static_cast<int>(body_b.shape_P->parts().size());
+  const auto parts_b = static_cast<int>(body_b.shape_P->part_count());
   const int number = &body == &body_b ? p.pair % parts_b : p.pair / parts_b;
-  return body.shape_P->parts()[static_cast<std::size_t>(number)];
+  return body.shape_P->part(static_cast<std::size_t>(number));
 }
 
 void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) {
@@ -251,7 +251,7 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
 // Two bodies that are to be looked at, and what was found: a pair with its contacts from 0 on.
 struct Look {
   const PlacedBody *a, *b;
-  const std::vector<BodyId>* ground = nullptr;  // the fixed bodies around the one that moves
+  const Ground* ground = nullptr;  // the fixed bodies around the one that moves
   enum class Found : std::uint8_t { nothing, contact, as_before } found = Found::nothing;
   ContactPair pair;
   std::vector<NewContact> contacts;
@@ -262,7 +262,7 @@ struct Look {
 // pair.
 void look(const Regrouping& work, Look& look, double interval, bool must) {
   const PlacedBody &a = *look.a, &b = *look.b;
-  const std::vector<BodyId>& ground = *look.ground;
+  const Ground& ground = *look.ground;
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const std::uint64_t id = pair_id(body_a.id(), body_b.id());
@@ -376,7 +376,7 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
 }  // namespace
 
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
-  std::vector<std::vector<BodyId>> grounds;  // of each, as long as somebody looks
+  std::vector<Ground> grounds;  // of each, as long as somebody looks
   grounds.reserve(looked_at.size());
   const Partners partners = partners_before(work);
   std::vector<Look> looks;
@@ -387,7 +387,7 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
     const Body& body = *here.body;
     if (!body.shape_P) continue;
     const PlacedBody& mine = together ? places.emplace_back(here) : here;
-    const std::vector<BodyId>& ground =
+    const Ground& ground =
         grounds.emplace_back(work.surroundings.ground_around(body, {mine.frame}));
     for (const BodyId other : candidates_of(work, body, looked_at, partners)) {
       const PlacedBody there = work.placed(other);
@@ -416,7 +416,7 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
 void fuse(Regrouping& work, double interval) {
   const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
   const PlacedBody& mover = a.body->dynamic() ? a : b;
-  const std::vector<BodyId> ground = work.surroundings.ground_around(*mover.body, {mover.frame});
+  const Ground ground = work.surroundings.ground_around(*mover.body, {mover.frame});
   Look first{&a, &b, &ground, {}, {}, {}, 0};
   look(work, first, interval, true);
   take(work, first);

@@ -3,6 +3,7 @@
 #include "groups/surroundings.h"
 
 #include "base/constants.h"
+#include "collision/near-parts.h"
 #include "collision/seams/seams.h"
 #include "integrate/trajectory.h"
 
@@ -26,34 +27,39 @@ bool reaches(const Body& unbounded, const Aabb& box) {
 
 }  // namespace
 
-std::vector<BodyId> Surroundings::ground_around(const Body& moving,
-                                                std::initializer_list<Frame> frames) const {
-  std::vector<BodyId> ground;
+Ground Surroundings::ground_around(const Body& moving, std::initializer_list<Frame> frames) const {
+  Ground ground;
   if (moving.unbounded) return ground;
-  ground.reserve(8);
-  Aabb place;
+  ground.bodies.reserve(8);
+  Aabb& place = ground.place;
   for (const Frame& frame : frames) place.add(moving.shape_P->bounds(frame));
   place.grow(std::max(answer::contact_margin, seam::sunk) * moving.least_width);
   const auto add = [&](BodyId id) {
-    if (scene_.may_collide(moving, scene_.body(id))) ground.push_back(id);
+    if (scene_.may_collide(moving, scene_.body(id))) ground.bodies.push_back(id);
   };
   grid_.standing_in(place, moving.id(), add);
   for (const BodyId id : unbounded_)
     if (scene_.body(id).fixed() && reaches(scene_.body(id), place)) add(id);
-  std::sort(ground.begin(), ground.end());
+  std::sort(ground.bodies.begin(), ground.bodies.end());
   return ground;
 }
 
 std::vector<SeamNeighbour> Surroundings::seam_neighbours(const Body& body,
-                                                         const std::vector<BodyId>& ground) const {
+                                                         const Ground& ground) const {
   std::vector<SeamNeighbour> result;
   if (!body.fixed()) return result;
-  result.reserve(2 * ground.size());
-  for (const BodyId id : ground) {
+  result.reserve(2 * ground.bodies.size());
+  for (const BodyId id : ground.bodies) {
     if (id == body.id()) continue;
     const Frame frame(scene_.body(id).motion->pose(0));
-    for (const ConvexPart& part : scene_.body(id).shape_P->parts())
-      result.push_back({&part, frame});
+    const Shape& shape = *scene_.body(id).shape_P;
+    if (shape.tree()) {
+      thread_local std::vector<std::uint32_t> near;
+      parts_in(shape, seen_from(frame, ground.place), near);
+      for (const std::uint32_t i : near) result.push_back({&shape.part(i), frame});
+      continue;
+    }
+    for (const ConvexPart& part : shape.parts()) result.push_back({&part, frame});
   }
   return result;
 }

@@ -11,6 +11,12 @@
 
 namespace tw {
 
+// The fixed bodies around a moving one.
+struct Ground {
+  std::vector<BodyId> bodies;  // ascending
+  Aabb place;                  // world: what the moving one may touch is in it
+};
+
 class Surroundings {
  public:
   Surroundings(const Scene& scene, const BroadPhase& grid, const std::vector<BodyId>& unbounded)
@@ -24,12 +30,12 @@ class Surroundings {
     for (const BodyId other : unbounded_) visit(other);
   }
   // The fixed bodies that a moving one may touch and whose boxes its own comes near, at one of the
-  // frames, ascending: they bury each other's edges.  A function of the frames alone: its claim,
+  // frames: they bury each other's edges.  A function of the frames alone: its claim,
   // which holds it at all of its times, depends on the schedule.
-  std::vector<BodyId> ground_around(const Body& moving, std::initializer_list<Frame> frames) const;
-  // The parts of those of them that stand beside a fixed body; of a body that moves there are none.
-  std::vector<SeamNeighbour> seam_neighbours(const Body& body,
-                                             const std::vector<BodyId>& ground) const;
+  Ground ground_around(const Body& moving, std::initializer_list<Frame> frames) const;
+  // The parts of those of them that stand beside a fixed body, of shapes with trees those in the
+  // place; of a body that moves there are none.
+  std::vector<SeamNeighbour> seam_neighbours(const Body& body, const Ground& ground) const;
 
  private:
   const Scene& scene_;

@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "collision/manifold.h"
+#include "collision/near-parts.h"
 #include "collision/seams/seams.h"
 #include "collision/separation.h"
 #include "dynamics/contact-scales.h"
@@ -90,22 +91,28 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
   const Successor& mover = fixed == &a ? b : a;
-  const std::vector<BodyId> ground = surroundings.ground_around(*mover.body, {placed(mover).frame});
-  const auto& parts = fixed->body->shape_P->parts();
-  if (ground.size() < 2 && parts.size() < 2) return false;
+  const Ground ground = surroundings.ground_around(*mover.body, {placed(mover).frame});
+  const Shape& shape = *fixed->body->shape_P;
+  if (ground.bodies.size() < 2 && shape.part_count() < 2) return false;
   const std::vector<SeamNeighbour> others = surroundings.seam_neighbours(*fixed->body, ground);
   const Frame frame(fixed->point.q.toRotationMatrix(), fixed->point.x);
   const double size = std::min(a.body->least_width, b.body->least_width);
-  const std::size_t parts_b = b.body->shape_P->parts().size();
+  const std::size_t parts_b = b.body->shape_P->part_count();
+  // of the fixed body's own parts those that come near the mover
+  std::vector<std::uint32_t> own;
+  if (shape.tree())
+    parts_in(shape, seen_from(frame, ground.place), own);
+  else
+    for (std::uint32_t i = 0; i < shape.part_count(); ++i) own.push_back(i);
   const auto is_ghost = [&](const ContactPoint& c) {
     const auto pair = static_cast<std::size_t>(c.pair);
     const std::size_t number = fixed == &a ? pair / parts_b : pair % parts_b;
     std::vector<SeamNeighbour> neighbours = others;
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (i != number) neighbours.push_back({&parts[i], frame});
+    for (const std::uint32_t i : own)
+      if (i != number) neighbours.push_back({&shape.part(i), frame});
     const Vec3 outward = fixed == &a ? c.normal : Vec3(-c.normal);
     const Vec3 on_fixed = c.point - 0.5 * c.gap * outward;
-    return buried_edge(parts[number], frame, on_fixed, outward, neighbours, size);
+    return buried_edge(shape.part(number), frame, on_fixed, outward, neighbours, size);
   };
   if (std::erase_if(found, is_ghost) == 0 || !found.empty()) return false;
 

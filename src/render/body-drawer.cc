@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/body-drawer.h"
 
+#include "geometry/height-field.h"
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -21,9 +23,7 @@ bool has_grain(const ConvexPart& part, const DrawBody& body) {
 }
 
 // What stands fixed is dull; 0.1 tells the light (picture-shaders.cc) that it has a grain, too.
-float gloss_of(const ConvexPart& part, const DrawBody& body) {
-  return !body.fixed ? 0.5f : has_grain(part, body) ? 0.1f : 0.04f;
-}
+float gloss_of(bool fixed, bool grain) { return !fixed ? 0.5f : grain ? 0.1f : 0.04f; }
 
 const void* offset_pointer(std::size_t offset) { return reinterpret_cast<const void*>(offset); }
 
@@ -65,11 +65,15 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
   if (!body.shape || !body.visible) return;
   shapes_.push_back(body.shape);
   const Vec3 color = linear_color(body.color.value_or(default_color(index, body.fixed)));
+  Part record;
+  record.body = index;
+  if (body.shape->height_field()) {
+    record.color << color.cast<float>(), gloss_of(body.fixed, body.fixed);
+    return add_height_field(body, record);
+  }
   for (const ConvexPart& part : body.shape->parts()) {
-    Part record;
-    record.body = index;
     record.placement = part.placement;
-    record.color << color.cast<float>(), gloss_of(part, body);
+    record.color << color.cast<float>(), gloss_of(body.fixed, has_grain(part, body));
     if (has_grain(part, body)) ++grainy_parts_;
     add_part(part, body, record);
   }
@@ -88,6 +92,15 @@ void BodyDrawer::add_part(const ConvexPart& part, const DrawBody& body, Part rec
   if (part.kind == PartKind::frustum && part.margin == 0)
     record.placement.R *= Vec3(part.radius, part.radius, part.half_length).asDiagonal();
   group_of(part, smooth).parts.push_back(record);
+}
+
+void BodyDrawer::add_height_field(const DrawBody& body, Part record) {
+  const HeightField& field = *body.shape->height_field();
+  const bool smooth = body.smooth.value_or(false);
+  if (body.fixed) grainy_parts_ += static_cast<int>(field.part_count() / 2);
+  const auto [found, fresh] = group_index_.emplace(MeshKey(&field, smooth, 0, 0), groups_.size());
+  if (fresh) groups_.push_back(make_group(height_field_mesh(field, smooth)));
+  groups_[found->second].parts.push_back(record);
 }
 
 BodyDrawer::MeshGroup& BodyDrawer::group_of(const ConvexPart& part, bool smooth) {

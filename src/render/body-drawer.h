@@ -64,6 +64,7 @@ class BodyDrawer {
   using MeshKey = std::tuple<const void*, bool, double, double>;
 
   void add_part(const ConvexPart& part, const DrawBody& body, Part record);
+  void add_height_field(const DrawBody& body, Part record);
   MeshGroup& group_of(const ConvexPart& part, bool smooth);
   MeshGroup make_group(const Mesh& mesh);
   void upload(GLuint buffer, const void* data, std::size_t size) const;

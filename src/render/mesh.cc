@@ -99,6 +99,63 @@ Mesh smooth_mesh(const Polyhedron& polyhedron) {
   return mesh;
 }
 
+Mesh height_field_mesh(const HeightField& field, bool smooth) {
+  Mesh mesh;
+  const std::size_t rows = field.rows(), columns = field.columns();
+  // by differences over the neighbours, one-sided at the rim
+  const auto slope_normal = [&](std::size_t row, std::size_t column) {
+    const auto before = [](std::size_t i) { return i == 0 ? i : i - 1; };
+    const Vec3 along_x =
+        field.corner(row, std::min(column + 1, columns - 1)) - field.corner(row, before(column));
+    const Vec3 along_y =
+        field.corner(std::min(row + 1, rows - 1), column) - field.corner(before(row), column);
+    return Vec3(along_x.cross(along_y).normalized());
+  };
+  const auto add = [&](const Vec3& point, const Vec3& normal) {
+    mesh.vertices.push_back({point.cast<float>(), normal.cast<float>()});
+  };
+  if (smooth) {
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t column = 0; column < columns; ++column)
+        add(field.corner(row, column), slope_normal(row, column));
+    for (std::size_t row = 0; row + 1 < rows; ++row)
+      for (std::size_t column = 0; column + 1 < columns; ++column) {
+        const auto a = static_cast<std::uint32_t>(row * columns + column);
+        const auto d = static_cast<std::uint32_t>(a + columns);
+        mesh.indices.insert(mesh.indices.end(), {a, a + 1, d + 1, a, d + 1, d});
+      }
+  } else {
+    for (std::size_t number = 0; number < field.part_count(); ++number) {
+      if (!field.exists(number)) continue;
+      const std::vector<Vec3> top = field.top(number);
+      const Vec3 normal = (top[1] - top[0]).cross(top[2] - top[0]).normalized();
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const Vec3& p : top) add(p, normal);
+      add_fan(mesh, first, static_cast<int>(top.size()));
+    }
+  }
+
+  // the rim, from one corner of the grid to the next
+  const auto add_wall = [&](const Vec3& p, const Vec3& q) {
+    const Vec3 down = (std::min(p.z(), q.z()) - field.depth()) * Vec3::UnitZ();
+    const Vec3 flat_p(p.x(), p.y(), 0), flat_q(q.x(), q.y(), 0);
+    const Vec3 outward = (q - p).cross(Vec3::UnitZ()).normalized();
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& corner : {p, Vec3(flat_p + down), Vec3(flat_q + down), q})
+      add(corner, outward);
+    add_fan(mesh, first, 4);
+  };
+  for (std::size_t column = 0; column + 1 < columns; ++column) {
+    add_wall(field.corner(0, column), field.corner(0, column + 1));
+    add_wall(field.corner(rows - 1, column + 1), field.corner(rows - 1, column));
+  }
+  for (std::size_t row = 0; row + 1 < rows; ++row) {
+    add_wall(field.corner(row + 1, 0), field.corner(row, 0));
+    add_wall(field.corner(row, columns - 1), field.corner(row + 1, columns - 1));
+  }
+  return mesh;
+}
+
 Mesh facet_sphere_mesh() {
   Mesh mesh;
   for (const auto& [a, b, c] : split(split(icosahedron()))) {

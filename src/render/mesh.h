@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/height-field.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -22,6 +23,9 @@ struct Mesh {
 Mesh facet_mesh(const Polyhedron& polyhedron);
 // Rounded looks: a vertex's normal is the mean of its faces' normals, weighted by their angles.
 Mesh smooth_mesh(const Polyhedron& polyhedron);
+// The ground with its rim, without a bottom.  Smooth: the normals of what the heights are samples
+// of.
+Mesh height_field_mesh(const HeightField& field, bool smooth);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
 Mesh facet_sphere_mesh();
 // What follows is turned about z in 48 facets or, smooth, round.

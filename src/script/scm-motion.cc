@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/limits.h"
+#include "geometry/height-field.h"
 #include "geometry/polyhedron.h"
 #include "integrate/sampled-motion.h"
 #include "math/rotation-vector.h"
@@ -99,6 +100,14 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
   if (!shape_) return (to.p - from.p).norm();
   const Frame a(from), b(to);
   const Vec3 turn = turn_between(from.q, to.q);
+  if (const HeightField* field = shape_->height_field()) {
+    for (const std::size_t row : {std::size_t{0}, field->rows() - 1})
+      for (const std::size_t column : {std::size_t{0}, field->columns() - 1}) {
+        const Vec3 corner = field->corner(row, column);
+        most = std::max(most, (b * corner - a * corner).norm());
+      }
+    return most;
+  }
   for (const ConvexPart& part : shape_->parts()) {
     const Frame fa = a * part.placement, fb = b * part.placement;
     if (part.kind == PartKind::sphere)

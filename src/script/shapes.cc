@@ -42,6 +42,43 @@ TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.
   return from_shape(make_hull(to_points(points, "points")));
 }
 
+// The elements of an array of rank 2, row by row; `columns` in a row.
+static std::vector<double> to_rows(SCM array, std::size_t& columns) {
+  constexpr const char* expected = "an array of rank 2 of numbers, in metres";
+  if (!scm_is_true(scm_array_p(array, SCM_UNDEFINED)) || scm_c_array_rank(array) != 2)
+    throw BadValue{"heights", array, expected};
+  scm_t_array_handle handle;
+  scm_array_get_handle(array, &handle);
+  const scm_t_array_dim* const dims = scm_array_handle_dims(&handle);
+  const ssize_t rows = dims[0].ubnd - dims[0].lbnd + 1;
+  const ssize_t in_row = dims[1].ubnd - dims[1].lbnd + 1;
+  columns = static_cast<std::size_t>(in_row);
+  std::vector<double> numbers;
+  SCM wrong = SCM_UNDEFINED;
+  for (ssize_t i = 0; i < rows; ++i)
+    for (ssize_t j = 0; j < in_row; ++j) {
+      const SCM value = scm_array_handle_ref(&handle, i * dims[0].inc + j * dims[1].inc);
+      if (!scm_is_real(value)) wrong = value;
+      numbers.push_back(scm_is_real(value) ? scm_to_double(value) : 0);
+    }
+  scm_array_handle_release(&handle);
+  if (!SCM_UNBNDP(wrong)) throw BadValue{"heights", wrong, expected};
+  return numbers;
+}
+
+TW_PRIMITIVE(height_field, "%height-field", (SCM heights, SCM spacing),
+             "Return the ground with these heights.") {
+  constexpr const char* expected = "a number of metres, or #(dx dy) of them";
+  std::vector<SCM> apart{spacing, spacing};
+  if (!scm_is_real(spacing)) apart = to_elements(spacing, "spacing", expected);
+  if (apart.size() != 2) throw BadValue{"spacing", spacing, expected};
+  const double x = to_real(apart[0], "spacing along x"), y = to_real(apart[1], "spacing along y");
+  std::size_t columns = 0;
+  std::vector<double> numbers = to_rows(heights, columns);
+  TW_REQUIRE(!numbers.empty(), "the heights are an empty array; expected at least 2 rows of 2");
+  return from_shape(make_height_field(std::move(numbers), columns, x, y));
+}
+
 TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls),
              "Return the shape of a mesh file.") {
   const Vec3 factors = scm_is_real(scale) ? Vec3(Vec3::Constant(to_finite(scale, "scale")))
@@ -71,30 +108,36 @@ TW_PRIMITIVE(placed, "%placed", (SCM shape, SCM position, SCM orientation),
   return from_shape(place_shape(to_shape(shape, "the shape to place"), pose));
 }
 
-// The mass properties of a bounded shape.
-static const MassProperties& bounded_mass(const ShapePtr& shape) {
+static void require_bounds(const ShapePtr& shape) {
   TW_REQUIRE(shape->bounded(), "the shape is a " + shape->kind_name() +
                                    ", which has no bounds; expected a bounded shape");
+}
+
+// The mass properties of a shape that has some.
+static const MassProperties& mass_of(const ShapePtr& shape) {
+  require_bounds(shape);
+  TW_REQUIRE(!shape->height_field(),
+             "the shape is a height field, which is ground without mass; expected another shape");
   return shape->mass_properties();
 }
 
 TW_PRIMITIVE(shape_volume, "%shape-volume", (SCM shape), "Return the volume in cubic metres.") {
-  return scm_from_double(bounded_mass(to_shape(shape, "the shape")).volume);
+  return scm_from_double(mass_of(to_shape(shape, "the shape")).volume);
 }
 
 TW_PRIMITIVE(shape_inertia, "%shape-inertia", (SCM shape),
              "Return the inertia about the centroid at density 1, as three rows.") {
-  return from_matrix(bounded_mass(to_shape(shape, "the shape")).inertia);
+  return from_matrix(mass_of(to_shape(shape, "the shape")).inertia);
 }
 
 TW_PRIMITIVE(shape_centroid, "%shape-centroid", (SCM shape), "Return the centroid.") {
-  return from_vec3(bounded_mass(to_shape(shape, "the shape")).centroid);
+  return from_vec3(mass_of(to_shape(shape, "the shape")).centroid);
 }
 
 TW_PRIMITIVE(shape_radius, "%shape-radius", (SCM shape),
              "Return the radius of the ball about the frame's origin that holds the shape.") {
   const ShapePtr value = to_shape(shape, "the shape");
-  bounded_mass(value);
+  require_bounds(value);
   return scm_from_double(value->radius_about_origin());
 }
 

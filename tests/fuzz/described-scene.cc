@@ -28,6 +28,13 @@ Solid box(const Vec3& edges) {
   return solid;
 }
 
+Vec3 Hills::corner(std::size_t row, std::size_t column) const {
+  const auto at = [&](std::size_t i, std::size_t count) {
+    return (static_cast<double>(i) - 0.5 * static_cast<double>(count - 1)) * spacing;
+  };
+  return {at(column, columns), at(row, rows()), heights[row * columns + column]};
+}
+
 namespace {
 
 Solid turned(SolidKind kind, double radius, double length) {
@@ -92,6 +99,10 @@ ShapePtr shape_of(const Solid& solid) {
 }  // namespace
 
 ShapePtr shape_of(const DescribedBody& body) {
+  if (body.hills) {
+    const Hills& hills = *body.hills;
+    return make_height_field(hills.heights, hills.columns, hills.spacing, hills.spacing);
+  }
   if (body.solids.size() == 1) return shape_of(body.solids.front());
   std::vector<ShapePtr> parts;
   for (const Solid& solid : body.solids)

@@ -32,9 +32,20 @@ struct Solid {
   Pose placement;  // not of half-spaces
 };
 
+// A height field of cells of `spacing` metres.
+struct Hills {
+  std::vector<double> heights;  // m, row by row
+  std::size_t columns = 0;
+  double spacing = 1;
+
+  Vec3 corner(std::size_t row, std::size_t column) const;
+  std::size_t rows() const { return heights.size() / columns; }
+};
+
 struct DescribedBody {
   std::string name;
-  std::vector<Solid> solids;  // several: a union
+  std::vector<Solid> solids;   // several: a union
+  std::optional<Hills> hills;  // instead of solids
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
   double density = 1000;

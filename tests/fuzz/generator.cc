@@ -27,6 +27,7 @@ constexpr Kind table[] = {
     {"cards", "a card house is hit by a block", draw_cards},
     {"ramp", "bodies slide and roll down a ramp, along the floor, against a wall", draw_ramp},
     {"round", "capsules, cones, ellipsoids and cylinders among others fall into a pit", draw_round},
+    {"hills", "bodies fall and roll on a height field between four walls", draw_hills},
 };
 
 }  // namespace

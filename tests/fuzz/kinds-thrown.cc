@@ -156,4 +156,49 @@ void draw_ramp(Draft& draft) {
   draft.last(12);
 }
 
+void draw_hills(Draft& draft) {
+  const double s = draft.size, half = s * draft.random.real(1, 2.5);
+  Hills hills;
+  hills.spacing = s * draft.log_uniform(0.25, 2);
+  const auto cells = static_cast<std::size_t>(std::ceil(2 * (half + s) / hills.spacing));
+  hills.columns = cells + 1;
+  const double rough = hills.spacing * draft.random.real(0.05, 0.8);
+  const auto style = draft.random.below(3);
+  const double wave = draft.random.real(1, 4) / s, slant = draft.random.real(-0.4, 0.4);
+  for (std::size_t row = 0; row <= cells; ++row)
+    for (std::size_t column = 0; column <= cells; ++column) {
+      const double x = hills.spacing * static_cast<double>(column),
+                   y = hills.spacing * static_cast<double>(row);
+      switch (style) {
+        case 0:  // every corner by itself
+          hills.heights.push_back(draft.random.real(-rough, rough));
+          break;
+        case 1:  // waves on a slope
+          hills.heights.push_back(slant * (x - half) +
+                                  rough * std::sin(wave * x) * std::cos(wave * y));
+          break;
+        default:  // plains and steps
+          hills.heights.push_back(draft.chance(0.7) ? 0 : rough);
+          break;
+      }
+    }
+  const auto [lowest, highest] = std::minmax_element(hills.heights.begin(), hills.heights.end());
+  const double low = *lowest, high = *highest;
+  DescribedBody ground;
+  ground.hills = hills;
+  ground.fixed = true;
+  draft.add(ground, "hills");
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double side : {-1.0, 1.0})
+      draft.add_fixed(half_space(side * Vec3::Unit(axis), -half), Vec3::Zero());
+  draft.scene.room = {std::nullopt, {-half, -half, low}, {half, half, 1e3 * s}};
+  draft.pour(draft.whole(2, 9), half, high + 0.1 * s, 1.02 * s, [&] {
+    const double size = s * draft.log_uniform(0.3, 1);
+    return draft.chance(0.3) ? std::vector<Solid>{draft.round_shape(size)} : draft.shape(size);
+  });
+  for (DescribedBody& body : draft.scene.bodies)
+    if (body.dynamic()) body.velocity += draft.vector(draft.speed);
+  draft.last(10);
+}
+
 }  // namespace tw::fuzz

@@ -26,5 +26,6 @@ void draw_bullet(Draft& draft);
 void draw_seam(Draft& draft);
 void draw_groove(Draft& draft);
 void draw_ramp(Draft& draft);
+void draw_hills(Draft& draft);
 
 }  // namespace tw::fuzz

@@ -301,8 +301,34 @@ double below_plane(const Part& plane, const Frame& frame, const Part& part, cons
 
 }  // namespace
 
+namespace {
+
+// What is under each of the two triangles of a cell, which have its diagonal of greater x and y in
+// common.  It is as thick as it is taken for: a body does not get out below.
+void add_hills(const Hills& hills, std::vector<Part>& parts) {
+  for (std::size_t row = 0; row + 1 < hills.rows(); ++row)
+    for (std::size_t column = 0; column + 1 < hills.columns; ++column)
+      for (const std::size_t side : {0, 1}) {
+        std::vector<Vec3> points{hills.corner(row, column),
+                                 hills.corner(row + side, column + 1 - side),
+                                 hills.corner(row + 1, column + 1)};
+        double lowest = infinity;
+        for (const Vec3& p : points) lowest = std::min(lowest, p.z());
+        for (int i = 0; i < 3; ++i) {
+          const Vec3& p = points[static_cast<std::size_t>(i)];
+          points.push_back({p.x(), p.y(), lowest - hills.spacing});
+        }
+        parts.push_back(part_of(hull(points)));
+        // what is wide is the ground, not its cells
+        parts.back().width = infinity;
+      }
+}
+
+}  // namespace
+
 std::vector<Part> parts_of(const DescribedBody& body) {
   std::vector<Part> parts;
+  if (body.hills) add_hills(*body.hills, parts);
   for (const Solid& solid : body.solids) parts.push_back(part_of(solid));
   return parts;
 }

@@ -37,7 +37,17 @@ std::string text(const Solid& solid) {
   return points + "))";
 }
 
+std::string text(const Hills& hills) {
+  std::string rows = "(height-field '(";
+  for (std::size_t i = 0; i < hills.heights.size(); ++i) {
+    if (i % hills.columns == 0) rows += i == 0 ? "\n      (" : ")\n      (";
+    rows += " " + show(hills.heights[i]);
+  }
+  return rows + ")) #:spacing " + show(hills.spacing) + ")";
+}
+
 std::string shape_text(const DescribedBody& body) {
+  if (body.hills) return text(*body.hills);
   if (body.solids.size() == 1) return text(body.solids.front());
   std::string shape = "(union";
   for (const Solid& solid : body.solids)

@@ -58,7 +58,10 @@
 
 ;; ---- recursions without end ----
 
-(define (seconds) (/ (get-internal-real-time) internal-time-units-per-second 1.0))
+;; of CPU, in programs that have ended: other programs may be busy
+(define (seconds)
+  (let ((spent (times)))
+    (/ (+ (tms:cutime spent) (tms:cstime spent)) internal-time-units-per-second 1.0)))
 
 (define (overflows name pattern . lines)
   (let ((start (seconds)))

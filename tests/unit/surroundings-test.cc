@@ -15,8 +15,9 @@ TEST(Surroundings, half_spaces_are_ground_where_the_body_comes_near_them) {
   const BodyId floor = small.add_floor();
   const BodyId cube = small.add_cube(1, {0, 0, 5});
   const auto ground_at = [&](double z) {
-    return small.surroundings.ground_around(small.scene.body(cube),
-                                            {Frame(Mat3::Identity(), Vec3(0, 0, z))});
+    return small.surroundings
+        .ground_around(small.scene.body(cube), {Frame(Mat3::Identity(), Vec3(0, 0, z))})
+        .bodies;
   };
   EXPECT_EQ(ground_at(0.5), std::vector<BodyId>{floor});
   EXPECT_EQ(ground_at(0.55), std::vector<BodyId>{floor});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/constants.h"
+#include "collision/near-parts.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"
 
@@ -37,18 +38,17 @@ double manifold_at_seams(const Shape& a, const Frame& frame_a,
   const SeamSide side_a(a, frame_a, around_a);
   const SeamSide side_b(b, frame_b, around_b);
   thread_local std::vector<SeamNeighbour> near_a, near_b;
-  int pair = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a.parts().size(); ++i)
-    for (std::size_t j = 0; j < b.parts().size(); ++j, ++pair) {
-      const auto first = static_cast<std::ptrdiff_t>(out.size());
-      const SeamPair seam{side_a, side_b, i, j, reach, size, choice, pair, {&near_a, &near_b}};
-      if (far_apart(seam.first(), frame_a, seam.second(), frame_b, seam.farthest())) continue;
-      const double distance = add(seam, out);
-      if (distance <= reach) least = std::min(least, distance);
-      std::sort(out.begin() + first, out.end(),
-                [](const auto& p, const auto& q) { return p.feature < q.feature; });
-    }
+  const auto add_pair = [&](std::size_t i, std::size_t j) {
+    const auto first = static_cast<std::ptrdiff_t>(out.size());
+    const SeamPair seam{
+        side_a, side_b, i, j, reach, size, choice, pair_number(i, j, b), {&near_a, &near_b}};
+    const double distance = add(seam, out);
+    if (distance <= reach) least = std::min(least, distance);
+    std::sort(out.begin() + first, out.end(),
+              [](const auto& p, const auto& q) { return p.feature < q.feature; });
+  };
+  visit_near_parts(a, frame_a, b, frame_b, farthest_touch(side_a, side_b, reach, size), add_pair);
   return least;
 }
 

@@ -5,25 +5,48 @@
 
 #include <algorithm>
 
+#include "collision/near-parts.h"
+
 namespace tw {
 
-void SeamSide::neighbours_of(std::size_t part, std::vector<SeamNeighbour>& out) const {
+void SeamSide::neighbours_of(std::size_t part, const Aabb& where,
+                             std::vector<SeamNeighbour>& out) const {
   out.clear();
-  const ConvexPart& here = shape.parts()[part];
+  const ConvexPart& here = shape.part(part);
   const Vec3 center = frame * here.bound_center;
   const auto add = [&](const SeamNeighbour& q) {
     const double near = (q.part->bound_radius + here.bound_radius) * (1 + 1e-6);
     const bool apart = (q.frame * q.part->bound_center - center).squaredNorm() > near * near;
     if (!apart) out.push_back(q);
   };
-  for (std::size_t i = 0; i < shape.parts().size(); ++i)
-    if (i != part) add({&shape.parts()[i], frame});
+  if (shape.tree())
+    add_from_tree(part, where, out);
+  else
+    for (std::size_t i = 0; i < shape.part_count(); ++i)
+      if (i != part) add({&shape.part(i), frame});
   for (const SeamNeighbour& q : around) add(q);
+}
+
+void SeamSide::add_from_tree(std::size_t part, const Aabb& where,
+                             std::vector<SeamNeighbour>& out) const {
+  Aabb here = part_bounds(shape.part(part), Frame());
+  here.grow(1e-6 * here.size().maxCoeff());
+  const Aabb there = seen_from(frame, where);
+  thread_local std::vector<std::uint32_t> near;
+  parts_in(shape, {here.lo.cwiseMax(there.lo), here.hi.cwiseMin(there.hi)}, near);
+  for (const std::uint32_t i : near)
+    if (i != part) out.push_back({&shape.part(i), frame});
 }
 
 const std::vector<SeamNeighbour>& SeamPair::neighbours(bool of_a) const {
   const std::size_t side = of_a ? 0 : 1;
-  if (!listed[side]) (of_a ? a : b).neighbours_of(of_a ? part_a : part_b, *lists[side]);
+  if (listed[side]) return *lists[side];
+  Aabb where;
+  if ((of_a ? a : b).shape.tree()) {
+    where = of_a ? part_bounds(second(), b.frame) : part_bounds(first(), a.frame);
+    where.grow(farthest() + 2 * seam::probe * size);
+  }
+  (of_a ? a : b).neighbours_of(of_a ? part_a : part_b, where, *lists[side]);
   listed[side] = true;
   return *lists[side];
 }

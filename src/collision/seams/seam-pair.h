@@ -23,11 +23,21 @@ struct SeamSide {
       : shape(s),
         frame(f),
         around(neighbours),
-        has_seams(!neighbours.empty() || s.parts().size() > 1) {}
+        has_seams(!neighbours.empty() || s.part_count() > 1) {}
 
-  // The neighbours of one part whose balls come near its own.  Overwrites `out`.
-  void neighbours_of(std::size_t part, std::vector<SeamNeighbour>& out) const;
+  // The neighbours of one part whose balls come near its own; of a shape with a tree those whose
+  // boxes come near both its own and `where` (world).  Overwrites `out`.
+  void neighbours_of(std::size_t part, const Aabb& where, std::vector<SeamNeighbour>& out) const;
+
+ private:
+  void add_from_tree(std::size_t part, const Aabb& where, std::vector<SeamNeighbour>& out) const;
 };
+
+// How far a part may be from what lies in its neighbours and touches what it goes on by beneath
+// them, m.
+inline double farthest_touch(const SeamSide& a, const SeamSide& b, double reach, double size) {
+  return a.has_seams || b.has_seams ? std::max(reach, seam::sunk * size) : reach;
+}
 
 struct SeamPair {
   const SeamSide& a;
@@ -40,14 +50,10 @@ struct SeamPair {
   std::vector<SeamNeighbour>* lists[2];
   mutable bool listed[2] = {false, false};
 
-  const ConvexPart& first() const { return a.shape.parts()[part_a]; }
-  const ConvexPart& second() const { return b.shape.parts()[part_b]; }
+  const ConvexPart& first() const { return a.shape.part(part_a); }
+  const ConvexPart& second() const { return b.shape.part(part_b); }
 
-  // How far a part may be from what lies in its neighbours and touches what it goes on by beneath
-  // them, m.
-  double farthest() const {
-    return a.has_seams || b.has_seams ? std::max(reach, seam::sunk * size) : reach;
-  }
+  double farthest() const { return farthest_touch(a, b, reach, size); }
 
   const std::vector<SeamNeighbour>& neighbours(bool of_a) const;
 

@@ -1,0 +1,103 @@
+// Cells of height fields as convex parts.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "geometry/height-field.h"
+
+#include <cmath>
+
+#include "geometry/polyhedron.h"
+
+namespace tw {
+
+HeightField::HeightField(std::vector<double> heights, std::size_t columns, double spacing_x,
+                         double spacing_y)
+    : heights_(std::move(heights)),
+      columns_(columns),
+      spacing_x_(spacing_x),
+      spacing_y_(spacing_y),
+      parts_(2 * (columns - 1) * (heights_.size() / columns - 1)) {
+  std::vector<Aabb> boxes(parts_.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (exists(i)) boxes[i] = box(i);
+  tree_ = std::make_unique<const PartTree>(boxes);
+}
+
+HeightField::~HeightField() {
+  for (const auto& part : parts_) delete part.load();
+}
+
+Vec3 HeightField::corner(std::size_t row, std::size_t column) const {
+  // multiples of half a spacing: exact where the spacing has few digits
+  const auto from_middle = [](std::size_t i, std::size_t count) {
+    return 0.5 * (2 * static_cast<double>(i) - static_cast<double>(count - 1));
+  };
+  return {from_middle(column, columns_) * spacing_x_, from_middle(row, rows()) * spacing_y_,
+          heights_[row * columns_ + column]};
+}
+
+bool HeightField::is_plane(std::size_t cell) const {
+  const std::size_t row = cell / (columns_ - 1), column = cell % (columns_ - 1);
+  const double* const low = &heights_[row * columns_ + column];
+  const double* const high = low + columns_;
+  // what rounding makes of heights in a plane, and of the faces of a part of that size
+  const double size = std::abs(low[0] - high[1]) + std::abs(low[1] - high[0]) + depth();
+  const double rounding = 1e-15 * (std::abs(low[0]) + std::abs(high[1])) + 1e-14 * size;
+  return std::abs((low[0] + high[1]) - (low[1] + high[0])) <= rounding;
+}
+
+std::vector<Vec3> HeightField::top(std::size_t number) const {
+  const std::size_t cell = number / 2;
+  const std::size_t row = cell / (columns_ - 1), column = cell % (columns_ - 1);
+  const Vec3 a = corner(row, column), b = corner(row, column + 1);
+  const Vec3 c = corner(row + 1, column + 1), d = corner(row + 1, column);
+  if (is_plane(cell)) return {a, b, c, d};
+  return number % 2 == 0 ? std::vector<Vec3>{a, b, c} : std::vector<Vec3>{a, c, d};
+}
+
+Aabb HeightField::box(std::size_t number) const {
+  Aabb box;
+  for (const Vec3& p : top(number)) box.add(p);
+  box.lo.z() -= depth();
+  return box;
+}
+
+ConvexPart HeightField::make_part(std::size_t number) const {
+  const std::vector<Vec3> corners = top(number);
+  const auto count = static_cast<int>(corners.size());
+  const Aabb box = this->box(number);
+  // the part's frame is in the middle of the cell: short coordinates, exact ones where the grid's
+  // are
+  const Vec3 middle = 0.5 * (corners[0] + corners[2]);
+  std::vector<Vec3> vertices;
+  std::vector<int> above, below;
+  for (const Vec3& p : corners) vertices.push_back(p - middle);
+  for (const Vec3& p : corners) vertices.push_back(Vec3(p.x(), p.y(), box.lo.z()) - middle);
+  std::vector<std::vector<int>> faces;
+  for (int i = 0; i < count; ++i) {
+    const int next = (i + 1) % count;
+    above.push_back(i);
+    below.push_back(2 * count - 1 - i);
+    faces.push_back({i, count + i, count + next, next});
+  }
+  faces.insert(faces.begin(), {above, below});
+
+  ConvexPart part;
+  part.kind = PartKind::polyhedron;
+  part.placement.p = middle;
+  part.core = std::make_shared<const Polyhedron>(std::move(vertices), faces);
+  part.bound_center = middle + part.core->center();
+  part.bound_radius = part.core->radius();
+  return part;
+}
+
+const ConvexPart& HeightField::part(std::size_t number) const {
+  std::atomic<const ConvexPart*>& place = parts_[number];
+  const ConvexPart* found = place.load(std::memory_order_acquire);
+  if (found) return *found;
+  auto fresh = std::make_unique<const ConvexPart>(make_part(number));
+  // who comes second takes what the first one made
+  if (place.compare_exchange_strong(found, fresh.get(), std::memory_order_acq_rel))
+    return *fresh.release();
+  return *found;
+}
+
+}  // namespace tw

@@ -1,0 +1,58 @@
+// Height fields: ground given by its heights over a rectangular grid.
+//
+// Each cell of the grid is cut along the diagonal from its corner of least x and y to that of
+// greatest x and y, but where its four corners lie in one plane.  What is beneath the two triangles
+// or the quadrilateral is solid: a convex part with vertical sides, whose bottom is as far below
+// its lowest corner as cells are wide.  A part is made when it is first asked for.
+//
+// Frames: the shape's own: the middle of the grid at x = y = 0, heights along z, metres.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "geometry/part-tree.h"
+#include "geometry/shape.h"
+
+namespace tw {
+
+class HeightField {
+ public:
+  // Row by row, x growing within a row and y from row to row.
+  HeightField(std::vector<double> heights, std::size_t columns, double spacing_x, double spacing_y);
+  ~HeightField();
+  HeightField(const HeightField&) = delete;
+  HeightField& operator=(const HeightField&) = delete;
+
+  std::size_t rows() const { return heights_.size() / columns_; }
+  std::size_t columns() const { return columns_; }
+  // A point of the grid.
+  Vec3 corner(std::size_t row, std::size_t column) const;
+  // The bottom of a part is so far below its lowest corner, m.
+  double depth() const { return std::max(spacing_x_, spacing_y_); }
+
+  // Two numbers for each cell; of a cell with a plane top the second one stands for no part.
+  std::size_t part_count() const { return parts_.size(); }
+  bool exists(std::size_t number) const { return number % 2 == 0 || !is_plane(number / 2); }
+  // The top corners of a part, counter-clockwise from above.
+  std::vector<Vec3> top(std::size_t number) const;
+  // Any number of threads may ask at once.
+  const ConvexPart& part(std::size_t number) const;
+  const PartTree& tree() const { return *tree_; }
+
+ private:
+  bool is_plane(std::size_t cell) const;
+  Aabb box(std::size_t number) const;
+  ConvexPart make_part(std::size_t number) const;
+
+  std::vector<double> heights_;
+  std::size_t columns_;
+  double spacing_x_, spacing_y_;
+  mutable std::vector<std::atomic<const ConvexPart*>> parts_;
+  std::unique_ptr<const PartTree> tree_;
+};
+
+}  // namespace tw
