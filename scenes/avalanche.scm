@@ -10,6 +10,7 @@
 (define-scene-parameter rocks 300 "number of rocks")
 (define-scene-parameter friction 0.5 "coefficient of friction of all contacts")
 (define-scene-parameter restitution 0.2 "coefficient of restitution of all impacts")
+(define-scene-parameter spacing 0 "m, of a height field in place of the slabs; 0 for slabs")
 
 (set-contact-parameters! #t #t #:restitution restitution #:friction friction)
 
@@ -101,17 +102,17 @@
                          (ramp 0.45 0.65 level)))))
 
 (define slab-depth 3)
-(for-each
- (lambda (index triangle)
-   (define down (vector 0 0 (* -1/2 slab-depth)))
-   (define origin (snapped (v+ (middle-of triangle) down)))
-   (add-body! #:name (format #f "slab-~a" index) #:fixed? #t #:position origin
-              #:shape (convex (append-map (lambda (p)
-                                            (let ((top (v- p origin)))
-                                              (list top (v+ top down down))))
-                                          triangle))
-              #:color (ground-color triangle)))
- (iota (length triangles)) triangles)
+(define (add-slab! index triangle)
+  (define down (vector 0 0 (* -1/2 slab-depth)))
+  (define origin (snapped (v+ (middle-of triangle) down)))
+  (define color (ground-color triangle))
+  (when (zero? spacing)
+    (add-body! #:name (format #f "slab-~a" index) #:fixed? #t #:position origin #:color color
+               #:shape (convex (append-map (lambda (p)
+                                             (let ((top (v- p origin)))
+                                               (list top (v+ top down down))))
+                                           triangle)))))
+(for-each add-slab! (iota (length triangles)) triangles)
 
 ;; height above (x, y) of the triangle's plane, lifted by RADIUS along its normal
 (define (plane-height triangle x y radius)
@@ -127,6 +128,19 @@
                         ((a b c) (and (left-of? a b) (left-of? b c) (left-of? c a))))
                       triangles)
                 x y 0))
+
+;;; The same ground as one body: its heights over a rectangle, x from -32 to 32 m, y from -66 to 46 m.
+(unless (zero? spacing)
+  (let ((heights (make-typed-array 'f64 0 (1+ (inexact->exact (floor (/ 112 spacing))))
+                                   (1+ (inexact->exact (floor (/ 64 spacing)))))))
+    (array-index-map! heights (lambda (row column)
+                                (ground-height (- (* spacing column) 32) (- (* spacing row) 66))))
+    (match (array-dimensions heights)
+      ((rows columns)
+       (add-body! #:name "mountain" #:fixed? #t #:color #(0.56 0.53 0.42)
+                  #:shape (height-field heights #:spacing spacing)
+                  #:position (vector (- (* 1/2 spacing (1- columns)) 32)
+                                     (- (* 1/2 spacing (1- rows)) 66) 0))))))
 
 ;; a height of its centre at which a ball above (x, y) clears all triangles near it
 (define (height-over x y radius)

@@ -21,6 +21,10 @@ inline int pair_number(std::size_t i, std::size_t j, const Shape& b) {
   return static_cast<int>(i * b.part_count() + j);
 }
 
+// The same by the ball of one and a face of the other, where that is a polyhedron.
+bool beyond_a_face(const ConvexPart& ball, const Frame& frame_b, const ConvexPart& polyhedron,
+                   const Frame& frame_p, double reach);
+
 // Frame B as seen from frame A.
 inline Frame seen_from(const Frame& a, const Frame& b) {
   const Mat3 back = a.R.transpose();
@@ -46,7 +50,11 @@ template <class Visit>
 void visit_near_parts(const Shape& a, const Frame& frame_a, const Shape& b, const Frame& frame_b,
                       double reach, Visit&& visit) {
   const auto visit_if_near = [&](std::size_t i, std::size_t j) {
-    if (!far_apart(a.part(i), frame_a, b.part(j), frame_b, reach)) visit(i, j);
+    const ConvexPart &part_a = a.part(i), &part_b = b.part(j);
+    if (far_apart(part_a, frame_a, part_b, frame_b, reach)) return;
+    if (b.tree() && beyond_a_face(part_a, frame_a, part_b, frame_b, reach)) return;
+    if (a.tree() && beyond_a_face(part_b, frame_b, part_a, frame_a, reach)) return;
+    visit(i, j);
   };
   if (!a.tree() && !b.tree()) {
     for (std::size_t i = 0; i < a.part_count(); ++i)

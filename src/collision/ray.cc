@@ -204,10 +204,7 @@ std::optional<RayHit> cast_ray(const Shape& shape, const Frame& frame, const Vec
     return entry_of(ray, node.box, nearest ? nearest->distance : most);
   };
   const auto search = [&](const auto& again, const PartTree::Node& node) -> void {
-    if (node.count > 0) {
-      for (const std::uint32_t number : tree.parts(node)) try_part(shape.part(number));
-      return;
-    }
+    if (node.is_leaf) return try_part(shape.part(node.first));
     const PartTree::Node *first = &tree.node(node.first), *second = &tree.node(node.first + 1);
     if (entry(*second) < entry(*first)) std::swap(first, second);
     if (entry(*first) < infinity) again(again, *first);

@@ -403,11 +403,8 @@ struct Nearest {
 void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, bool of_b,
             std::size_t few, const Aabb& box) {
   if (!nearest.may_hold(box_gap(node.box, box))) return;
-  if (node.count > 0) {
-    for (const std::uint32_t number : tree.parts(node))
-      of_b ? nearest.try_parts(few, number) : nearest.try_parts(number, few);
-    return;
-  }
+  if (node.is_leaf)
+    return of_b ? nearest.try_parts(few, node.first) : nearest.try_parts(node.first, few);
   const PartTree::Node &one = tree.node(node.first), &two = tree.node(node.first + 1);
   const bool swap = box_gap(two.box, box) < box_gap(one.box, box);
   search(nearest, tree, swap ? two : one, of_b, few, box);

@@ -118,16 +118,16 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
 // Seconds until the two parts may meet, given n from a to b and the witness points.
 double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
                   const ConvexPart& part_b, const Vec3& n, const Vec3& point_a, const Vec3& point_b,
-                  double allowance, bool as_balls) {
+                  double allowance, bool a_as_ball, bool b_as_ball) {
   Plane plane;
   plane.allowance = 0.5 * allowance;
   plane.n = n;
   plane.c = 0.5 * n.dot(point_a + point_b);
   plane.u = 0.5 * n.dot(a.velocity_at(point_a) + b.velocity_at(point_b));
   plane.alpha = 0.5 * n.dot(a.acceleration + b.acceleration);
-  const double below = part_reach(a, part_a, plane, 1, as_balls);
+  const double below = part_reach(a, part_a, plane, 1, a_as_ball);
   if (!(below > 0)) return 0;
-  return std::min(below, part_reach(b, part_b, plane, -1, as_balls));
+  return std::min(below, part_reach(b, part_b, plane, -1, b_as_ball));
 }
 
 // The same of all that is in a box of one body (its frame) and of a part of another one by its
@@ -249,7 +249,7 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
       const Vec3 n = (cb - ca) / centers;
       return longest([&](const MovingBody& x, const MovingBody& y) {
         return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n,
-                          allowance, true);
+                          allowance, true, true);
       });
     }
   }
@@ -257,7 +257,7 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
   const Separation& s = separation(i, j);
   if (!(s.distance > sure)) return -never;
   double apart = longest([&](const MovingBody& x, const MovingBody& y) {
-    return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false);
+    return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false, false);
   });
   // where edges and faces turn past each other, a plane that turns with them lasts longer
   if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
@@ -289,18 +289,40 @@ double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& n
   });
 }
 
+// A part by its ball against the face of a polyhedron of the other body that it is most over.
+double Certificates::planes_apart(const ConvexPart& part, const ConvexPart& other, bool of_b,
+                                  double allowance) {
+  if (other.kind != PartKind::polyhedron) return 0;
+  const MovingBody& side = of_b ? b_ : a_;
+  const MovingBody& ball = of_b ? a_ : b_;
+  const Frame world = side.frame * other.placement;
+  const Vec3 center = ball.frame * part.bound_center;
+  int face = 0;
+  const double height = other.core->face_separation(world.to_local(center), face);
+  if (!(height > part.bound_radius)) return 0;
+  const Vec3 n = world.R * other.core->face(face).normal;
+  const Vec3 on_face = center - height * n, on_ball = center - part.bound_radius * n;
+  if (of_b)
+    return longest([&](const MovingBody& x, const MovingBody& y) {
+      return time_apart(x, part, y, other, -n, on_ball, on_face, allowance, true, false);
+    });
+  return longest([&](const MovingBody& x, const MovingBody& y) {
+    return time_apart(x, other, y, part, n, on_face, on_ball, allowance, false, true);
+  });
+}
+
 void Certificates::search(std::size_t few, const PartTree::Node& node, bool of_b, double allowance,
                           double& least) {
-  const PartTree& tree = *(of_b ? b_ : a_).body->shape_P->tree();
-  if (node.count > 0) {
-    for (const std::uint32_t number : tree.parts(node)) {
-      least = std::min(
-          least, of_b ? parts_apart(few, number, allowance) : parts_apart(number, few, allowance));
-      if (least == -never) return;
-    }
+  const Shape& shape = *(of_b ? b_ : a_).body->shape_P;
+  const ConvexPart& part = (of_b ? a_ : b_).body->shape_P->part(few);
+  if (node.is_leaf) {
+    const std::size_t number = node.first;
+    if (planes_apart(part, shape.part(number), of_b, allowance) >= least) return;
+    least = std::min(
+        least, of_b ? parts_apart(few, number, allowance) : parts_apart(number, few, allowance));
     return;
   }
-  const ConvexPart& part = (of_b ? a_ : b_).body->shape_P->part(few);
+  const PartTree& tree = *shape.tree();
   const PartTree::Node *first = &tree.node(node.first), *second = &tree.node(node.first + 1);
   double one = boxes_apart(part, *first, of_b, allowance);
   double two = boxes_apart(part, *second, of_b, allowance);

@@ -73,6 +73,7 @@ class Certificates {
   double parts_apart(std::size_t i, std::size_t j, double allowance);
   double boxes_apart(const ConvexPart& part, const PartTree::Node& node, bool of_b,
                      double allowance);
+  double planes_apart(const ConvexPart& part, const ConvexPart& other, bool of_b, double allowance);
   void search(std::size_t few, const PartTree::Node& node, bool of_b, double allowance,
               double& least);
   // Either body's arc has steps.

@@ -4,47 +4,41 @@
 
 namespace tw {
 
-namespace {
-
-constexpr std::uint32_t most_in_leaf = 2;
-
-}  // namespace
-
 PartTree::PartTree(std::span<const Aabb> boxes) {
+  std::vector<std::uint32_t> parts;
   for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    if (!boxes[i].empty()) numbers_.push_back(i);
-  nodes_.reserve(numbers_.size());
+    if (!boxes[i].empty()) parts.push_back(i);
+  nodes_.reserve(2 * parts.size());
   nodes_.emplace_back();
-  split(0, boxes, 0, static_cast<std::uint32_t>(numbers_.size()));
+  split(0, boxes, parts);
 }
 
-void PartTree::split(std::uint32_t node, std::span<const Aabb> boxes, std::uint32_t from,
-                     std::uint32_t to) {
+void PartTree::split(std::uint32_t node, std::span<const Aabb> boxes,
+                     std::span<std::uint32_t> parts) {
   Aabb box, centers;
-  for (std::uint32_t i = from; i < to; ++i) {
-    box.add(boxes[numbers_[i]]);
-    centers.add(boxes[numbers_[i]].center());
+  for (const std::uint32_t i : parts) {
+    box.add(boxes[i]);
+    centers.add(boxes[i].center());
   }
   nodes_[node].box = box;
-  const auto at = [&](std::uint32_t i) { return numbers_.begin() + i; };
-  if (to - from <= most_in_leaf) {
-    nodes_[node].first = from;
-    nodes_[node].count = to - from;
-    std::sort(at(from), at(to));
+  if (parts.size() == 1) {
+    nodes_[node].first = parts[0];
+    nodes_[node].is_leaf = true;
     return;
   }
   int axis = 0;
   centers.size().maxCoeff(&axis);
-  const std::uint32_t middle = from + (to - from) / 2;
-  std::nth_element(at(from), at(middle), at(to), [&](std::uint32_t i, std::uint32_t j) {
+  const std::size_t middle = parts.size() / 2;
+  const auto half = parts.begin() + static_cast<std::ptrdiff_t>(middle);
+  std::nth_element(parts.begin(), half, parts.end(), [&](std::uint32_t i, std::uint32_t j) {
     const double a = boxes[i].center()[axis], b = boxes[j].center()[axis];
     return a < b || (a == b && i < j);
   });
   const auto children = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = children;
   nodes_.resize(children + 2);
-  split(children, boxes, from, middle);
-  split(children + 1, boxes, middle, to);
+  split(children, boxes, parts.first(middle));
+  split(children + 1, boxes, parts.subspan(middle));
 }
 
 }  // namespace tw

@@ -3,7 +3,7 @@
 //
 // Boxes are split at the median of their centres along the axis where these spread most.
 //
-// Cost: 32 to 64 bytes a part; a query visits some twenty boxes and what it finds.
+// Cost: 128 bytes a part; a query visits some twenty boxes and what it finds.
 // Frames: the shape's own, metres.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -21,11 +21,10 @@ namespace tw {
 class PartTree {
  public:
   struct Node {
-    Aabb box;
-    // of a leaf: its parts are numbers()[first], numbers()[first + 1] ..; else its children are
-    // nodes()[first] and nodes()[first + 1]
+    Aabb box;  // of a leaf that of its part
+    // of a leaf the number of its part; else its children are node(first) and node(first + 1)
     std::uint32_t first = 0;
-    std::uint32_t count = 0;  // 0: not a leaf
+    bool is_leaf = false;
   };
 
   // One finite box for each part; an empty box is of a part that does not exist.  Not all are
@@ -34,12 +33,8 @@ class PartTree {
 
   const Node& root() const { return nodes_.front(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
-  // The parts of a leaf, ascending.
-  std::span<const std::uint32_t> parts(const Node& leaf) const {
-    return {numbers_.data() + leaf.first, leaf.count};
-  }
 
-  // Calls visit(number) for all parts of those leaves whose boxes overlap `box`, in no order.
+  // Calls visit(number) for all parts whose boxes overlap `box`, in no order.
   template <class Visit>
   void overlapping(const Aabb& box, Visit&& visit) const {
     visit_from(root(), box, visit);
@@ -49,17 +44,14 @@ class PartTree {
   template <class Visit>
   void visit_from(const Node& node, const Aabb& box, Visit& visit) const {
     if (!node.box.overlaps(box)) return;
-    if (node.count == 0) {
-      visit_from(nodes_[node.first], box, visit);
-      visit_from(nodes_[node.first + 1], box, visit);
-      return;
-    }
-    for (const std::uint32_t number : parts(node)) visit(number);
+    if (node.is_leaf) return static_cast<void>(visit(node.first));
+    visit_from(nodes_[node.first], box, visit);
+    visit_from(nodes_[node.first + 1], box, visit);
   }
-  void split(std::uint32_t node, std::span<const Aabb> boxes, std::uint32_t from, std::uint32_t to);
+  // Makes the node over these parts.
+  void split(std::uint32_t node, std::span<const Aabb> boxes, std::span<std::uint32_t> parts);
 
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> numbers_;
 };
 
 }  // namespace tw

@@ -1,0 +1,66 @@
+;; Height fields.
+;; SPDX-License-Identifier: LGPL-3.0-or-later
+(load "helpers.scm")
+(use-modules (timewarp vectors) (ice-9 receive))
+
+(test-begin "height-field")
+
+(define rows '((0 0 0 0) (0 1 2 0) (0 0 0 0)))
+(define typed (list->typed-array 'f64 2 '((0.0 0.0) (0.0 1.0))))
+
+(test-equal "prints as what it is" "#<shape height field>" (format #f "~s" (height-field rows)))
+(test-equal "its grid is in the middle" '(#(-3.0 -0.5 -2.0) #(3.0 0.5 2.0))
+  (in-world ()
+    (let ((ground (add-body! #:shape (height-field rows #:spacing #(2 0.5)) #:fixed? #t)))
+      (receive box (bounding-box ground) box))))
+;; rows along y: the corner of height 2 is at x = 0.5 in the middle row
+(test-assert "a ray finds the height at a corner of the grid"
+  (in-world ()
+    (add-body! #:shape (height-field rows) #:fixed? #t)
+    (close? 3 (hit-distance (ray-cast #(0.5 0 5) #(0 0 -1))) 1e-12)))
+(test-assert "cells are cut along the diagonal of greater x and y"
+  (in-world ()
+    (add-body! #:shape (height-field typed) #:fixed? #t)
+    (and (close? 4.5 (hit-distance (ray-cast #(0 0 5) #(0 0 -1))) 1e-12)
+         (close? 4.75 (hit-distance (ray-cast #(0.25 -0.25 5) #(0 0 -1))) 1e-12))))
+(test-assert "a ball lies in a hollow"
+  (in-world ()
+    (let ((ball (begin
+                  (add-body! #:shape (height-field '((1 1 1) (1 0 1) (1 1 1))) #:fixed? #t)
+                  (add-body! #:shape (sphere 0.2) #:position #(0.1 0.05 0.9)))))
+      (set-contact-parameters! #t #t #:restitution 0 #:friction 0.5 #:rolling-friction 0.01)
+      (run! #:until 6)
+      (and (< (norm (velocity ball)) 1e-6)
+           ;; it lies on the steep faces beside the diagonal, along which these are level
+           (close? (vector-ref (position ball) 0) (vector-ref (position ball) 1) 1e-3)
+           (close? (* 0.2 (sqrt 3)) (vector-ref (position ball) 2) 1e-3)))))
+(test-assert "what is placed on it has the same end in one piece and in many"
+  (let ((run (lambda (step)
+               (in-world ()
+                 (set-contact-parameters! #t #t #:restitution 0.4 #:friction 0.5)
+                 (add-body! #:shape (height-field '((0 0.3 0 0.2) (0.1 0 0.2 0) (0 0.2 0 0.3))
+                                                  #:spacing 0.4)
+                            #:fixed? #t)
+                 (add-body! #:shape (box 0.2 0.15 0.1) #:position #(0.1 0 0.6)
+                            #:angular-velocity #(2 1 0))
+                 (do ((t step (+ t step))) ((> t 1)) (run! #:until t))
+                 (run! #:until 1)
+                 (all-poses)))))
+    (equal? (run 1) (run 0.07))))
+
+(test-message "no array" "heights" (height-field 3))
+(test-message "a vector" "array of rank 2" (height-field #(1 2 3)))
+(test-message "rows of different lengths" "rows of one length" (height-field '((0 0) (0 0 0))))
+(test-message "one row" "1 rows of 3 heights; expected at least 2 of 2" (height-field '((0 0 0))))
+(test-message "no number" "heights" (height-field '((0 0) (0 a))))
+(test-message "not finite" "height 1 in row 1" (height-field '((0 0) (0 +inf.0))))
+(test-message "no spacing" "spacing" (height-field rows #:spacing 0))
+(test-message "a spacing of three" "spacing" (height-field rows #:spacing #(1 2 3)))
+(test-message "it does not move" "is a height field" (add-body! #:shape (height-field rows)))
+(test-message "nor with a mass" "height field that moves freely"
+  (add-body! #:shape (height-field rows) #:mass 1 #:inertia #(1 1 1)))
+(test-message "it has no volume" "without mass" (shape-volume (height-field rows)))
+(test-message "no part of a union" "body of its own" (union (sphere 1) (height-field rows)))
+(test-message "not placed within a shape" "#:position" (placed (height-field rows)))
+
+(test-end "height-field")
