@@ -39,8 +39,6 @@ inline constexpr double damping_ratio = 0.5;
 inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
 // Smooth friction reaches three quarters of the cone at about this speed, m/s.
 inline constexpr double smooth_speed = 1e-4;
-// Rolling friction reaches seven tenths of its most at this share of sqrt(g/size).
-inline constexpr double slow_turn_share = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
 inline constexpr double tangential_share = 0.8;
 // m/s^2: stands in for gravity where there is none.
@@ -194,8 +192,6 @@ inline constexpr double settling = 0.25;
 // It trembles in its place if the second peak exceeds the first by no more, and the way made is at
 // most this share of peak times time.
 inline constexpr double growth = 1.1, drift = 0.1;
-// What rolling friction holds creeps at up to this share, at 0.95 of the slope that it holds on.
-inline constexpr double creep_share = 3 * slow_turn_share;
 // What was always slower than this share has stopped, up to rounding.
 inline constexpr double rounding_share = 1e-7;
 // What touches nothing has stopped below this one, or where it settles below that.

@@ -33,7 +33,6 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
   c.law = parameters.friction_law;
   c.rolling = parameters.rolling_friction;
   c.spinning = parameters.spinning_friction;
-  c.slow_turn = answer::slow_turn_share * std::sqrt(g / size);
   return c;
 }
 

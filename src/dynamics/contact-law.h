@@ -12,11 +12,11 @@
 //   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
 // so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
-// Rolling and spinning are resisted by a torque on b, of the angular velocity w = w_b - w_a with
-// its parts w_n along the normal and w_t across it,
-//   M = -N (rho_r w_t/sqrt(|w_t|^2 + w0^2) + rho_s w_n/sqrt(|w_n|^2 + w0^2)),
-// rho the lengths of the pair: what the torque holds on a slope creeps, at w0 on a slope of 0.7 of
-// the steepest.
+// Rolling and spinning are resisted by a torque on b in the same manner, with a bend beta (a
+// rotation vector, in the frame of the reference body) and the angular velocity w = w_b - w_a:
+//   M* = -K beta - C w,   M = M* with its part across n cut to rho_r N, that along n to rho_s N,
+//   beta' = (-M - K beta)/C,   K = kt (size/2)^2,   C = ct (size/2)^2
+// with rho the lengths of the pair: as if the stretch held it at a lever of half the width.
 //
 // Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley,
 // J. Appl. Mech. 42 (1975).
@@ -44,8 +44,9 @@ struct ContactConstants {
   double depth = 0;  // d0, m: under the lighter body's own weight
   FrictionLaw law = FrictionLaw::anchored;
   double rolling = 0, spinning = 0;  // rho_r, rho_s, m
-  double slow_turn = 0;              // w0, rad/s
 
+  // m^2: of kt and ct in a turn.
+  double squared_lever() const { return 0.25 * size * size; }
   // m: gaps are small or large beside this.
   double gap_scale() const { return std::min(depth, answer::widest_gap_scale * size); }
 };

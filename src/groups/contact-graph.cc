@@ -121,14 +121,15 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
   const double size = std::min(body_a.least_width, body_b.least_width);
   // where the old ones are, but those that were taken
   struct Old {
-    Vec3 point;
+    Vec3 point, normal;
     bool taken = false;
   };
   thread_local std::vector<Old> there;
   there.clear();
   if (pair.count > 0)
     each_contact(*old, [&](std::uint32_t c) {
-      there.push_back({arc.contact_force(static_cast<int>(c), now).point});
+      const ContactForce f = arc.contact_force(static_cast<int>(c), now);
+      there.push_back({f.point, f.normal});
     });
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
     NewContact& fresh = contacts[c];
@@ -149,11 +150,22 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     const GroupContact& was = arc.start().contacts[old->first + best];
     fresh.law_before = was.law;
     fresh.contact.offset = released(was.offset, fresh.gap);
-    Vec3 stretch =
-        work.attitude(tag.reference) * arc.stretch(static_cast<int>(old->first + best), now);
+    const Quat attitude = work.attitude(tag.reference),
+               fresh_attitude = work.attitude(fresh.tag.reference);
+    const int number = static_cast<int>(old->first + best);
+    Vec3 stretch = attitude * arc.stretch(number, now);
     if (tag.reference != fresh.tag.reference) stretch = -stretch;
-    fresh.contact.stretch =
-        work.attitude(fresh.tag.reference).conjugate() * turned_into(stretch, fresh.normal);
+    fresh.contact.stretch = fresh_attitude.conjugate() * turned_into(stretch, fresh.normal);
+
+    // the bend across the normal as the stretch; that along it stays so, whose normal ever it is
+    const ContactConstants& law = fresh.contact.law;
+    if (!(law.rolling > 0 || law.spinning > 0)) continue;
+    const Vec3 bend = attitude * arc.bend(number, now);
+    const double along = bend.dot(there[best].normal);
+    Vec3 across = bend - along * there[best].normal;
+    if (tag.reference != fresh.tag.reference) across = -across;
+    fresh.contact.bend =
+        fresh_attitude.conjugate() * (turned_into(across, fresh.normal) + along * fresh.normal);
   }
 }
 
@@ -440,6 +452,7 @@ void carry(Regrouping& work, const PairBefore& old) {
     const GroupContact& known = group.arc->start().contacts[c];
     NewContact contact{known, group.tags[c], f.gap, f.normal, f.point, known.law};
     contact.contact.stretch = group.arc->stretch(static_cast<int>(c), now);
+    contact.contact.bend = group.arc->bend(static_cast<int>(c), now);
     work.contacts.push_back(contact);
   });
 }

@@ -64,6 +64,7 @@ void each_word(const GroupContact& contact, Put&& put) {
   put(contact.offset);
   put(contact.share);
   each_word(contact.stretch, put);
+  each_word(contact.bend, put);
 }
 
 }  // namespace tw

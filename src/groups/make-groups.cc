@@ -69,9 +69,9 @@ void start_members(const Regrouping& work, const Group& group, StartOfMembers& m
   }
 }
 
-// The law of a contact that stands becomes another one: its offset and its stretch go along so that
-// it presses and holds as it did.  For as long as two bodies are in contact their law gets stiffer
-// alone, and a stiffer spring has less energy at the same force.
+// The law of a contact that stands becomes another one: its offset, its stretch and its bend go
+// along so that it presses and holds as it did.  For as long as two bodies are in contact their law
+// gets stiffer alone, and a stiffer spring has less energy at the same force.
 void change_law(NewContact& c, const ContactConstants& law) {
   GroupContact& contact = c.contact;
   contact.law = law;
@@ -80,7 +80,9 @@ void change_law(NewContact& c, const ContactConstants& law) {
   if (was.k == law.k && was.hardening == law.hardening) return;
   const double force = spring_force(was, contact.share, contact.offset - c.gap);
   if (force > 0) contact.offset = spring_depth(law, contact.share, force) + c.gap;
-  if (law.kt > 0) contact.stretch *= was.kt / law.kt;
+  if (!(law.kt > 0)) return;
+  contact.stretch *= was.kt / law.kt;
+  contact.bend *= was.kt / law.kt;
 }
 
 // Springs and holds among the members, each once.
@@ -286,16 +288,11 @@ void make_groups(Regrouping& work) {
   // who touches anything at all, who hangs together, and where that comes to rest in part
   const std::size_t count = work.successors.size();
   work.touching.assign(count, false);
-  work.braked.assign(count, false);
   work.stillness.resize(count);
   for (const ContactPair& pair : work.pairs)
     for (const BodyId id : {pair.a(), pair.b()})
-      if (const Successor* member = work.successor_of(id); work.changes(member)) {
-        const std::size_t place = work.place_of(member);
-        work.touching[place] = true;
-        if (pair.count > 0 && work.contacts[pair.first].contact.law.rolling > 0)
-          work.braked[place] = true;
-      }
+      if (const Successor* member = work.successor_of(id); work.changes(member))
+        work.touching[work.place_of(member)] = true;
   std::vector<bool> held = work.touching;
   // what is joined never parts
   for (std::size_t i = 0; i < count; ++i)

@@ -14,6 +14,47 @@ namespace {
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
+// Rolling and spinning friction of a contact that touches: a torque on b against the turn of b
+// against a, d = Ja u_a + Jb u_b again.
+struct TurnSpring {
+  Mat36 Ja = Mat36::Zero(), Jb = Mat36::Zero();
+  double k = 0, rolling = 0, spinning = 0;
+  Vec3 torque = Vec3::Zero();
+  // -dM by the turn, and dM by the load
+  Mat3 slope = Mat3::Zero();
+  Vec3 by_load = Vec3::Zero();
+
+  bool resists() const { return k > 0; }
+  void set(const Vec3& n, const Vec3& turn, double load, bool holds);
+};
+
+// M = -K turn, its part across n cut to rho_r N and that along n to rho_s N.
+void TurnSpring::set(const Vec3& n, const Vec3& turn, double load, bool holds) {
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  torque.setZero();
+  slope.setZero();
+  by_load.setZero();
+  const Vec3 roll = -k * (across * turn);
+  const double length = roll.norm(), most_roll = rolling * load;
+  if (length < most_roll || (holds && rolling > 0)) {
+    torque += roll;
+    slope += k * across;
+  } else if (load > 0 && length > 0) {
+    const Vec3 e = roll / length;
+    torque += most_roll * e;
+    slope += most_roll * k / length * (across - e * e.transpose());
+    by_load += rolling * e;
+  }
+  const double spin = -k * n.dot(turn), most_spin = spinning * load;
+  if (std::abs(spin) < most_spin || (holds && spinning > 0)) {
+    torque += spin * n;
+    slope += k * along;
+  } else if (load > 0) {
+    torque += std::copysign(most_spin, spin) * n;
+    by_load += std::copysign(spinning, spin) * n;
+  }
+}
+
 // A contact that touches.  Rotations are counted as the way of the farthest point.
 struct Spring {
   int a = -1, b = -1;  // members; -1: an outside body
@@ -28,6 +69,7 @@ struct Spring {
   Mat3 slope = Mat3::Zero();  // -df/dd
   double load = 0;
   bool slips = false;
+  TurnSpring turning;
 };
 
 class Balance {
@@ -105,10 +147,11 @@ class Balance {
   }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  static Vec3 way(const Spring& s, const std::vector<Vec6>& u) {
+  static Vec3 way(const Spring& s, const std::vector<Vec6>& u) { return way(s, s.Ja, s.Jb, u); }
+  static Vec3 way(const Spring& s, const Mat36& Ja, const Mat36& Jb, const std::vector<Vec6>& u) {
     Vec3 d = Vec3::Zero();
-    if (s.a >= 0) d += s.Ja * u[at(s.a)];
-    if (s.b >= 0) d += s.Jb * u[at(s.b)];
+    if (s.a >= 0) d += Ja * u[at(s.a)];
+    if (s.b >= 0) d += Jb * u[at(s.b)];
     return d;
   }
 
@@ -117,6 +160,8 @@ class Balance {
       const Mat3 along = s.n * s.n.transpose(), across = Mat3::Identity() - along;
       const Vec3 d = way(s, u_);
       s.load = std::max(0.0, -s.k * s.n.dot(d));
+      if (TurnSpring& t = s.turning; t.resists())
+        t.set(s.n, way(s, t.Ja, t.Jb, u_), s.load, all_hold);
       if (!s.sliding.isZero()) {
         s.friction = s.mu * s.load * s.sliding;
         s.slope = all_hold || s.load > 0 ? Mat3(s.k * (s.n + s.mu * s.sliding) * s.n.transpose())
@@ -152,6 +197,10 @@ class Balance {
     for (const Spring& s : springs_) {
       if (s.a >= 0) rest_[at(s.a)] += s.Ja.transpose() * s.force;
       if (s.b >= 0) rest_[at(s.b)] += s.Jb.transpose() * s.force;
+      const TurnSpring& t = s.turning;
+      if (!t.resists()) continue;
+      if (s.a >= 0) rest_[at(s.a)] += t.Ja.transpose() * t.torque;
+      if (s.b >= 0) rest_[at(s.b)] += t.Jb.transpose() * t.torque;
     }
     double sum = 0;
     for (std::size_t i = 0; i < rest_.size(); ++i) {
@@ -177,6 +226,17 @@ class Balance {
         for (int x = 0; x < 2; ++x)
           if (body[y] >= 0 && body[x] >= 0)
             add_block(body[y], body[x], J[y]->transpose() * s.slope * *J[x]);
+      const TurnSpring& t = s.turning;
+      if (!t.resists()) continue;
+      // dN = -k n.dd, where it presses
+      const Vec3 by_way = s.load > 0 ? Vec3(s.k * t.by_load) : Vec3(Vec3::Zero());
+      const Mat36* turn[2] = {&t.Ja, &t.Jb};
+      for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 2; ++x)
+          if (body[y] >= 0 && body[x] >= 0)
+            add_block(
+                body[y], body[x],
+                turn[y]->transpose() * (t.slope * *turn[x] + by_way * (s.n.transpose() * *J[x])));
     }
     right_.resize(6 * start_.members.size());
     for (std::size_t i = 0; i < rest_.size(); ++i)
@@ -233,11 +293,23 @@ double smaller_size(const Scene& scene, const ContactTag& tag) {
   return std::min(scene.body(tag.reference).least_width, scene.body(tag.other).least_width);
 }
 
-// Of the normal spring, and of the stretch as far as the cone holds it, J (pack_energy).
-double energy_of(const GroupContact& c, double gap) {
+// Of the bend as far as friction holds it, J.
+double bend_energy_of(const GroupContact& c, const Vec3& n, double load) {
+  const double k = c.share * c.law.kt * c.law.squared_lever();
+  if (!(k > 0)) return 0;
+  const double along = n.dot(c.bend), across = (c.bend - along * n).squaredNorm();
+  const double roll = c.law.rolling * load, spin = c.law.spinning * load;
+  return 0.5 *
+         (std::min(k * across, roll * roll / k) + std::min(k * along * along, spin * spin / k));
+}
+
+// Of the normal spring, and of the stretch and the bend as far as friction holds them, J
+// (pack_energy).  `n`: a's frame.
+double energy_of(const GroupContact& c, const Vec3& n, double gap) {
   const double depth = c.offset - gap;
-  const double cone = c.law.mu * spring_force(c.law, c.share, depth), kt = c.share * c.law.kt;
-  const double normal = spring_energy(c.law, c.share, depth);
+  const double load = spring_force(c.law, c.share, depth);
+  const double cone = c.law.mu * load, kt = c.share * c.law.kt;
+  const double normal = spring_energy(c.law, c.share, depth) + bend_energy_of(c, n, load);
   if (c.law.law != FrictionLaw::anchored || !(kt > 0)) return normal;
   return normal + 0.5 * std::min(kt * c.stretch.squaredNorm(), cone * cone / kt);
 }
@@ -263,6 +335,18 @@ Spring spring_of(const GroupStart& start, const NewContact& c, std::size_t numbe
   };
   if (contact.a >= 0) s.Ja = jacobian(s.a = contact.a, -1);
   if (contact.b >= 0) s.Jb = jacobian(s.b = contact.b, 1);
+
+  const ContactConstants& law = contact.law;
+  if (!(law.ct > 0 && (law.rolling > 0 || law.spinning > 0))) return s;
+  TurnSpring& t = s.turning;
+  t.k = contact.share * law.kt * law.squared_lever();
+  t.rolling = law.rolling;
+  t.spinning = law.spinning;
+  const auto turn = [&](int member, double sign) {
+    return Mat3(sign / start.members[static_cast<std::size_t>(member)].radius * Mat3::Identity());
+  };
+  if (contact.a >= 0) t.Ja.rightCols<3>() = turn(contact.a, -1);
+  if (contact.b >= 0) t.Jb.rightCols<3>() = turn(contact.b, 1);
   return s;
 }
 
@@ -320,15 +404,17 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
   for (const Spring& s : balance.springs()) {
     GroupContact& c = start.contacts[s.number];
     const NewContact& looks = contacts[s.number];
-    work.tally.placed_energy -= energy_of(c, looks.gap);
+    const Quat into = work.attitude(looks.tag.reference).conjugate();
+    work.tally.placed_energy -= energy_of(c, into * looks.normal, looks.gap);
     c.offset =
         s.load > 0 ? spring_depth(c.law, c.share, s.load) + looks.gap : std::min(looks.gap, 0.0);
     c.stretch = Vec3::Zero();
     if (s.kt > 0) {
       const Vec3 stretch = (balance.slides(s) ? answer::preload_beyond : 1) / -s.kt * s.friction;
-      c.stretch = work.attitude(looks.tag.reference).conjugate() * stretch;
+      c.stretch = into * stretch;
     }
-    work.tally.placed_energy += energy_of(c, looks.gap);
+    if (s.turning.resists()) c.bend = into * Vec3(-1 / s.turning.k * s.turning.torque);
+    work.tally.placed_energy += energy_of(c, into * looks.normal, looks.gap);
   }
 }
 

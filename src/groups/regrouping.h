@@ -71,7 +71,6 @@ struct Regrouping {
   std::vector<PairBefore> pairs_before;  // of processes with new arcs, ascending
   bool has_border = false;
   std::vector<bool> touching;        // of the successors: who is in contact with anything
-  std::vector<bool> braked;          // and resists rolling there
   std::vector<Stillness> stillness;  // of the successors
   std::vector<bool> rests;           // of the successors: who comes to rest
   std::vector<ContactPair> pairs;    // from here on; their contacts in a row of `contacts`

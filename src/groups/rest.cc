@@ -28,10 +28,9 @@ double least_watch(const Scene& scene, const Body& body) {
 }
 
 // Watched to the end, and stopped, or, where it touches anything, settling or trembling in its
-// place: what swings a little on a joint or a spring swings on.  What rolling friction holds
-// creeps.
+// place: what swings a little on a joint or a spring swings on.
 bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body, double now,
-              bool touches, bool braked) {
+              bool touches) {
   const double age = now - book.since;
   if (book.since == never || age < book.length) return false;
   const double peak = std::max(book.early_peak, book.late_peak);
@@ -42,7 +41,6 @@ bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body,
     return share <= answer::stopped_share || (settles && share <= answer::rounding_share);
   if (settles || share <= answer::rounding_share) return true;
   if (book.late_peak > answer::growth * book.early_peak) return false;
-  if (braked && share <= answer::creep_share) return true;
   const double way =
       (body.point.x - book.x).norm() + body.point.q.angularDistance(book.q) * body.body->radius;
   return way <= answer::drift * peak * age;
@@ -87,8 +85,7 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   double& peak = age < 0.5 * book.length ? book.early_peak : book.late_peak;
   peak = std::max(peak, speed);
   const bool touches = work.touching[work.place_of(&successor)];
-  const bool braked = work.braked[work.place_of(&successor)];
-  if (age < book.length || is_still(work.scene(), book, body, now, touches, braked)) return book;
+  if (age < book.length || is_still(work.scene(), book, body, now, touches)) return book;
   if (book.late_peak > answer::growth * book.early_peak) return begun;
   if (!touches) {
     // a longer look at what decays slowly
@@ -110,10 +107,9 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
     const ForcesPtr& forces = successor.data.forces;
     const Multibody* multibody = successor.body->multibody;
     const bool carried = multibody && multibody->base_motion;
-    rests[i] = work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
-               !carried &&
-               is_still(work.scene(), work.stillness[i], placed(successor), work.now(),
-                        work.touching[i], work.braked[i]);
+    rests[i] =
+        work.changes(&successor) && (!forces || forces->longest_unlooked() == never) && !carried &&
+        is_still(work.scene(), work.stillness[i], placed(successor), work.now(), work.touching[i]);
   }
 
   const auto wake = [&](BodyId id) {

@@ -75,20 +75,6 @@ TW_LANES void set_drag(const ContactPack& pack, const PackState& s, PackLinear& 
   o.more_turn = (pack.half_size * (s.drag + s.depth * slope)) * o.dw;
 }
 
-void set_resistance(const ContactPack& pack, const PackState& s, PackLinear& o) {
-  const Lanes slow = pack.slow_turn * pack.slow_turn;
-  const Lanes along = dot(s.n, o.dw), spin = along * along + slow;
-  const LaneVec across = o.dw - along * s.n;
-  const Lanes inverse = lanes(1) / sqrt(dot(across, across) + slow);
-  const LaneVec a = inverse * across;
-  const Lanes by_roll = -(s.N * pack.rolling * inverse);
-  const Lanes by_spin = -(s.N * pack.spinning * slow / (spin * sqrt(spin)));
-  const LaneMat across_n = scalar_matrix(lanes(1)) - outer(s.n, s.n);
-  o.twist = by_roll * (across_n - outer(a, a)) + by_spin * outer(s.n, s.n);
-  o.resisted = s.resisted;
-  o.resistance = -(s.N * s.resisted);
-}
-
 // dN, by dp and dv'
 TW_LANES Lanes normal_change(const PackLinear& o, const LaneVec& dp, const LaneVec& dv) {
   return dot(o.g, dp) - o.kb * dot(o.n, dv);
@@ -120,7 +106,7 @@ TW_LANES LaneVec stretched(const PackLinear& o, const LaneVec& y) {
 // `grounded`: body a does not change
 template <ContactFeature feature, bool grounded>
 void change(const ContactPack& pack, const PackLinear& o, const BodyChange* changes,
-            const LaneVec& stretch_side, PackChange& out) {
+            const PackSides& sides, PackChange& out) {
   constexpr bool flat = is_flat(feature);
   // relative displacement in a's frame
   const LaneChange b = gather(pack, changes, pack.b);
@@ -171,7 +157,7 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   Lanes dN = normal_change(o, dp, dv);
   if constexpr (runs(feature)) dN = dN + dot(o.h, turned);
   out.friction = friction_change<flat>(o, dN, dn, dv);
-  const LaneVec rest = out.friction - pack.ct * stretch_side;
+  const LaneVec rest = out.friction - pack.ct * sides.stretch;
   out.f = dN * o.n + out.friction + stretched(o, rest);
   if constexpr (!flat) out.f = out.f + o.N * dn;
   if (o.deep) {
@@ -179,11 +165,14 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
     out.torque = dot(o.n, dp) * o.more_turn - o.turn_damper * b.w;
     if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
   }
-  if (o.resists) {
-    LaneVec turning = b.w;
-    if constexpr (!grounded) turning = turning - a.w - cross(a.th, o.dw);
-    LaneVec torque = o.twist * turning - dN * o.resisted;
-    if constexpr (!grounded) torque = torque + cross(a.th, o.resistance);
+  if (pack.bend >= 0) {
+    const ResistanceLinear& r = o.resistance;
+    LaneVec dw = b.w;
+    if constexpr (!grounded) dw = dw - a.w - cross(a.th, o.dw);
+    out.resistance = dN * r.m + change_by_turn(r, dw);
+    if constexpr (!flat) out.resistance = out.resistance + change_by_normal(r, dn);
+    LaneVec torque = with_bend(r, out.resistance) - bent(r, r.c * sides.bend);
+    if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
     out.torque = o.deep ? out.torque + torque : torque;
   }
   if constexpr (!grounded) out.f = out.f + cross(a.th, o.f);
@@ -235,11 +224,11 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
   set_drag(pack, s, o);
   o.turns = s.turns;
-  o.resists = pack.resists;
-  if (o.resists) set_resistance(pack, s, o);
+  if (pack.bend >= 0) linearise_resistance(pack.resistance, s.resistance, s.n, o.resistance);
 }
 
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
+  if (pack.bend >= 0) set_resistance_stage(sigma, o.resistance);
   if (pack.law != FrictionLaw::anchored) return;
   const Lanes s = lanes(sigma), zero = lanes(0), one = lanes(1);
   const Lanes slip = one / (s + o.tau * (one - o.q)), relax = one / (s + o.tau);
@@ -251,7 +240,7 @@ void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
 }
 
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
-                 const LaneVec& stretch_side, bool outside_changes, PackChange& out) {
+                 const PackSides& sides, bool outside_changes, PackChange& out) {
   const bool grounded = pack.grounded && !outside_changes;
   const auto choose = [grounded](auto with_ground, auto without) {
     return grounded ? with_ground : without;
@@ -264,7 +253,7 @@ void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyCh
           ? choose(change<F::tangent_plane, true>, change<F::tangent_plane, false>)
       : runs(pack.feature) ? choose(change<F::crossing, true>, change<F::crossing, false>)
                            : choose(change<F::point, true>, change<F::point, false>);
-  chosen(pack, linear, changes, stretch_side, out);
+  chosen(pack, linear, changes, sides, out);
 }
 
 LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& friction) {
@@ -316,6 +305,35 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
   if constexpr (running) by_turn = columns(turn);
 }
 
+// Nn
+TW_LANES LaneMat normal_turn(const ContactPack& pack, const PackLinear& o) {
+  const LaneMat project = scalar_matrix(lanes(1)) - outer(o.n, o.n);
+  return o.inverse_length *
+         (pack.feature == ContactFeature::line ? project - outer(o.l, o.l) : project);
+}
+
+// dM by dN, dw' and dn', bends eliminated.  What n.df has of dn' alone, -f.dn', is taken off.
+struct Resisting {
+  LaneVec m;
+  LaneMat by_turn, by_normal;
+};
+
+template <bool flat>
+TW_LANES void set_resisting(const PackLinear& o, Resisting& r) {
+  const ResistanceLinear& s = o.resistance;
+  const Lanes zero = lanes(0), one = lanes(1);
+  const LaneVec unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+  LaneVec turn[3], normal[3];
+  r.m = with_bend(s, s.m);
+  for (int i = 0; i < 3; ++i) {
+    turn[i] = with_bend(s, change_by_turn(s, unit[i]));
+    if constexpr (!flat)
+      normal[i] = with_bend(s, change_by_normal(s, unit[i])) + dot(o.f, unit[i]) * r.m;
+  }
+  r.by_turn = columns(turn);
+  if constexpr (!flat) r.by_normal = columns(normal);
+}
+
 template <ContactFeature feature>
 void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
             PackBlocks& out) {
@@ -333,10 +351,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     keep = keep - turn;
     point_om = outer(r.path, r.along_om) - outer(pack.radius_b * r.ma, r.turn_om);
   } else if constexpr (!flat) {
-    const LaneMat project = scalar_matrix(lanes(1)) - outer(o.n, o.n);
-    turn = o.inverse_length *
-           (pack.feature == ContactFeature::line ? project - outer(o.l, o.l) : project);
-    turn = pack.radius_b * turn;
+    turn = pack.radius_b * normal_turn(pack, o);
     keep = keep - turn;
   }
 
@@ -355,6 +370,19 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
   const LaneMat by_v = fv + inverse * (fq - times_cross(fv, o.wb));
   const LaneVec arm[2] = {o.ra, o.rb}, reach[2] = {o.sa, o.sb};
 
+  // what resists, and dn' by dp and dom
+  Resisting resisting;
+  LaneMat n_p, n_om;
+  if (pack.bend >= 0) {
+    set_resisting<flat>(o, resisting);
+    if constexpr (running) {
+      n_p = outer(o.running.ma, o.running.turn_p);
+      n_om = outer(o.running.ma, o.running.turn_om);
+    } else if constexpr (!flat) {
+      n_p = normal_turn(pack, o);
+    }
+  }
+
   // outside bodies have no unknowns
   for (int X = pack.grounded ? 1 : 0; X < 2; ++X) {
     const Lanes sign = X == 1 ? lanes(1) : lanes(-1);
@@ -365,7 +393,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     LaneMat f_th = (-sign) * times_cross(fq, arm[X]);
     if constexpr (running || rolling) f_th = f_th + sign * fq_om;
     if (X == 0) f_th = f_th - times_cross(fvw, o.sa) + times_cross(fv, o.vr);
-    const LaneMat in_a = f_th;  // as a sees it
+    const LaneMat f_th_in_a = f_th;  // as a sees it
     if (X == 0) f_th = f_th - cross_lanes(o.f);
     const LaneMat f_w = (-sign) * times_cross(fv, reach[X]);
     const LaneMat f_v = sign * by_v;
@@ -394,16 +422,23 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     if constexpr (!flat) sb_v = (-sign * inverse) * turn;
     const LaneMat s_v[2] = {sa_v, sb_v}, s_L[2] = {sa_th * P, sb_th * P};
 
-    // dM: n.df is dN where n keeps still
+    // dM, with dN = n.df + f.dn'
     LaneMat resist_v, resist_L;
-    if (o.resists) {
-      const auto by_load = [&](const LaneMat& df) {
-        return lanes(-1) * outer(o.resisted, transposed_times(df, o.n));
-      };
-      resist_v = by_load(f_v);
-      LaneMat resist_th = by_load(in_a);
-      if (X == 0) resist_th = resist_th + times_cross(o.twist, o.dw) - cross_lanes(o.resistance);
-      resist_L = resist_th * P + (by_load(f_w) + sign * o.twist) * V;
+    if (pack.bend >= 0) {
+      const auto load_of = [&](const LaneMat& df) { return transposed_times(df, o.n); };
+      resist_v = outer(resisting.m, load_of(f_v));
+      LaneMat resist_th = outer(resisting.m, load_of(f_th_in_a));
+      if constexpr (!flat) {
+        const LaneMat n_v = (sign * inverse) * n_p;
+        LaneMat n_th = n_p * dp_th;
+        if constexpr (running) n_th = n_th + sign * n_om;
+        resist_v = resist_v + resisting.by_normal * n_v;
+        resist_th = resist_th + resisting.by_normal * n_th;
+      }
+      if (X == 0)
+        resist_th =
+            resist_th + times_cross(resisting.by_turn, o.dw) - cross_lanes(o.resistance.torque);
+      resist_L = resist_th * P + (outer(resisting.m, load_of(f_w)) + sign * resisting.by_turn) * V;
     }
 
     // torque s x f, force; on a with the opposite sign
@@ -414,7 +449,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       part[0][1] = side * f_L;
       part[1][0] = side * (cross_times(reach[Y], f_v) - cross_times(o.f, s_v[Y]));
       part[1][1] = side * (cross_times(reach[Y], f_L) - cross_times(o.f, s_L[Y]));
-      if (o.resists) {
+      if (pack.bend >= 0) {
         part[1][0] = part[1][0] + side * resist_v;
         part[1][1] = part[1][1] + side * resist_L;
       }

@@ -15,11 +15,8 @@
 //   dT  = -c (dv' - n n.dv') + c v_r.n dn' + n c v_r.dn' + (dc/dd) u n.dp    (T = -c u, where deep)
 // and a torque Q = -C (w_b - w_a), C = c d size/2:
 //   dQ  = -C (dw_b - dw_a) + (dC/dd) (w_b - w_a) n.dp
-// Where rolling and spinning are resisted by M = -N m, with w = w_b - w_a and 1 - n n^T = P,
-//   dM  = -m dN - N T (dw_b - dw_a - dth_a x w) + dth_a x M,
-//   T   = rho_r (P - a a^T)/sqrt(w_t^2 + w0^2) + rho_s w0^2/sqrt(w_n^2 + w0^2)^3 n n^T,
-//   a   = w_t/sqrt(w_t^2 + w0^2);
-// the turn of n, by rho over the radii of the surfaces, is left out.
+// Where rolling and spinning are resisted the torque M adds to Q, dM by turn-resistance.h, with dN,
+// dn' and dw' = dw_b - dw_a - dth_a x (w_b - w_a).
 // Where the core point runs (contact-pack.h, RunningPoint), with dom = dth_b - dth_a:
 //   dn' = (turn_p.dp + turn_om.dom) m_a, and (along_p.dp + along_om.dom) path adds to dp wherever
 // the point of the force moves (dv', arms), but not in dN, where the turn of n does:
@@ -65,31 +62,37 @@ struct PackLinear {
   Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
   Lanes inverse_ct, tau;
   LaneMask sticking;
-  bool deep, turns, resists;
-  LaneVec resisted, resistance;  // m, M
-  LaneMat twist;                 // -N T
-  Lanes damper;                  // c
-  LaneVec pull, more_drag;       // c v_r, (dc/dd) u
-  Lanes turn_damper;             // C
-  LaneVec more_turn;             // (dC/dd) (w_b - w_a)
-  Lanes m1, m2, h0, h1, h2;      // by the step
+  bool deep, turns;
+  ResistanceLinear resistance;  // set where the pack has bends
+  Lanes damper;                 // c
+  LaneVec pull, more_drag;      // c v_r, (dc/dd) u
+  Lanes turn_damper;            // C
+  LaneVec more_turn;            // (dC/dd) (w_b - w_a)
+  Lanes m1, m2, h0, h1, h2;     // by the step
 };
 
-// Changes of the force on b, of the raw friction (stretches held) and of the two arms.
+// Changes of the force on b, of the raw friction and the raw M (stretches and bends held) and of
+// the two arms.
 struct PackChange {
   LaneVec f, friction, sa, sb;
-  LaneVec torque;  // dQ + dM; set where it turns
+  LaneVec resistance;  // set where the pack has bends
+  LaneVec torque;      // dQ + dM; set where it turns
 };
 
-// The derivative at a state; stretches are held until set_stage_rate is called.
+// The derivative at a state; stretches and bends are held until set_stage_rate is called.
 void linearise_pack(const ContactPack& pack, const PackState& state, PackLinear& out);
-// sigma = 1/(gamma h), 1/s: eliminates the stretches.
+// sigma = 1/(gamma h), 1/s: eliminates the stretches and the bends.
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& linear);
 
-// `stretch_side`: r_z in the world frame.  `outside_changes`: whether changes of outside bodies may
+// The sides r_z of the stretches and of the bends, world frame.
+struct PackSides {
+  LaneVec stretch = {}, bend = {};
+};
+
+// `outside_changes`: whether changes of outside bodies may
 // differ from 0.
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
-                 const LaneVec& stretch_side, bool outside_changes, PackChange& out);
+                 const PackSides& sides, bool outside_changes, PackChange& out);
 
 // The raw friction change alone gives the stretch: H (r_z - dF/ct), world frame.
 LaneVec solve_stretch(const PackLinear& linear, const LaneVec& stretch_side,

@@ -217,21 +217,15 @@ TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
   o.torque = o.turn_drag * (o.wa - o.wb);
 }
 
-// M = -N (rho_r w_t/sqrt(w_t^2 + w0^2) + rho_s w_n/sqrt(w_n^2 + w0^2))
-TW_LANES void add_resistance(const ContactPack& pack, PackState& o) {
-  const LaneVec w = o.wb - o.wa;
-  const Lanes along = dot(o.n, w), slow = pack.slow_turn * pack.slow_turn;
-  const LaneVec across = w - along * o.n;
-  o.resisted = (pack.rolling / sqrt(dot(across, across) + slow)) * across +
-               (pack.spinning * along / sqrt(along * along + slow)) * o.n;
-  const LaneVec torque = -(o.N * o.resisted);
-  o.torque = o.turns ? o.torque + torque : torque;
+TW_LANES void add_resistance(const ContactPack& pack, const LaneVec& bend, PackState& o) {
+  evaluate_resistance(pack.resistance, o.Ra, o.n, o.N, o.wb - o.wa, bend, o.resistance);
+  o.torque = o.turns ? o.torque + o.resistance.torque : o.resistance.torque;
   o.turns = true;
 }
 
 template <ContactFeature feature>
 void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-              const LaneVec& side, PackState& o) {
+              const LaneVec& bend, const LaneVec& side, PackState& o) {
   // core points
   LaneKinematics a, b;
   gather(pack, bodies, pack.a, a);
@@ -278,7 +272,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
     set_smooth_friction(pack, o);
   o.f = o.N * o.n + o.F;
   add_drag(pack, o);
-  if (pack.resists) add_resistance(pack, o);
+  if (pack.bend >= 0) add_resistance(pack, bend, o);
 }
 
 void set_lane(LaneVec& v, int lane, const Vec3& value) {
@@ -305,10 +299,12 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
   pack.damping[lane] = law.b;
   pack.half_size[lane] = 0.5 * law.size;
-  pack.rolling[lane] = law.rolling;
-  pack.spinning[lane] = law.spinning;
-  pack.slow_turn[lane] = law.slow_turn > 0 ? law.slow_turn : 1;
-  pack.resists |= law.rolling > 0 || law.spinning > 0;
+  const double turning = contact.share * law.squared_lever();
+  const bool resists = turning * law.ct > 0;
+  pack.resistance.rolling[lane] = resists ? law.rolling : 0;
+  pack.resistance.spinning[lane] = resists ? law.spinning : 0;
+  pack.resistance.k[lane] = resists ? turning * law.kt : 0;
+  pack.resistance.c[lane] = resists ? turning * law.ct : 1;
   // without a tangential spring and damper there is no friction of the anchored kind
   const bool frictionless = law.law == FrictionLaw::anchored && !(law.ct > 0);
   pack.mu[lane] = frictionless ? 0 : law.mu;
@@ -345,20 +341,20 @@ ContactPack empty_pack() {
 }  // namespace
 
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-                   const LaneVec& side, PackState& out) {
+                   const LaneVec& bend, const LaneVec& side, PackState& out) {
   switch (pack.feature) {
     case ContactFeature::plane:
-      return evaluate<ContactFeature::plane>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::plane>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::line:
-      return evaluate<ContactFeature::line>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::line>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::point:
-      return evaluate<ContactFeature::point>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::point>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::crossing:
-      return evaluate<ContactFeature::crossing>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::crossing>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::rim:
-      return evaluate<ContactFeature::rim>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::rim>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::tangent_plane:
-      return evaluate<ContactFeature::tangent_plane>(pack, bodies, stretch, side, out);
+      return evaluate<ContactFeature::tangent_plane>(pack, bodies, stretch, bend, side, out);
   }
 }
 
@@ -377,12 +373,15 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes over = cap * cap / max(squared, cap);
   const Lanes hard = squared < cap ? half * squared : cap - half * over;
   const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
-  if (pack.law != FrictionLaw::anchored) return normal;
+  Lanes all = normal;
+  if (pack.bend >= 0)
+    all += bend_energy(pack.resistance, state.n, state.resistance.z, state.stiffness);
+  if (pack.law != FrictionLaw::anchored) return all;
   // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back
   const LaneVec st = state.s - dot(state.n, state.s) * state.n;
   const Lanes cone = pack.mu * state.stiffness;
   const Lanes tiny = lanes(1e-300);
-  return normal + half * min(pack.kt * dot(st, st), cone * cone / max(pack.kt, tiny));
+  return all + half * min(pack.kt * dot(st, st), cone * cone / max(pack.kt, tiny));
 }
 
 ContactPacks make_contact_packs(const GroupStart& start) {
@@ -429,7 +428,11 @@ ContactPacks make_contact_packs(const GroupStart& start) {
     result.places[static_cast<std::size_t>(i)] = {static_cast<int>(result.packs.size()) - 1,
                                                   pack.count++};
   }
-  for (ContactPack& pack : result.packs) finish_pack(pack, members);
+  for (ContactPack& pack : result.packs) {
+    finish_pack(pack, members);
+    const ResistanceLaw& law = pack.resistance;
+    if (any((law.rolling > lanes(0)) | (law.spinning > lanes(0)))) pack.bend = result.bends++;
+  }
   return result;
 }
 

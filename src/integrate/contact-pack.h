@@ -14,6 +14,7 @@
 #include "base/constants.h"
 #include "integrate/group-arc.h"
 #include "integrate/lanes.h"
+#include "integrate/turn-resistance.h"
 
 namespace tw {
 
@@ -30,14 +31,14 @@ struct ContactPack {
   int count = 0;
   bool uniform = false;                         // all of the same two bodies
   bool grounded = false;                        // all bodies a are outside
-  bool resists = false;                         // rolling or spinning, any
   int contact[lane_count];                      // index in GroupStart::contacts
   int a[lane_count], b[lane_count];             // body slots
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
   LaneVec other_direction;                      // frame of b: crossing, rim and tangent plane
   Lanes radius_a, radius_b, rim, offset;
   Lanes k, inverse_hardening, damping, mu, kt, ct, half_size;
-  Lanes rolling, spinning, slow_turn;
+  ResistanceLaw resistance;
+  int bend = -1;  // number of its row of bends; -1: it resists nothing
 };
 
 // Where in the packs a contact is.
@@ -50,6 +51,7 @@ struct ContactPacks {
   std::vector<ContactPack> packs;
   std::vector<ContactPlace> places;  // by contact
   int slots = 0;
+  int bends = 0;  // packs that resist rolling or spinning
 };
 
 // By feature and friction law, otherwise in the given order.
@@ -90,26 +92,27 @@ struct PackState {
   LaneVec target;        // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;  // F = scale target
   LaneMask slipping;
-  LaneVec F, stretch_rate;  // the rate in a's frame
-  bool deep = false;        // whether any is beyond the hardest ratio
-  Lanes drag;               // c of the tangential damper there, N s/m
-  LaneVec f;                // N n + F - drag u
-  Lanes turn_drag;          // c d size/2, N m s
-  bool turns = false;       // whether any torque beside that of f
-  LaneVec torque;           // on b, M - turn_drag (w_b - w_a); set where it turns
-  LaneVec resisted;         // M = -N resisted; set where the pack resists
+  LaneVec F, stretch_rate;     // the rate in a's frame
+  bool deep = false;           // whether any is beyond the hardest ratio
+  Lanes drag;                  // c of the tangential damper there, N s/m
+  LaneVec f;                   // N n + F - drag u
+  Lanes turn_drag;             // c d size/2, N m s
+  bool turns = false;          // whether any torque beside that of f
+  LaneVec torque;              // on b, M - turn_drag (w_b - w_a); set where it turns
+  ResistanceState resistance;  // set where the pack has bends
 };
 
-// `stretch`: a's frame.  `side`: the normals at an earlier instant, which choose their sign (line,
-// point).
+// `stretch`, `bend`: a's frame; bends count where the pack has some.  `side`: the normals at an
+// earlier instant, which choose their sign (line, point).
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-                   const LaneVec& side, PackState& out);
+                   const LaneVec& bend, const LaneVec& side, PackState& out);
 
 // The normals that the definition of the contacts gives at the start of an arc: they choose the
 // sign.
 LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies);
 
-// Of the normal springs (without the damper) and of the stretches as far as the cone holds them, J.
+// Of the normal springs (without the damper) and of the stretches and bends as far as friction
+// holds them, J.
 Lanes pack_energy(const ContactPack& pack, const PackState& state);
 
 }  // namespace tw

@@ -103,12 +103,11 @@ void GroupSystem::make_coupled() {
 }
 
 void GroupSystem::change_couplings(const Couplings& couplings, GroupScratch& s) const {
-  const LaneVec none = {lanes(0), lanes(0), lanes(0)};
   for (const int p : couplings.packs) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), none, true, change);
+    change_pack(pack, linear, s.changes.data(), {}, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
   for (const int number : couplings.bonds) change_bond(number, s);

@@ -87,8 +87,9 @@ int GroupArc::Data::strongest_contact() const {
   PackState state;
   for (int p = 0; p < system.packs(); ++p) {
     const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(p)];
-    evaluate_pack(pack, s.bodies.data(), record.stretch(p, record.reached()),
-                  record.side(p, record.reached()), state);
+    const double at = record.reached();
+    evaluate_pack(pack, s.bodies.data(), record.stretch(p, at), record.bend(pack, at),
+                  record.side(p, at), state);
     const Lanes force = dot(state.f, state.f);
     for (int i = 0; i < pack.count; ++i)
       if (!(force[i] <= largest)) largest = force[i], strongest = pack.contact[i];
@@ -279,6 +280,14 @@ Vec3 GroupArc::stretch(int contact, double time) const {
   return {s.x[place.lane], s.y[place.lane], s.z[place.lane]};
 }
 
+Vec3 GroupArc::bend(int contact, double time) const {
+  const ContactPacks& all = data_->system.contact_packs();
+  const ContactPlace place = all.places[static_cast<std::size_t>(contact)];
+  const LaneVec z =
+      data_->record.bend(all.packs[static_cast<std::size_t>(place.pack)], data_->at(time));
+  return {z.x[place.lane], z.y[place.lane], z.z[place.lane]};
+}
+
 // The pack of the contact at one instant.  Those of a contact pair are asked for one after the
 // other, and mostly share a pack: the last one is kept.
 const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
@@ -295,8 +304,8 @@ const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) c
         set_slot(slots[i], at, s);
       else
         system.set_outside_slot(slots[i], at, s.bodies);
-  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.side(number, at),
-                kept.state);
+  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.bend(pack, at),
+                record.side(number, at), kept.state);
   for (int i = 0; i < pack.count; ++i) {
     const double* x = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
     kept.center_b[i] = Vec3(x[0], x[1], x[2]);
@@ -400,7 +409,8 @@ double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) c
   PackState state;
   for (int p = 0; p < d.system.packs(); ++p) {
     const ContactPack& pack = d.system.contact_packs().packs[static_cast<std::size_t>(p)];
-    evaluate_pack(pack, s.bodies.data(), d.record.stretch(p, at), d.record.side(p, at), state);
+    evaluate_pack(pack, s.bodies.data(), d.record.stretch(p, at), d.record.bend(pack, at),
+                  d.record.side(p, at), state);
     const Lanes each = pack_energy(pack, state);
     for (int i = 0; i < pack.count; ++i)
       if (counted[static_cast<std::size_t>(pack.contact[i])]) energy += each[i];

@@ -3,9 +3,9 @@
 //
 // Unknowns per body: x (centre of mass), theta (rotation vector from the step's start, R =
 // exp(theta) R0), v, L (world angular momentum, so that no gyroscopic term appears); per anchored
-// contact its stretch.  RODAS4 (Hairer & Wanner), order 4(3), L-stable, stiffly accurate, with the
-// exact Jacobian.  Positions and stretches are eliminated exactly: 6 unknowns a body in the linear
-// system.
+// contact its stretch, and its bend where rolling or spinning is resisted.  RODAS4 (Hairer &
+// Wanner), order 4(3), L-stable, stiffly accurate, with the exact Jacobian.  Positions, stretches
+// and bends are eliminated exactly: 6 unknowns a body in the linear system.
 //
 // Between steps: positions and rotation vectors are cubics with the steps' values and rates (x' =
 // v, w), so that poses have continuous rates and the bounds hold across steps; velocities, momenta
@@ -102,6 +102,9 @@ struct GroupContact {
   double share = 1;   // of k, kt, ct
   ContactConstants law;
   Vec3 stretch = Vec3::Zero();  // at the start, a's frame, tangential
+  // At the start, a's frame, rad: what rolling (across the normal) and spinning (along it) are held
+  // back by.
+  Vec3 bend = Vec3::Zero();
 };
 
 // A spring or hold between two members.
@@ -202,6 +205,7 @@ class GroupArc : public Counted<GroupArc> {
   void joints(int tree, double time, std::vector<double>& q, std::vector<double>& u) const;
   const JointRecord& joints_record(int tree) const;
   Vec3 stretch(int contact, double time) const;  // a's frame
+  Vec3 bend(int contact, double time) const;     // a's frame, rad; 0 where nothing resists
   ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside
   // bodies that it meets there, J: force times the outside body's own speed where it acts.

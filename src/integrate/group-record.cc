@@ -12,7 +12,7 @@ namespace tw {
 
 namespace {
 
-constexpr int pack_node = 12, pack_step = 24, pack_side = 12;
+constexpr int row_node = 12, row_step = 24, pack_side = 12;
 // places in a member's part of a node and of a step
 enum : int { x_at = 0, v_at = 3, L_at = 6, w_at = 9, q_at = 12, node_numbers = 16 };
 enum : int { theta_at = 0, rate_at = 3, d3_at = 6, d4_at = 12, step_numbers = 18 };
@@ -53,12 +53,12 @@ Quat normalized(const Quat& q) {
 }  // namespace
 
 GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
-    : members_(system.members()), packs_(system.packs()) {
+    : members_(system.members()), packs_(system.packs()), rows_(packs_ + system.bends()) {
   for (const ContactPack& pack : system.contact_packs().packs)
     with_sides_ |= pack.feature != ContactFeature::plane;
-  node_size_ = static_cast<std::size_t>(node_numbers * members_ + pack_node * packs_);
-  step_size_ = static_cast<std::size_t>(step_numbers * members_ +
-                                        (pack_step + (with_sides_ ? pack_side : 0)) * packs_);
+  node_size_ = static_cast<std::size_t>(node_numbers * members_ + row_node * rows_);
+  step_size_ = static_cast<std::size_t>(step_numbers * members_ + row_step * rows_ +
+                                        (with_sides_ ? pack_side * packs_ : 0));
   first_sides_ = system.sides();
   // most arcs have one step
   nodes_.reserve(2 * node_size_);
@@ -72,12 +72,18 @@ GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
     for (const Vec3* part : {&m.x, &m.v, &m.L, &w}) node.put(*part);
     node.put(m.q);
   }
-  for (const ContactPack& pack : system.contact_packs().packs)
+  const auto put_row = [&](const ContactPack& pack, Vec3 GroupContact::*field) {
     for (int axis = 0; axis < 3; ++axis)
       for (int lane = 0; lane < lane_count; ++lane) {
         const int contact = pack.contact[lane];
-        node.put(contact < 0 ? 0 : start.contacts[static_cast<std::size_t>(contact)].stretch[axis]);
+        node.put(contact < 0 ? 0
+                             : (start.contacts[static_cast<std::size_t>(contact)].*field)[axis]);
       }
+  };
+  for (const ContactPack& pack : system.contact_packs().packs)
+    put_row(pack, &GroupContact::stretch);
+  for (const ContactPack& pack : system.contact_packs().packs)
+    if (pack.bend >= 0) put_row(pack, &GroupContact::bend);
 }
 
 GroupRecord GroupRecord::stretch_of(int member, double from) const {
@@ -102,7 +108,7 @@ void GroupRecord::load_last(GroupSystem& system, double* y) const {
     std::copy(from + v_at, from + v_at + 6, y + 6);
     system.set_attitude(i, quat(from + q_at));
   }
-  std::copy(from, from + pack_node * packs_, y);
+  std::copy(from, from + row_node * rows_, y);
 }
 
 void GroupRecord::append(double time, const GroupSystem& system, const double* y1, const double* d3,
@@ -124,8 +130,8 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
     step.put(d4 + 12 * i + 6, 6);
   }
   const int first = 12 * members_;
-  node.put(y1 + first, pack_node * packs_);
-  for (int p = 0; p < packs_; ++p) {
+  node.put(y1 + first, row_node * rows_);
+  for (int p = 0; p < rows_; ++p) {
     step.put(d3 + first + 12 * p, 12);
     step.put(d4 + first + 12 * p, 12);
   }
@@ -204,11 +210,11 @@ void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
   L = Cubic{L, vec(b + L_at), vec(s + d3_at + 3), vec(s + d4_at + 3)}.value(r);
 }
 
-LaneVec GroupRecord::stretch(int pack, double t) const {
+LaneVec GroupRecord::row(int number, double t) const {
   const auto [i, r] = place(t);
-  const int at = node_numbers * members_ + pack_node * pack;
+  const int at = node_numbers * members_ + row_node * number;
   if (!(r > 0)) return load(node(i) + at);
-  const double* d = step(i) + step_numbers * members_ + pack_step * pack;
+  const double* d = step(i) + step_numbers * members_ + row_step * number;
   const LaneVec y0 = load(node(i) + at), y1 = load(node(i + 1) + at), d3 = load(d),
                 d4 = load(d + 12);
   return lanes(1 - r) * y0 + lanes(r) * (y1 + lanes(1 - r) * (d3 + lanes(r) * d4));
@@ -216,7 +222,7 @@ LaneVec GroupRecord::stretch(int pack, double t) const {
 
 LaneVec GroupRecord::side(int pack, double t) const {
   if (!with_sides_ || steps() == 0) return first_sides_[static_cast<std::size_t>(pack)];
-  return load(step(step_to(t)) + step_numbers * members_ + pack_step * packs_ + pack_side * pack);
+  return load(step(step_to(t)) + step_numbers * members_ + row_step * rows_ + pack_side * pack);
 }
 
 void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {

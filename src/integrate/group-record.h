@@ -1,9 +1,9 @@
 // What an arc keeps of its steps: states at the nodes and the dense output between them.
 //
-// Per node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12).  Per
-// step and member theta and theta' at its end (6) and D3, D4 of rodas4.h for v, L (12), per pack
-// D3, D4 (24), and where some contact is not of the plane kind the normals at the step's start
-// (12).
+// Per node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12), per pack
+// that resists rolling the bends (12).  Per step and member theta and theta' at its end (6) and D3,
+// D4 of rodas4.h for v, L (12), per row of stretches or bends D3, D4 (24), and where some contact
+// is not of the plane kind the normals at the step's start (12).
 //
 // Positions and rotation vectors are the cubics with the nodes' values and rates: order 3 as the
 // dense output of the method, but with continuous rates, so that pose rates and bounds on their
@@ -51,7 +51,11 @@ class GroupRecord {
   void velocities(int member, double time, Vec3& v, Vec3& L) const {
     velocities(member, place(time), v, L);
   }
-  LaneVec stretch(int pack, double time) const;
+  LaneVec stretch(int pack, double time) const { return row(pack, time); }
+  // Zero where the pack has none.
+  LaneVec bend(const ContactPack& pack, double time) const {
+    return pack.bend < 0 ? LaneVec{} : row(packs_ + pack.bend, time);
+  }
   LaneVec side(int pack, double time) const;
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
   Pose pose(int member, double time) const {
@@ -101,6 +105,7 @@ class GroupRecord {
   Vec3 position(int member, Place at) const;
   Quat attitude(int member, Place at) const;
   void velocities(int member, Place at, Vec3& v, Vec3& L) const;
+  LaneVec row(int number, double time) const;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
   static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,
@@ -111,7 +116,7 @@ class GroupRecord {
   const double* member_step(int step, int member) const;
   void add_step_bounds(int step, int member, double from, double to, MotionBounds& bounds) const;
 
-  int members_ = 0, packs_ = 0;
+  int members_ = 0, packs_ = 0, rows_ = 0;  // rows: of stretches, then of bends
   bool with_sides_ = false;
   std::size_t node_size_ = 0, step_size_ = 0;
   std::vector<double> times_, nodes_, steps_;

@@ -82,15 +82,17 @@ void GroupSystem::set_time_slope(double time, double step, const double* y, cons
     vec(change.w) = (4 * (u[1].w - u[0].w) - (u[2].w - u[0].w)) / (2 * d);
   }
 
-  const LaneVec none = {lanes(0), lanes(0), lanes(0)};
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), none, true, change);
+    change_pack(pack, linear, s.changes.data(), {}, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());
     store(transposed_times(linear.Ra, -(linear.inverse_ct * change.friction)),
-          time_slope + 12 * (members_ + p));
+          time_slope + stretch_row(p));
+    if (pack.bend >= 0)
+      store(transposed_times(linear.Ra, -(linear.resistance.inverse_c * change.resistance)),
+            time_slope + bend_row(pack));
   }
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
@@ -272,29 +274,43 @@ Vec6 GroupSystem::forced_change(const Member& m, const BodyChange& change) const
   return change_of(m.forced, change);
 }
 
+// The right sides of the stretches and the bends of a pack.
+PackSides GroupSystem::sides_of(int p, const PackLinear& linear, const double* stage) const {
+  const ContactPack& pack = packs_.packs[index(p)];
+  PackSides sides;
+  sides.stretch = linear.Ra * load(stage + stretch_row(p));
+  if (pack.bend >= 0) sides.bend = linear.Ra * load(stage + bend_row(pack));
+  return sides;
+}
+
 // The wrenches of all contacts by the changes of the slots and the right sides of the stretches.
 void GroupSystem::scatter_stretches(GroupScratch& s, const double* stage) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), linear.Ra * load(stage + 12 * (members_ + p)),
-                false, change);
+    change_pack(pack, linear, s.changes.data(), sides_of(p, linear, stage), false, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
 }
 
-// The stretches of anchored friction, once all changes of the slots are known.
+// The stretches of anchored friction and the bends, once all changes of the slots are known.
 void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
-    if (pack.law != FrictionLaw::anchored) continue;
+    const bool anchored = pack.law == FrictionLaw::anchored, bends = pack.bend >= 0;
+    if (!anchored && !bends) continue;
     const PackLinear& linear = s.linear[index(p)];
-    double* k = stage + 12 * (members_ + p);
-    const LaneVec side = linear.Ra * load(k);
+    const PackSides sides = sides_of(p, linear, stage);
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), side, false, change);
-    store(transposed_times(linear.Ra, solve_stretch(linear, side, change.friction)), k);
+    change_pack(pack, linear, s.changes.data(), sides, false, change);
+    if (anchored)
+      store(transposed_times(linear.Ra, solve_stretch(linear, sides.stretch, change.friction)),
+            stage + stretch_row(p));
+    if (bends)
+      store(
+          transposed_times(linear.Ra, solve_bend(linear.resistance, sides.bend, change.resistance)),
+          stage + bend_row(pack));
   }
 }
 

@@ -45,7 +45,7 @@ GroupSystem::GroupSystem(const GroupStart& start)
     member.is_link = m.tree >= 0;
   }
   for (const GroupBond& bond : start.bonds) bonds_.push_back({bond, {}});
-  size_ = 12 * (start.members.size() + packs_.packs.size());
+  size_ = stretch_row(packs() + bends());
   for (const GroupTree& tree : start.trees) {
     trees_.push_back(std::make_unique<TreeInGroup>(tree, start.end));
     bases_move_ = bases_move_ || trees_.back()->moved_from_outside();
@@ -153,10 +153,12 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
   PackState state;
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
-    const std::size_t at = index(12 * (members_ + p));
-    evaluate_pack(pack, s.bodies.data(), load(y + at), sides_[index(p)], state);
+    const std::size_t at = stretch_row(p);
+    const LaneVec bend = pack.bend >= 0 ? load(y + bend_row(pack)) : LaneVec{};
+    evaluate_pack(pack, s.bodies.data(), load(y + at), bend, sides_[index(p)], state);
     if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
     store(state.stretch_rate, slope + at);
+    if (pack.bend >= 0) store(state.resistance.rate, slope + bend_row(pack));
     LaneVec on_a = cross(state.sa, state.f), on_b = cross(state.sb, state.f);
     if (state.turns) {
       on_a = on_a + state.torque;

@@ -1,8 +1,9 @@
 // The differential equations of a contact group, their derivative and the linear systems of a step.
 //
 // A state is a row of numbers: 12 a member (x, theta, v, L; theta from the step's start), then 12 a
-// pack of four contacts (the stretches: four x, four y, four z, in a's frame), then 2 n a multibody
-// (tree-in-group.h).  Links are members, whose own numbers mean nothing: joints say where they are.
+// pack of four contacts (the stretches: four x, four y, four z, in a's frame), then 12 a pack that
+// resists rolling or spinning (the bends, likewise), then 2 n a multibody (tree-in-group.h).  Links
+// are members, whose own numbers mean nothing: joints say where they are.
 //   x' = v,  theta' = Jl(theta)^-1 w,  v' = F/m,  L' = T,  w = R I^-1 R^T L,  R = exp(theta) R0
 // With J = R0 I^-1 R0^T, the derivatives at theta = 0 (exact):
 //   dw = J dL + W dth,  W = J [L]x - [w]x,     dtheta' = dw + [w]x dth/2.
@@ -41,6 +42,7 @@ class GroupSystem {
 
   int members() const { return members_; }
   int packs() const { return static_cast<int>(packs_.packs.size()); }
+  int bends() const { return packs_.bends; }
   std::size_t size() const { return size_; }
   std::size_t unknowns() const {
     return coupled_ ? static_cast<std::size_t>(coupled_->size())
@@ -49,6 +51,9 @@ class GroupSystem {
   const ContactPacks& contact_packs() const { return packs_; }
   std::vector<std::unique_ptr<TreeInGroup>>& trees() { return trees_; }
   const std::vector<std::unique_ptr<TreeInGroup>>& trees() const { return trees_; }
+  // Where the stretches of a pack begin, and its bends, if it has some.
+  std::size_t stretch_row(int pack) const { return 12 * static_cast<std::size_t>(members_ + pack); }
+  std::size_t bend_row(const ContactPack& pack) const { return stretch_row(packs() + pack.bend); }
   // Where the numbers of a multibody begin.
   std::size_t tree_row(std::size_t tree) const { return tree_rows_[tree]; }
   bool moved_from_outside() const {
@@ -129,6 +134,7 @@ class GroupSystem {
   Vec6 forced_change(const Member& member, const BodyChange& change) const;
   void change_bond(int bond, GroupScratch& scratch) const;
   void subtract_from_block(const WrenchDerivative& by, double sigma, int Y, int X);
+  PackSides sides_of(int pack, const PackLinear& linear, const double* stage) const;
   void scatter_stretches(GroupScratch& scratch, const double* stage) const;
   void solve_stretches(GroupScratch& scratch, double* stage) const;
 

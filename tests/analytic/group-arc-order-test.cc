@@ -50,8 +50,10 @@ GroupStart run_with_fixed_steps(GroupStart start, int steps) {
       m.v = s.v;
       m.L = s.L;
     }
-    for (std::size_t k = 0; k < start.contacts.size(); ++k)
+    for (std::size_t k = 0; k < start.contacts.size(); ++k) {
       start.contacts[k].stretch = arc.stretch(static_cast<int>(k), start.end);
+      start.contacts[k].bend = arc.bend(static_cast<int>(k), start.end);
+    }
   }
   return start;
 }
@@ -136,6 +138,18 @@ TEST(GroupArcOrder, is_four_on_a_shaking_floor) {
 TEST(GroupArcOrder, is_four_for_bodies_rolling_over_each_other) {
   for (const ContactFeature feature : {ContactFeature::point, ContactFeature::line})
     EXPECT_NEAR(observed_order(two_balls(false, feature, FrictionLaw::anchored), 20), 4.2, 0.4);
+}
+
+// Both ways that a torque resists: held, as by a spring, and cut to what its lengths allow.
+TEST(GroupArcOrder, is_four_where_rolling_and_spinning_are_resisted) {
+  for (const double length : {1.0, 1e-5}) {
+    GroupStart start = two_balls(true, ContactFeature::point, FrictionLaw::anchored);
+    for (GroupContact& c : start.contacts) {
+      c.law.size = 0.02;
+      c.law.rolling = c.law.spinning = length;
+    }
+    EXPECT_NEAR(observed_order(start, 20), 4.2, 0.4) << length;
+  }
 }
 
 TEST(GroupArcOrder, is_four_with_smooth_friction_on_a_shaking_floor) {

@@ -177,23 +177,102 @@ TEST(Rolling, spinning_friction_stops_a_ball_and_a_coin_that_spin) {
   }
 }
 
-// It holds up to a slope of rho/r.
-TEST(Rolling, rolling_friction_holds_a_ball_on_a_slope) {
-  for (const double share : {0.5, 2.0}) {
-    const double r = 0.1, rho = 2e-3, angle = share * rho / r;
+// A slope, or the ball of radius 1 m under it, whose surface is as steep at the origin.
+void add_slope(World& world, const Vec3& normal, bool round) {
+  if (!round) {
+    add_wall(world, normal, 0);
+    return;
+  }
+  BodyDef def = body_of(make_sphere(1), -normal, Vec3::Zero());
+  def.fixed = true;
+  world.add_body(def);
+}
+
+// m g r sin(a) <= rho m g cos(a): up to a slope of rho/r it holds, even where the ball would roll
+// off ever faster.  Steeper, m a = m g sin(a) - F and I a/r = F r - rho m g cos(a).
+TEST(Rolling, rolling_friction_holds_a_placed_ball_up_to_its_slope) {
+  const double r = 0.1, rho = 2e-3;
+  for (const bool round : {false, true})
+    for (const double share : {0.5, 0.98, 1.02, 2.0}) {
+      const double angle = std::atan(share * rho / r);
+      World world;
+      set_contact_for_all(world, 0, 0.5);
+      set_resistance(world, rho, 0);
+      const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+      add_slope(world, normal, round);
+      const BodyId ball = add_ball(world, r, r * normal, Vec3::Zero());
+      world.advance(0.5);
+      if (share < 1) {
+        for (const double later : {1.0, 100.0, 1000.0}) {
+          EXPECT_LT((world.state(ball).position - r * normal).norm(), 1e-9 * r);
+          EXPECT_EQ(world.state(ball).velocity.norm(), 0);
+          EXPECT_EQ(world.state(ball).angular_velocity.norm(), 0);
+          world.advance(later);
+        }
+      } else if (!round) {
+        world.advance(4);
+        const double a = g * (std::sin(angle) - rho / r * std::cos(angle)) / 1.4;
+        EXPECT_NEAR(world.state(ball).velocity.norm(), 4 * a, 1e-3 * 4 * a + 1e-5);
+      } else {
+        EXPECT_GT(world.state(ball).velocity.norm(), 0);
+      }
+    }
+}
+
+// What rolls up a slope that holds it stops there, and what rolls down one: it rests within the
+// time that rest takes, with no energy ever gained.
+TEST(Rolling, what_rolling_friction_stops_on_a_slope_rests_there) {
+  const double r = 0.1, rho = 5e-3, angle = std::atan(0.5 * rho / r);
+  const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+  const Vec3 down(std::cos(angle), 0, -std::sin(angle));
+  for (const double v : {-0.5, 0.5}) {
     World world;
     set_contact_for_all(world, 0, 0.5);
-    set_resistance(world, rho, 0);
-    const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+    set_resistance(world, rho, rho);
     add_wall(world, normal, 0);
-    const BodyId ball = add_ball(world, r, r * normal, Vec3::Zero());
-    world.advance(4);
-    const double slid = (world.state(ball).position - r * normal).norm();
-    const double a = g * (std::sin(angle) - rho / r * std::cos(angle)) / 1.4;
+    const BodyId ball =
+        add_ball(world, r, r * normal, v * down, v / r * Vec3::UnitY() + 3 * normal);
+    const double braking =
+        g * (rho / r * std::cos(angle) - (v > 0 ? 1 : -1) * std::sin(angle)) / 1.4;
+    const double stop = std::abs(v) / braking, way = 0.5 * v * stop;
+    double energy = 1e300;
+    for (double time = 0.01; time < stop + 0.5; time += 0.01) {
+      world.advance(time);
+      EXPECT_LE(world.total_energy(), energy);
+      energy = world.total_energy() + 1e-6 * g * r;
+    }
+    EXPECT_EQ(world.state(ball).velocity.norm(), 0);
+    EXPECT_EQ(world.state(ball).angular_velocity.norm(), 0);
+    const double made = (world.state(ball).position - r * normal).dot(down);
+    EXPECT_NEAR(made, way, 2e-3 * std::abs(way));
+    const Vec3 there = world.state(ball).position;
+    world.advance(1000);
+    EXPECT_EQ((world.state(ball).position - there).norm(), 0);
+  }
+}
+
+// A torque of T against rho m g at most: I w' = T - rho m g, or not at all.
+TEST(Rolling, spinning_friction_holds_a_torque_up_to_its_limit) {
+  const double r = 0.1, rho = 2e-3;
+  for (const double share : {0.9, 1.5}) {
+    World world;
+    set_contact_for_all(world, 0, 0.5);
+    set_resistance(world, 0, rho);
+    add_wall(world, Vec3::UnitZ(), 0);
+    BodyDef def = body_of(make_sphere(r), {0, 0, r}, Vec3::Zero());
+    const double mass = 2;
+    def.mass = mass;
+    const BodyId ball = world.add_body(def);
+    const double torque = share * rho * mass * g, inertia = 0.4 * mass * r * r;
+    world.edit(ball, [&](StateView& view) { view.set_applied_torque({0, 0, torque}); });
+    world.advance(3);
+    const BodyState s = world.state(ball);
     if (share < 1) {
-      EXPECT_LT(slid, 1e-3 * r);
+      EXPECT_EQ(s.angular_velocity.norm(), 0);
+      EXPECT_LT(2 * s.orientation.vec().norm(), 1e-6);
     } else {
-      EXPECT_NEAR(world.state(ball).velocity.norm(), 4 * a, 2e-2 * 4 * a);
+      const double rate = (torque - rho * mass * g) / inertia;
+      EXPECT_NEAR(s.angular_velocity.z(), 3 * rate, 1e-3 * 3 * rate);
     }
   }
 }

@@ -105,13 +105,13 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     c.law.ct = draw.in(5, 10);
     c.law.mu = kind.regime == Regime::sticking ? 1000 : 0.4;
     c.law.law = kind.law;
-    // where n keeps still the derivative of the resistance to rolling is exact, too
     const bool flat =
         c.feature == ContactFeature::plane || c.feature == ContactFeature::tangent_plane;
-    if (flat && pair[0] % 2 == 0) {
-      c.law.rolling = 0.02;
-      c.law.spinning = 0.01;
-      c.law.slow_turn = 0.3;
+    // held, or cut to what the lengths allow
+    if (pair[0] % 2 == 0) {
+      c.law.rolling = kind.regime == Regime::sticking ? 20 : 0.02;
+      c.law.spinning = kind.regime == Regime::slipping ? 0.01 : 10;
+      c.bend = draw.vec(0.3);
     }
     c.share = 0.5;
     c.stretch = draw.vec(0.01);
@@ -212,6 +212,12 @@ struct Bench {
         for (int lane = 0; lane < lane_count; ++lane, ++at)
           if (pack.contact[lane] >= 0)
             y[at] = start.contacts[static_cast<std::size_t>(pack.contact[lane])].stretch[axis];
+    for (const ContactPack& pack : system.contact_packs().packs)
+      if (pack.bend >= 0)
+        for (int axis = 0; axis < 3; ++axis)
+          for (int lane = 0; lane < lane_count; ++lane, ++at)
+            if (pack.contact[lane] >= 0)
+              y[at] = start.contacts[static_cast<std::size_t>(pack.contact[lane])].bend[axis];
   }
   Eigen::VectorXd slope(double time, const Eigen::VectorXd& state) {
     Eigen::VectorXd f(state.size());
@@ -256,7 +262,7 @@ double worst_residual(const GroupStart& start, Draw& draw, double sigma) {
     for (Eigen::Index j = 0; j < r.size(); ++j) r[j] = draw.in(-1, 1);
     // smooth contacts have no stretches
     if (start.contacts.front().law.law == FrictionLaw::smooth)
-      r.tail(r.size() - 12 * bench.system.members()).setZero();
+      r.segment(12 * bench.system.members(), 12 * bench.system.packs()).setZero();
     Eigen::VectorXd k = r;
     bench.system.solve(bench.scratch, k.data());
     const Eigen::VectorXd residual = sigma * k - J * k - r;
