@@ -19,7 +19,9 @@ the earlier.
 
 #:restitution   the share of the approach speed that is left after an impact, 0 to 1; 0.3
 #:friction      Coulomb's coefficient, 0 or more; 0.5
-#:rolling-friction   m, 0 or more: lasting contacts resist rolling by the normal force times this; 0
+#:rolling-friction   m, 0 or more: lasting contacts resist rolling by a torque of up to the normal
+                force times this, and hold what needs no more: a ball of radius r stays on slopes
+                up to this over r; 0
 #:spinning-friction  m, 0 or more: likewise spinning about the normal, beside what the friction of
                 several points does; 0
 #:stiffness     N/m of a lasting contact, positive; such that the weight of the lighter body

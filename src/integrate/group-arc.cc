@@ -69,10 +69,10 @@ struct GroupArc::Data {
   };
   const KeptPack& pack_at(int number, double at) const;
   // What a contact does to a member; where the work counts, how fast the outside body's material
-  // moves there.
+  // moves there, and the power of the torque at its turning.
   struct MemberForce {
     Vec3 force, other_velocity;
-    double normal = 0;
+    double normal = 0, turning_power = 0;
   };
   MemberForce force_on(int member, const WorkingContact& contact, double at) const;
   int strongest_contact() const;
@@ -352,6 +352,8 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
   const Vec3 arm = kept.center_b[i] + lane(kept.state.sb) - vec(body.x);
   result.other_velocity = vec(body.v) + vec(body.w).cross(arm);
+  if (kept.state.turns)
+    result.turning_power = (is_b ? 1 : -1) * lane(kept.state.torque).dot(vec(body.w));
   return result;
 }
 
@@ -385,7 +387,7 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
         impulse += 0.5 * h * f.force;
         normal += 0.5 * h * f.normal;
         if (!c.counts) continue;
-        work += 0.5 * h * f.force.dot(f.other_velocity);
+        work += 0.5 * h * (f.force.dot(f.other_velocity) + f.turning_power);
         carrying += 0.5 * h * f.normal * f.other_velocity;
       }
     }

@@ -208,7 +208,8 @@ class GroupArc : public Counted<GroupArc> {
   Vec3 bend(int contact, double time) const;     // a's frame, rad; 0 where nothing resists
   ContactForce contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside
-  // bodies that it meets there, J: force times the outside body's own speed where it acts.
+  // bodies that it meets there, J: force times the outside body's own speed where it acts, torque
+  // times its turning.
   // `contacts`: all of the member's.
   double work_on(int member, std::span<const WorkingContact> contacts, double from,
                  double to) const;

@@ -113,7 +113,12 @@ ShapePtr shape_of(const DescribedBody& body) {
 void fill(World& world, const DescribedScene& scene) {
   world.set_gravity(scene.gravity);
   world.set_accuracy(scene.accuracy);
-  test::set_contact_for_all(world, scene.restitution, scene.friction);
+  ContactSettings contact;
+  contact.restitution = scene.restitution;
+  contact.friction = scene.friction;
+  contact.rolling_friction = scene.rolling;
+  contact.spinning_friction = scene.spinning;
+  world.set_contact({}, {}, contact);
   for (const DescribedBody& body : scene.bodies) {
     BodyDef def;
     def.name = body.name;

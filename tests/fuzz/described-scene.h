@@ -72,6 +72,7 @@ struct DescribedScene {
   double duration = 1;   // s
   Vec3 gravity = Vec3::Zero();
   double friction = 0.5, restitution = 0.3, accuracy = 1e-6;
+  double rolling = 0, spinning = 0;  // m
   std::vector<DescribedBody> bodies;
   Room room;
 

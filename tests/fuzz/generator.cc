@@ -28,6 +28,8 @@ constexpr Kind table[] = {
     {"ramp", "bodies slide and roll down a ramp, along the floor, against a wall", draw_ramp},
     {"round", "capsules, cones, ellipsoids and cylinders among others fall into a pit", draw_round},
     {"hills", "bodies fall and roll on a height field between four walls", draw_hills},
+    {"rolls", "what is round falls into a pit, where rolling and spinning are resisted",
+     draw_rolls},
 };
 
 }  // namespace

@@ -53,6 +53,14 @@ void draw_round(Draft& draft) {
   draft.last(10);
 }
 
+// Mostly friction enough to roll; either length may be none, or far beyond what the width allows.
+void draw_rolls(Draft& draft) {
+  draw_round(draft);
+  if (draft.chance(0.7)) draft.scene.friction = draft.random.real(0.3, 1.2);
+  if (draft.chance(0.8)) draft.scene.rolling = draft.size * draft.log_uniform(1e-4, 1);
+  if (draft.chance(0.8)) draft.scene.spinning = draft.size * draft.log_uniform(1e-4, 1);
+}
+
 void draw_thin(Draft& draft) {
   const double half = draft.size * draft.random.real(0.8, 1.6);
   const int count = draft.whole(2, 6);

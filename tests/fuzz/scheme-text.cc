@@ -82,8 +82,13 @@ std::string scheme_text(const DescribedScene& scene) {
   all += "(scene #:title \"" + scene.name() + "\" #:duration " + show(scene.duration) +
          " #:gravity " + text(scene.gravity) + "\n  #:accuracy " + show(scene.accuracy) +
          " #:fps " + show(60 / scene.duration) + ")\n";
-  all += "(set-contact-parameters! #t #t #:restitution " + show(scene.restitution) +
-         " #:friction " + show(scene.friction) + ")\n";
+  all +=
+      "(set-contact-parameters! #t #t #:restitution " + show(scene.restitution) + " #:friction " +
+      show(scene.friction) +
+      (scene.rolling > 0 || scene.spinning > 0 ? "\n  #:rolling-friction " + show(scene.rolling) +
+                                                     " #:spinning-friction " + show(scene.spinning)
+                                               : "") +
+      ")\n";
   for (const DescribedBody& body : scene.bodies) all += text(body);
   Vec3 center = Vec3::Zero();
   double count = 0;

@@ -54,6 +54,26 @@ TEST(KinematicWork, of_a_belt_is_twice_the_energy_it_gives) {
   EXPECT_NEAR(work, mass * v * v, 2e-3 * mass * v * v);
 }
 
+// Likewise a ball in the middle of a turntable, which spinning friction alone brings to its w.
+TEST(KinematicWork, of_a_turntable_is_twice_the_energy_it_gives) {
+  World world;
+  set_contact_for_all(world, 0, 0.5);
+  ContactSettings settings;
+  settings.spinning_friction = 0.01;
+  world.set_contact({}, {}, settings);
+  constexpr double w = 5;
+  std::vector<Keyframe> frames;
+  for (double time = -1; time <= 4; time += 0.1)
+    frames.push_back({time, {0, 0, -0.1}, rotation_by(Vec3(0, 0, w * time))});
+  add_platform(world, frames, false);
+  const BodyId ball = add_ball(world, 0.1, {0, 0, 0.1}, Vec3::Zero());
+  world.advance(3);
+  EXPECT_NEAR(world.state(ball).angular_velocity.z(), w, 1e-6);
+  const double energy = 0.5 * 0.4 * world.body(ball).mass * 0.01 * w * w;
+  const double work = number_of(world.statistics(), "kinematic_work");
+  EXPECT_NEAR(work, 2 * energy, 2e-3 * 2 * energy);
+}
+
 // A shaken tray with boxes, balls and rocks: whatever they have was given to them.
 TEST(KinematicWork, balances_on_a_shaken_platform_at_every_time) {
   World world;
