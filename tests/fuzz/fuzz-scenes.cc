@@ -29,7 +29,8 @@ void print_help() {
   std::puts(
       "fuzz-scenes [OPTION]...   judges random scenes, a line each; without options: the tests\n"
       "  --seeds=A..B        or one seed; 0..29\n"
-      "  --kind=KIND         all seeds of this kind; otherwise seeds take the kinds in turn\n"
+      "  --kind=KIND         all seeds of this kind; otherwise seeds take the kinds but rolls in "
+      "turn\n"
       "  --judge=LIST        of hash,depth,energy,progress; all\n"
       "  --budget=SECONDS    of CPU for the plain run of a scene; 20\n"
       "  --dump=FILE.scm     write the scene (one seed) for the command, do not run it\n"

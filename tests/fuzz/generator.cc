@@ -32,6 +32,10 @@ constexpr Kind table[] = {
      draw_rolls},
 };
 
+// Which the seeds take in turn; the others are asked for by name, so that what is known of a seed
+// stays its own.
+constexpr std::size_t in_turn = 15;
+
 }  // namespace
 
 std::span<const Kind> kinds() { return table; }
@@ -46,6 +50,6 @@ DescribedScene random_scene(const std::string& kind, std::uint64_t seed) {
   throw UserError("kind is " + kind + "; expected one that --help lists");
 }
 
-std::string kind_of_seed(std::uint64_t seed) { return table[seed % std::size(table)].name; }
+std::string kind_of_seed(std::uint64_t seed) { return table[seed % in_turn].name; }
 
 }  // namespace tw::fuzz

@@ -54,6 +54,12 @@ TEST(Seeds, have_no_faults_but_those_that_are_known) {
   }
 }
 
+TEST(Seeds, of_what_resists_rolling_have_no_faults) {
+  const std::uint64_t count = test::long_tests() ? 300 : 10;
+  for (std::uint64_t seed = 0; seed < count; ++seed)
+    expect_what_is_known(judge(random_scene("rolls", seed), {}, budget));
+}
+
 TEST(Seeds, that_had_faults_have_none_any_more) {
   for (const MendedSeed& mended : mended_seeds()) {
     const Verdict verdict = judge(random_scene(mended.kind, mended.seed), {}, budget);
