@@ -54,10 +54,11 @@ TEST(Seeds, have_no_faults_but_those_that_are_known) {
   }
 }
 
-TEST(Seeds, of_what_resists_rolling_have_no_faults) {
+TEST(Seeds, of_hills_and_of_what_resists_rolling_have_no_faults) {
   const std::uint64_t count = test::long_tests() ? 300 : 10;
-  for (std::uint64_t seed = 0; seed < count; ++seed)
-    expect_what_is_known(judge(random_scene("rolls", seed), {}, budget));
+  for (const char* kind : {"hills", "rolls"})
+    for (std::uint64_t seed = 0; seed < count; ++seed)
+      expect_what_is_known(judge(random_scene(kind, seed), {}, budget));
 }
 
 TEST(Seeds, that_had_faults_have_none_any_more) {
