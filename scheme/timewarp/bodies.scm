@@ -121,10 +121,10 @@ before the first and after the last.
 
 ;; ---- states: accessors with set! ----
 
-(define-syntax-rule (define-accessor name doc getter setter)
-  (define name
+(define-syntax-rule (define-accessor accessor doc getter setter)
+  (define accessor
     (let ((getter* (lambda (body) doc (getter body))))
-      (set-procedure-property! getter* 'name 'name)
+      (set-procedure-property! getter* 'name 'accessor)
       (make-procedure-with-setter getter* (lambda (body value) (setter body value))))))
 
 (define-accessor position

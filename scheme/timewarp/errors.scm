@@ -45,7 +45,8 @@
                  "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
-                 "exit-status" "completion" "effects" "history" "line-editing" "server" "watch"
+                 "describing" "exit-status" "completion" "effects" "history" "line-editing" "server"
+                 "watch"
                  "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
                  "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
                  "sweep-values")))))

@@ -1,8 +1,8 @@
 ;; (help): what to type first, and the procedures by group; (help NAME): a procedure's docstring.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp help)
+  #:use-module (timewarp describing)
   #:use-module (timewarp errors)
-  #:use-module (ice-9 documentation)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
   #:export (help-groups)
@@ -89,22 +89,15 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
   (display last-lines))
 
 (define (show-help name value)
-  (let ((text (object-documentation value)))
-    (unless (string? text)
-      (bad-value "help's argument" name "a name or a procedure that has a description"))
-    (format #t "~a~a~%" (if (procedure? value) (signature value) "") text)))
+  (match (description value)
+    (#f (bad-value "help's argument" name "a name or a procedure that has a description"))
+    (text
+     (match (usage value (if (symbol? name) name (name-of value)))
+       (#f (format #t "~a~%" text))
+       (words (format #t "(~a)~%~%~a~%" (string-join words) text))))))
 
-;; "(NAME ARG ... [#:key KEY ...])" and a newline
-(define (signature procedure)
-  (let ((name (procedure-name procedure))
-        (arguments (false-if-exception ((@ (ice-9 session) procedure-arguments) procedure))))
-    (if (and name arguments)
-        (format #f "~a~%~%"
-                (append (list name)
-                        (assq-ref arguments 'required)
-                        (map list (assq-ref arguments 'optional))
-                        (map car (assq-ref arguments 'keyword))))
-        "")))
+(define (name-of value)
+  (and (procedure? value) (procedure-name value)))
 
 (define* (help #:optional (what #f))
   "(help) shows what to type first and the procedures by group; (help PROCEDURE), (help 'NAME) and
@@ -117,5 +110,5 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
        (unless (and variable (variable-bound? variable))
          (bad-value "help's argument" name "a name that is defined; ,apropos TEXT finds names"))
        (show-help name (variable-ref variable))))
-    (value (show-help value value)))
+    (value (show-help (or (name-of value) value) value)))
   (if #f #f))

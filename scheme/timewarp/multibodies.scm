@@ -324,10 +324,10 @@ of their positions in (joint-positions MULTIBODY).  A free multibody's first is 
 there are none; of a universal joint a list of two such; #f of other joints."
   (caddr (list-ref (%multibody-joints multibody) (%joint-index multibody name))))
 
-(define-syntax-rule (define-joint-accessor (name argument ...) doc getter setter)
-  (define name
+(define-syntax-rule (define-joint-accessor (accessor argument ...) doc getter setter)
+  (define accessor
     (let ((getter* (lambda (argument ...) doc (getter argument ...))))
-      (set-procedure-property! getter* 'name 'name)
+      (set-procedure-property! getter* 'name 'accessor)
       (make-procedure-with-setter getter*
                                   (lambda (argument ... value) (setter argument ... value))))))
 
