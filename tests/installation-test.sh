@@ -114,6 +114,9 @@ claim "pkg-config knows the folders" \
   [ -n "$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --variable=guilesitedir timewarp)" ]
 claim "its file is valid" env PKG_CONFIG_PATH="$(dirname "$pc")" pkg-config --validate timewarp
 
+if [ -e "$TW_BUILDDIR/doc/timewarp.info" ]; then
+  claim "the manual is there" [ -s "$moved/share/info/timewarp.info" ]
+fi
 for program in timewarp timewarp-sweep; do
   page=$moved/share/man/man1/$program.1
   options=$("$(dirname "$TIMEWARP")/$program" --help | sed -n 's/^  \(-.*\)/\1/p' | cut -c 1-26 |
@@ -140,7 +143,7 @@ claim "and nothing is said where they are set" \
 
 # ---- uninstalled again ----
 
-MAKEFLAGS= make -s -C "$TW_BUILDDIR" install DESTDIR="$stage/third" >"$stage/log" 2>&1 &&
+MAKEFLAGS= make -s -C "$TW_BUILDDIR" install install-html DESTDIR="$stage/third" >"$stage/log" 2>&1 &&
   MAKEFLAGS= make -s -C "$TW_BUILDDIR" uninstall DESTDIR="$stage/third" >>"$stage/log" 2>&1
 claim "make uninstall leaves no file" [ -z "$(find "$stage/third" ! -type d)" ]
 claim "and no folder of ours" [ -z "$(find "$stage/third/$prefix" -name '*timewarp*')" ]

@@ -67,7 +67,7 @@ Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a k
 whose description ends with its default.
 Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
 After an error the prompt is as before; ,option on-error debug enters Guile's debugger there.
-(exit) or Ctrl-D leaves.
+(exit) or Ctrl-D leaves.  The manual, with a tutorial: info timewarp, from a shell.
 ")
 
 ;; "  name name ..." in lines of at most 78 columns
