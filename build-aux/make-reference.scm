@@ -1,8 +1,8 @@
 ;; Writes the reference part of the manual: guile -s make-reference.scm >reference.texi
 ;;
-;; What (help) and ,describe show, as Texinfo: subjects and their order are those of (help), what stands
-;; at a name is its docstring.  The options are those of the tables that the programs themselves read.
-;; So nothing of this can go stale.
+;; What (help) and ,describe show, as Texinfo: subjects and their order are those of (help), what
+;; stands at a name is its docstring.  The options are those of the tables that the programs
+;; themselves read.  So nothing of this can go stale.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (use-modules (timewarp)
              (timewarp describing)
@@ -182,7 +182,8 @@
                                names))))
      (else (print-definition "Parameter" (list (symbol->string name)) text names)))))
 
-(define (subject-node subject) (format #f "Reference of ~a" (string-downcase subject)))
+(define (subject-node subject)
+  (format #f "Reference of ~a" (string-downcase subject)))
 
 (define (print-group module names)
   (match-lambda
@@ -206,12 +207,16 @@
 (define (print-procedures)
   (let ((names (map symbol->string
                     (append (exports '(timewarp)) (exports '(timewarp vectors))))))
-    (format #t "@node Procedures~%@chapter Procedures~%~%")
-    (format #t "All that the modules @code{(timewarp)} and @code{(timewarp vectors)} export, by subject.~%")
-    (format #t "Most keywords may be left out; the text of such a one ends with what then holds.~%")
-    (format #t "An @dfn{accessor} can be read, and set by @code{set!}.  At the prompt, @code{(help ~a)}~%"
-            "NAME")
-    (format #t "shows the same texts.~%~%@menu~%")
+    (display "@node Procedures
+@chapter Procedures
+
+All that the modules @code{(timewarp)} and @code{(timewarp vectors)} export, by subject.
+Most keywords may be left out; the text of such a one ends with what then holds.
+An @dfn{accessor} can be read, and set by @code{set!}.  At the prompt, @code{(help NAME)}
+shows the same texts.
+
+@menu
+")
     (for-each (match-lambda
                 ((subject what . _)
                  (format #t "* ~a: ~a.  ~a.~%" subject (subject-node subject) (escape what))))
@@ -246,18 +251,32 @@
   (format #t "@end table~%~%"))
 
 (define (print-command-lines)
-  (format #t "@node Command line~%@chapter Command line~%~%")
-  (format #t "@menu~%* timewarp: Options of timewarp.  One run.~%")
-  (format #t "* timewarp-sweep: Options of timewarp-sweep.  Many runs.~%@end menu~%~%")
-  (format #t "@node Options of timewarp~%@section Options of @command{timewarp}~%~%")
-  (format #t "@code{timewarp [@var{option}]@dots{} [@var{scene}.scm]}.  Without a scene: the prompt.~%")
-  (format #t "Defaults stand in parentheses.~%~%")
+  (display "@node Command line
+@chapter Command line
+
+@menu
+* timewarp: Options of timewarp.  One run.
+* timewarp-sweep: Options of timewarp-sweep.  Many runs.
+@end menu
+
+@node Options of timewarp
+@section Options of @command{timewarp}
+
+@code{timewarp [@var{option}]@dots{} [@var{scene}.scm]}.  Without a scene: the prompt.
+Defaults stand in parentheses.
+
+")
   (print-options (documented-options))
-  (format #t "The exit status is 0 after a complete run, 1 after an error in the scene or the run, 2 after~%")
-  (format #t "wrong usage, and 130 after @kbd{Ctrl-C}, which keeps what was written until then.~%~%")
-  (format #t "@node Options of timewarp-sweep~%@section Options of @command{timewarp-sweep}~%~%")
-  (format #t "@code{timewarp-sweep [@var{option}]@dots{} @var{scene}.scm} runs a scene over lists of~%")
-  (format #t "values.  Options of @command{timewarp} are handed on to each run; many take lists there.~%~%")
+  (display "The exit status is 0 after a complete run, 1 after an error in the scene or the
+run, 2 after wrong usage, and 130 after @kbd{Ctrl-C}, which keeps what was written until then.
+
+@node Options of timewarp-sweep
+@section Options of @command{timewarp-sweep}
+
+@code{timewarp-sweep [@var{option}]@dots{} @var{scene}.scm} runs a scene over lists of values.
+Options of @command{timewarp} are handed on to each run; many take lists there.
+
+")
   (print-options (sweep:documented-options)))
 
 (format #t "@c Written by build-aux/make-reference.scm: not to be edited.~%~%")
