@@ -63,7 +63,8 @@
            (trim (end-of-token text (+ i 2))))
           ((or (at "#t") (at "#f")) (+ i 2))
           ;; a quoted symbol, not an apostrophe
-          ((and (at "'") (< (1+ i) (string-length text))
+          ((and (at "'") (or (zero? i) (memv (string-ref text (1- i)) '(#\space #\newline #\()))
+                (< (1+ i) (string-length text))
                 (char-alphabetic? (string-ref text (1+ i))))
            (trim (end-of-token text (1+ i))))
           (else
@@ -74,7 +75,7 @@
                   end))))))
 
 (define (mark-up text arguments names)
-  "Return TEXT as Texinfo: what is Scheme or one of NAMES as code, ARGUMENTS in capitals as variables."
+  "Return TEXT as Texinfo: Scheme and NAMES as code, ARGUMENTS in capitals as variables."
   (define (variable word)
     (let ((word (string-downcase word)))
       (and (member word arguments) word)))
