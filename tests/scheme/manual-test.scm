@@ -37,7 +37,7 @@
 ;; ---- commands ----
 
 (define (draws? command)
-  (string-match "--(frames|movie|at)\\b" command))
+  (string-match "--(frames|movie|at)\\b|\\(render! " command))
 
 (define (possible? command)
   (and (or (not (draws? command)) (not (equal? (getenv "TW_DRAWS") "")))
@@ -75,7 +75,8 @@
          (banner (string-trim-both
                   (string-drop (substring text 0 (string-contains text prompt))
                                (+ 2 (string-length command)))))
-         (parts (split-transcript text prompt)))
+         (parts (filter (match-lambda ((expression . _) (possible? expression)))
+                        (split-transcript text prompt))))
     (call-with-output-file (in-folder "input.scm")
       (lambda (port)
         (for-each (lambda (part i)
