@@ -10,7 +10,10 @@
       ((timewarp shapes))
       ((timewarp bodies))
       ((timewarp contact))
-      ((timewarp queries))
+      ((timewarp queries)
+       ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
+       bounding-box all-poses)
+      ((timewarp sensors))
       ((timewarp forces))
       ((timewarp multibodies)
        add-multibody! multibody? multibody-name multibody-links body-multibody link-body

@@ -82,14 +82,13 @@ for all."
 (define-keyword-procedure (contacts #:key body)
   "Return a list of the contacts of all contact groups at world-time, by pairs of bodies in the order in
 which they were added; faces that meet have several.  Impacts of bodies that don't stay together are no
-contacts; a contact whose force is 0 is about to touch, or has just lost touch.
+contacts; a contact whose force is 0 is about to touch, or has just lost touch.  In a callback, those
+of one of the views that it is handed, which #:body must name: as they were on the motion that leads to
+its event, so in on-collision! just before the impact.  While a blow runs through a heap, a body further
+on has the forces that its own motion is made of.
 
-#:body  a body: its contacts alone; all"
-  (let ((all (map (lambda (parts) (apply make-contact parts)) (%contacts (current-world)))))
-    (if body
-        (let ((wanted (%view-body body)))
-          (filter (lambda (contact) (memq wanted (bodies-of contact))) all))
-        all)))
+#:body  a body or a view: its contacts alone (of views: of a dynamic body); all"
+  (map (lambda (parts) (apply make-contact parts)) (%contacts (current-world) body)))
 
 (define (contact? object)
   "Return #t if OBJECT is a contact, as `contacts' lists them."

@@ -41,7 +41,7 @@
   (let ((folder (own-directory)))
     (cons (string-append (dirname folder) "/timewarp.scm")
           (map (lambda (name) (string-append folder "/" name ".scm"))
-               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "queries" "forces"
+               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "queries" "sensors" "forces"
                  "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"

@@ -27,6 +27,8 @@
     ("Queries" "rays, distances, what is where"
      ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
      bounding-box all-poses)
+    ("Sensors" "what instruments on a body read, in callbacks too"
+     accelerometer gyro net-contact-force rangefinder)
     ("Forces" "what acts on bodies, from now on"
      add-drag! add-spring! attach! detach! attached? add-force!)
     ("Multibodies" "links that hang on one another by joints"

@@ -9,7 +9,9 @@
   #:use-module (srfi srfi-9 gnu)
   #:use-module (ice-9 format)
   #:export (ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
-            bounding-box all-poses))
+            bounding-box all-poses)
+  ;; for the other modules
+  #:export (candidates))
 
 (define-record-type <hit>
   (make-hit body point normal distance)

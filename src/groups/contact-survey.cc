@@ -8,9 +8,7 @@
 #include "groups/before.h"
 
 namespace tw {
-namespace {
 
-// Turned so that body1 < body2.
 ContactReading reading_of(const ContactTag& tag, const ContactForce& force) {
   ContactReading reading;
   const bool turned = tag.other < tag.reference;
@@ -25,6 +23,8 @@ ContactReading reading_of(const ContactTag& tag, const ContactForce& force) {
   reading.slipping = force.slipping;
   return reading;
 }
+
+namespace {
 
 bool owns(const Scene& scene, const StateOf& state_of, const Group& group,
           const ContactPair& pair) {

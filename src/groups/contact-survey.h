@@ -10,6 +10,9 @@
 
 namespace tw {
 
+struct ContactForce;
+struct ContactTag;
+
 // A contact of a group at one instant.
 struct ContactReading {
   BodyId body1 = 0, body2 = 0;   // body1 < body2
@@ -20,6 +23,9 @@ struct ContactReading {
   Vec3 friction = Vec3::Zero();  // N, on body2, world
   bool slipping = false;         // in touch, with the friction at its limit
 };
+
+// Of a contact of a group, turned so that body1 < body2.
+ContactReading reading_of(const ContactTag& tag, const ContactForce& force);
 
 struct ContactSurvey {
   std::vector<ContactReading> contacts;  // by pair of bodies, then in the group's own order

@@ -331,6 +331,7 @@ ContactForce GroupArc::contact_force(int contact, double time) const {
   force.friction = lane(state.F) - state.drag[i] * lane(state.u);
   force.velocity = lane(state.vr);
   force.slipping = state.slipping[i] != 0 && state.N[i] > 0;
+  if (state.turns) force.torque = lane(state.torque);
   return force;
 }
 

@@ -145,6 +145,7 @@ struct ContactForce {
   Vec3 friction = Vec3::Zero();  // N, on b
   Vec3 velocity = Vec3::Zero();  // of b's point against a's, m/s
   bool slipping = false;         // the friction is cut at mu N (anchored), N > 0
+  Vec3 torque = Vec3::Zero();    // N m, on b, beside that of the force: rolling and spinning
 };
 
 // A contact of a member, and whether the work at it is asked for.

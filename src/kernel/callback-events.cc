@@ -47,7 +47,9 @@ Progress CallbackEvents::process(std::uint32_t number) {
   }
   std::vector<SuccessorView> views;
   views.reserve(successors.size());
-  for (Successor& successor : successors) views.emplace_back(sim_.scene, successor, key, false);
+  for (Successor& successor : successors)
+    views.emplace_back(sim_.scene, sim_.before(key).state(successor.process()), successor, key,
+                       false);
   std::vector<StateView*> pointers;
   for (SuccessorView& view : views) pointers.push_back(&view);
 

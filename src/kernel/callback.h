@@ -16,6 +16,7 @@
 #include "base/interruption.h"
 #include "dynamics/body.h"
 #include "dynamics/forces.h"
+#include "groups/sensing.h"
 #include "multibody/multibody.h"
 #include "timeline/collision.h"
 #include "timeline/slots.h"
@@ -35,6 +36,14 @@ class StateView {
   virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
   virtual Vec3 applied_torque() const = 0;        // N m, world
   virtual const SlotsPtr& slots() const = 0;
+  // How it is accelerated, and the contacts that it has, on the motion that leads to the event: what
+  // sensors read.
+  virtual SensedMotion sensed_motion() const {
+    throw UserError("this view has no sensors; expected one that a callback is handed");
+  }
+  virtual std::vector<ContactReading> contacts() const {
+    throw UserError("this view knows no contacts; expected one that a callback is handed");
+  }
   // Of a link: its multibody and how the joints stand, and when, s; null of other bodies.
   virtual const Multibody* multibody() const { return nullptr; }
   virtual const MultibodyState* joints() const { return nullptr; }

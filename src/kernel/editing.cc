@@ -44,7 +44,7 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   successors[0].role = Role::record;
   const Vec3 x_before = successors[0].point.x;
   const Quat q_before = successors[0].point.q;
-  SuccessorView view(sim_.scene, successors[0], key, true);
+  SuccessorView view(sim_.scene, sim_.before(key).state(body.process), successors[0], key, true);
   change(view);
   groups_.regroup_edited(key, successors);
   discontinuities_.enter(key, successors);
@@ -68,7 +68,9 @@ void Editing::edit_pair(BodyId a, BodyId b,
     successors.push_back(make_successor(sim_.before(key), process, false));
   share_joints(successors);
   std::vector<SuccessorView> views;
-  for (Successor& successor : successors) views.emplace_back(sim_.scene, successor, key, false);
+  for (Successor& successor : successors)
+    views.emplace_back(sim_.scene, sim_.before(key).state(successor.process()), successor, key,
+                       false);
   const auto view_of = [&](BodyId id) -> SuccessorView& {
     return sim_.process_of(id) == both.front() ? views.front() : views.back();
   };

@@ -37,14 +37,15 @@ bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
 }
 
 // Every callback that matches, in order of registration.
-void ImpactEvents::run_callbacks(const Collision& collision, Successor& a, Successor& b) const {
+void ImpactEvents::run_callbacks(const Collision& collision, const Before& before, Successor& a,
+                                 Successor& b) const {
   for (const CollisionCallbackDef& def : callbacks_) {
     if (!match_specificity(def.a, def.b, a.body->contact, b.body->contact)) continue;
     // the sides in the order given; where both match either way, the body added first comes first
     const bool straight =
         side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
-    SuccessorView view_a(sim_.scene, a, collision.key, false);
-    SuccessorView view_b(sim_.scene, b, collision.key, false);
+    SuccessorView view_a(sim_.scene, before.state(a.process()), a, collision.key, false);
+    SuccessorView view_b(sim_.scene, before.state(b.process()), b, collision.key, false);
     ++counters_.callbacks_run;
     if (straight)
       def.callback->run(collision, false, view_a, view_b);
@@ -72,7 +73,7 @@ GroupEvents::Decided ImpactEvents::decide(std::uint32_t pair, const Before& befo
   if (collision && collision->kind == CollisionKind::collision && !successors[0].data.error &&
       !callbacks_.empty()) {
     try {
-      run_callbacks(*collision, successors[0], successors[1]);
+      run_callbacks(*collision, before, successors[0], successors[1]);
     } catch (const Interrupted&) {
       throw;
     } catch (...) {

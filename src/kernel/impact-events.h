@@ -55,7 +55,8 @@ class ImpactEvents {
   void enter_next();
   bool process_together(std::uint32_t first);
   bool wants_collision(const Body& a, const Body& b) const;
-  void run_callbacks(const Collision& collision, Successor& a, Successor& b) const;
+  void run_callbacks(const Collision& collision, const Before& before, Successor& a,
+                     Successor& b) const;
 
   Simulation& sim_;
   Counters& counters_;

@@ -169,6 +169,19 @@ bool SuccessorView::attached(const StateView& other) const {
   return holds(holder.data.forces, body(), other.body());
 }
 
+SensedMotion SuccessorView::sensed_motion() const {
+  return sense_motion(scene_, *successor_.body, before_, key_.time);
+}
+
+std::vector<ContactReading> SuccessorView::contacts() const {
+  TW_REQUIRE(successor_.body->dynamic(),
+             "the contacts of " + successor_.body->info.name +
+                 " were asked for through its view; expected a view of a dynamic body that touches "
+                 "it (this one is " +
+                 (successor_.body->fixed() ? "fixed)" : "kinematic)"));
+  return contacts_of(*successor_.body, before_, key_.time);
+}
+
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }
 
 void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {

@@ -18,8 +18,11 @@ void require_near(const Vec3& position, const std::string& name);
 // Reads the successor's point, writes the successor.
 class SuccessorView : public StateView {
  public:
-  SuccessorView(const Scene& scene, Successor& successor, const Key& key, bool may_place)
+  // `before`: the state that it succeeds; outlives the view.
+  SuccessorView(const Scene& scene, const State& before, Successor& successor, const Key& key,
+                bool may_place)
       : scene_(scene),
+        before_(before),
         successor_(successor),
         key_(key),
         may_place_(may_place),
@@ -31,6 +34,8 @@ class SuccessorView : public StateView {
   const Vec3& applied_force() const override { return successor_.data.force; }
   Vec3 applied_torque() const override;
   const SlotsPtr& slots() const override { return successor_.data.slots; }
+  SensedMotion sensed_motion() const override;
+  std::vector<ContactReading> contacts() const override;
   const Multibody* multibody() const override { return successor_.body->multibody; }
   const MultibodyState* joints() const override { return successor_.joints.get(); }
   double joints_time() const override { return key_.time; }
@@ -55,6 +60,7 @@ class SuccessorView : public StateView {
   void start_arc();
 
   const Scene& scene_;
+  const State& before_;
   Successor& successor_;
   Key key_;
   bool may_place_;

@@ -237,6 +237,20 @@ ContactSurvey World::survey_contacts(double when) const {
   const Simulation& simulation = kernel_->simulation;
   return tw::survey_contacts(simulation.scene, states_at(simulation, when), when);
 }
+SensedMotion World::sensed_motion(BodyId id, double when) const {
+  const Simulation& simulation = kernel_->simulation;
+  return sense_motion(simulation.scene, simulation.body(id), *state_at(simulation, id, when), when);
+}
+std::vector<ContactReading> World::contacts_of(BodyId id, double when) const {
+  const Simulation& simulation = kernel_->simulation;
+  const Body& body = simulation.body(id);
+  if (body.dynamic()) return tw::contacts_of(body, *state_at(simulation, id, when), when);
+  std::vector<ContactReading> contacts = survey_contacts(when).contacts;
+  std::erase_if(contacts, [id](const ContactReading& contact) {
+    return contact.body1 != id && contact.body2 != id;
+  });
+  return contacts;
+}
 Vec3 World::total_momentum() const {
   return tw::total_momentum(kernel_->simulation, kernel_->simulation.present.time);
 }

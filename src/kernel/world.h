@@ -15,6 +15,7 @@
 #include "dynamics/contact-parameters.h"
 #include "dynamics/scene.h"
 #include "groups/contact-survey.h"
+#include "groups/sensing.h"
 #include "kernel/definitions.h"
 #include "kernel/options.h"
 #include "kernel/statistics.h"
@@ -143,6 +144,10 @@ class World {
   double total_energy() const;  // kinetic, gravity, contact springs, J, at time()
   // Contacts of all groups.  `when`: time(), or the time of the frame that a sink is being handed.
   ContactSurvey survey_contacts(double when) const;
+  // What sensors on a body read, and its contacts: a dynamic one's as its own motion has them.
+  // `when` as above.
+  SensedMotion sensed_motion(BodyId id, double when) const;
+  std::vector<ContactReading> contacts_of(BodyId id, double when) const;
   Vec3 total_momentum() const;  // linear, kg m/s, dynamic bodies, at time()
   // SHA-256, 64 hexadecimal digits, of the committed history and of every body's state at time().
   // Needs set_hash(true) before the first run.

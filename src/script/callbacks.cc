@@ -169,7 +169,7 @@ void ScmFrameObserver::frame(long index, double frame_time, std::span<const Body
   const SCM world = hook_.box->handle;
   std::vector<FrameView> views;
   views.reserve(poses.size());
-  for (const BodyPose& pose : poses) views.emplace_back(pose);
+  for (const BodyPose& pose : poses) views.emplace_back(pose, hook_.box->world, frame_time);
   Arguments handles(poses.size());
   SCM list = SCM_EOL;
   for (std::size_t i = views.size(); i-- > 0;) {

@@ -10,8 +10,10 @@ namespace tw {
 class FrameView : public StateView {
  public:
   // `holder` and `caller`: "a frame", "an observer".
-  explicit FrameView(const BodyPose& pose, const char* holder = "a frame",
-                     const char* caller = "an observer")
+  // Of a frame of the world.
+  FrameView(const BodyPose& pose, const World& world, double frame_time)
+      : pose_(&pose), world_(&world), time_(frame_time) {}
+  FrameView(const BodyPose& pose, const char* holder, const char* caller)
       : pose_(&pose), holder_(holder), caller_(caller) {}
   BodyId body() const override { return pose_->body; }
   const BodyState& state() const override { return pose_->state; }
@@ -19,6 +21,14 @@ class FrameView : public StateView {
   const Vec3& applied_force() const override { refuse("its applied force is not"); }
   Vec3 applied_torque() const override { refuse("its applied torque is not"); }
   const SlotsPtr& slots() const override { refuse("its slots are not"); }
+  SensedMotion sensed_motion() const override {
+    if (!world_) refuse("what sensors read is not");
+    return world_->sensed_motion(pose_->body, time_);
+  }
+  std::vector<ContactReading> contacts() const override {
+    if (!world_) refuse("its contacts are not");
+    return world_->contacts_of(pose_->body, time_);
+  }
   void set_velocity(const Vec3&) override { refuse_change(); }
   void set_angular_velocity(const Vec3&) override { refuse_change(); }
   void set_applied_force(const Vec3&) override { refuse_change(); }
@@ -38,7 +48,9 @@ class FrameView : public StateView {
                     "; expected it to look only, and callbacks to change");
   }
   const BodyPose* pose_;
-  const char *holder_, *caller_;
+  const World* world_ = nullptr;
+  double time_ = 0;
+  const char *holder_ = "a frame", *caller_ = "an observer";
 };
 
 }  // namespace tw

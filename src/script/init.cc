@@ -23,6 +23,7 @@ void define_callbacks();
 void define_collisions();
 void define_contacts();
 void define_queries();
+void define_sensors();
 void define_forces();
 void define_worlds();
 void define_motions();
@@ -51,6 +52,7 @@ extern "C" void tw_init_guile() {
   tw::define_collisions();
   tw::define_contacts();
   tw::define_queries();
+  tw::define_sensors();
   tw::define_forces();
   tw::define_worlds();
   tw::define_motions();

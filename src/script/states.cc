@@ -69,6 +69,12 @@ BodyState read_state(SCM object, const char* what) {
   return readable_world(object, what).state(to_own_body(object));
 }
 
+SensedMotion read_sensed(SCM object, const char* what) {
+  if (is_view(object)) return to_view(object).sensed_motion();
+  const World& world = readable_world(object, what);
+  return world.sensed_motion(to_own_body(object), world.time());
+}
+
 TW_PRIMITIVE(position, "%position", (SCM object), "Position of the body frame, m.") {
   return from_vec3(read_state(object, "position").position);
 }

@@ -11,6 +11,8 @@ namespace tw {
 // Errors: BadValue for what is neither; UserError for a body within a callback.  `what` is the
 // procedure that reads.
 BodyState read_state(SCM object, const char* what);
+// What sensors on it read; errors as of read_state.
+SensedMotion read_sensed(SCM object, const char* what);
 // What is known of it apart from its motion.
 const BodyInfo& info_of(SCM object);
 

@@ -93,6 +93,6 @@
 (in-world ()
   (let ((ball (add-body! #:shape (sphere 1))))
     (add-callback! ball (lambda (time ball) (contacts)) #:period 1)
-    (test-message "inside a callback" "contacts was used inside a callback" (run! #:until 1))))
+    (test-message "inside a callback" "contacts without #:body was used inside a callback" (run! #:until 1))))
 
 (test-end "contact")
