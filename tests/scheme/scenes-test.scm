@@ -321,4 +321,23 @@
   (run! #:until 2)
   (test-assert "a small Kapla tower stands" (close? (* 2 0.1326) (+ 0.0039 (at "plank-15" 2)) 1e-3)))
 
+(in-world ()
+  (load-scene-named "gallery/drag-fall")
+  (run! #:until 4)
+  (for-each
+   (lambda (size)
+     (test-approximate (format #f "the ball of ~a m is where the closed form puts its ring" size)
+       (at (format #f "ring ~a" size) 2) (at (format #f "ball ~a" size) 2) 1e-5))
+   '(0.25 0.5 1 2)))
+
+(in-world ()
+  (load-scene-named "gallery/guided-projectile")
+  (let ((struck '()))
+    (observe! 'collision
+      (lambda (collision)
+        (set! struck (cons (map body-name (collision-bodies collision)) struck))))
+    (run! #:until 2)
+    (test-assert "the guided dart strikes its target" (member '("target" "guided") struck))
+    (test-assert "the other one nothing" (not (member '("other" "unguided") struck)))))
+
 (test-end "scenes")
