@@ -36,8 +36,8 @@ class StateView {
   virtual const Vec3& applied_force() const = 0;  // N, world, at the centre of mass
   virtual Vec3 applied_torque() const = 0;        // N m, world
   virtual const SlotsPtr& slots() const = 0;
-  // How it is accelerated, and the contacts that it has, on the motion that leads to the event: what
-  // sensors read.
+  // How it is accelerated, and the contacts that it has, on the motion that leads to the event:
+  // what sensors read.
   virtual SensedMotion sensed_motion() const {
     throw UserError("this view has no sensors; expected one that a callback is handed");
   }

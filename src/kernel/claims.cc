@@ -109,12 +109,14 @@ double Claims::window_end(const Body& body) const {
   const Trajectory& trajectory = tail.trajectory();
   const Parabola* path = tail.ballistic();
   if (!path && tail.group) return std::max(std::min(trajectory.end(), limit), least);
-  // the next callback ends the arc as we know it
+  // the next callback ends the arc as we know it; who flies on after one is likely to do so again
   double called = limit;
-  for (const std::uint32_t number : process.callbacks) {
-    const double next = callbacks_[number].next.time;
-    if (next > start) called = std::min(called, next);
-  }
+  const bool flies_on = path && tail.key.kind == KeyKind::callback && !tail.starts_arc();
+  if (!flies_on || sim_.policy->synchronous())
+    for (const std::uint32_t number : process.callbacks) {
+      const double next = callbacks_[number].next.time;
+      if (next > start) called = std::min(called, next);
+    }
   if (sim_.policy->synchronous() && limit < never) return std::max(called, least);
 
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
@@ -139,6 +141,8 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   if (!state) state = sim_.graph.head(body.process);
   for (; state; state = state->next) {
     const double from = std::max(state->key.time, sim_.present.gvt);
+    // records carry the arc on
+    while (state->next && !state->next->starts_arc()) state = state->next;
     const double to = state->next ? std::min(state->next->key.time, end) : end;
     if (to < from) continue;
     // checks find the contacts of members with what is so near
