@@ -36,22 +36,21 @@ Progress CallbackEvents::process(std::uint32_t number) {
   if (!(callback.next == key)) return Progress::try_again;
 
   // successors that carry the old arcs, and views of them
+  const Before before = sim_.before(key);
   std::vector<Successor> successors;
+  successors.reserve(callback.def.targets.size());
   for (const BodyId id : callback.def.targets)
-    successors.push_back(make_successor(sim_.before(key), sim_.process_of(id), false));
+    successors.push_back(make_successor(before, sim_.process_of(id), false));
   share_joints(successors);
-  std::vector<std::pair<SlotsPtr, std::uint64_t>> before;
+  std::vector<SuccessorView> views;
+  std::vector<StateView*> pointers;
+  views.reserve(successors.size());
+  pointers.reserve(successors.size());
   for (Successor& successor : successors) {
     successor.role = Role::record;
-    before.push_back({successor.data.slots, successor.data.random});
+    pointers.push_back(
+        &views.emplace_back(sim_.scene, before.state(successor.process()), successor, key, false));
   }
-  std::vector<SuccessorView> views;
-  views.reserve(successors.size());
-  for (Successor& successor : successors)
-    views.emplace_back(sim_.scene, sim_.before(key).state(successor.process()), successor, key,
-                       false);
-  std::vector<StateView*> pointers;
-  for (SuccessorView& view : views) pointers.push_back(&view);
 
   // the call; its error stops the targets, speculatively
   double next = never;
@@ -76,13 +75,14 @@ Progress CallbackEvents::process(std::uint32_t number) {
   bool any_changed = false;
   for (std::size_t i = 0; i < successors.size(); ++i) {
     StateData& data = successors[i].data;
-    any_changed = any_changed || successors[i].starts_arc() || data.slots != before[i].first ||
-                  data.random != before[i].second;
+    const State& was = before.state(successors[i].process());
+    any_changed = any_changed || successors[i].starts_arc() || data.slots != was.slots ||
+                  data.random != was.random;
     data.next_callback = next;
   }
   for (Successor& successor : successors) successor.data.changed = any_changed;
   if (successors.front().data.error)
-    discontinuities_.stop_group_mates(sim_.before(key), successors);
+    discontinuities_.stop_group_mates(before, successors);
   else if (touches_groups(successors) &&
            groups_.regroup(key, successors, Cause::callback) == Progress::try_again)
     return Progress::try_again;
