@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/near-parts.h"
 
+#include <cmath>
+#include <limits>
+
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -13,13 +16,23 @@ bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, c
   return (frame_b * b.bound_center - frame_a * a.bound_center).squaredNorm() > near * near;
 }
 
-bool beyond_a_face(const ConvexPart& ball, const Frame& frame_b, const ConvexPart& polyhedron,
-                   const Frame& frame_p, double reach) {
-  if (polyhedron.kind != PartKind::polyhedron || ball.kind == PartKind::half_space) return false;
+double gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
+                     const Frame& other_frame) {
+  if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space)
+    return -std::numeric_limits<double>::infinity();
+  const Frame world = other_frame * other.placement;
+  const Vec3 center = world.to_local(frame * part.bound_center);
   int face = 0;
-  const Vec3 center = (frame_p * polyhedron.placement).to_local(frame_b * ball.bound_center);
-  const double height = polyhedron.core->face_separation(center, face);
-  return height - ball.bound_radius > reach + 1e-12 * (height + polyhedron.bound_radius);
+  const double height = other.core->face_separation(center, face);
+  double reach = part.bound_radius;
+  if (part.kind == PartKind::polyhedron) {
+    const Vec3 down = -(world.R * other.core->face(face).normal);
+    const Mat3 R = frame.R * part.placement.R;
+    reach = part.core->extent(R.transpose() * down, 0) - down.dot(R * part.core->center());
+  }
+  // less what rounding can do to it
+  const double rounding = 1e-13 * (std::abs(height) + part.bound_radius + other.bound_radius);
+  return height - reach - rounding;
 }
 
 Aabb seen_from(const Frame& frame, const Aabb& box) {

@@ -21,9 +21,10 @@ inline int pair_number(std::size_t i, std::size_t j, const Shape& b) {
   return static_cast<int>(i * b.part_count() + j);
 }
 
-// The same by the ball of one and a face of the other, where that is a polyhedron.
-bool beyond_a_face(const ConvexPart& ball, const Frame& frame_b, const ConvexPart& polyhedron,
-                   const Frame& frame_p, double reach);
+// A lower bound of the distance of two parts, by the face of `other` (a polyhedron; else there is
+// none) that the middle of `part` is most over, m.
+double gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
+                     const Frame& other_frame);
 
 // Frame B as seen from frame A.
 inline Frame seen_from(const Frame& a, const Frame& b) {
@@ -52,8 +53,8 @@ void visit_near_parts(const Shape& a, const Frame& frame_a, const Shape& b, cons
   const auto visit_if_near = [&](std::size_t i, std::size_t j) {
     const ConvexPart &part_a = a.part(i), &part_b = b.part(j);
     if (far_apart(part_a, frame_a, part_b, frame_b, reach)) return;
-    if (b.tree() && beyond_a_face(part_a, frame_a, part_b, frame_b, reach)) return;
-    if (a.tree() && beyond_a_face(part_b, frame_b, part_a, frame_a, reach)) return;
+    if (b.tree() && gap_over_face(part_a, frame_a, part_b, frame_b) > reach) return;
+    if (a.tree() && gap_over_face(part_b, frame_b, part_a, frame_a) > reach) return;
     visit(i, j);
   };
   if (!a.tree() && !b.tree()) {

@@ -388,6 +388,8 @@ struct Nearest {
     const ConvexPart& part_a = a.part(i);
     const ConvexPart& part_b = b.part(j);
     if (found && !may_hold(ball_bound(part_a, frame_a, part_b, frame_b))) return;
+    if (found && b.tree() && !may_hold(gap_over_face(part_a, frame_a, part_b, frame_b))) return;
+    if (found && a.tree() && !may_hold(gap_over_face(part_b, frame_b, part_a, frame_a))) return;
     Separation s = part_separation(part_a, frame_a, part_b, frame_b, nullptr);
     s.part_a = static_cast<int>(i);
     s.part_b = static_cast<int>(j);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "collision/near-parts.h"
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"
 
@@ -289,25 +290,27 @@ double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& n
   });
 }
 
-// A part by its ball against the face of a polyhedron of the other body that it is most over.
+// A part against the face of a polyhedron of the other body that it is most over.
 double Certificates::planes_apart(const ConvexPart& part, const ConvexPart& other, bool of_b,
                                   double allowance) {
-  if (other.kind != PartKind::polyhedron) return 0;
+  if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space) return 0;
   const MovingBody& side = of_b ? b_ : a_;
-  const MovingBody& ball = of_b ? a_ : b_;
+  const MovingBody& over = of_b ? a_ : b_;
   const Frame world = side.frame * other.placement;
-  const Vec3 center = ball.frame * part.bound_center;
+  const Vec3 center = over.frame * part.bound_center;
   int face = 0;
   const double height = other.core->face_separation(world.to_local(center), face);
-  if (!(height > part.bound_radius)) return 0;
   const Vec3 n = world.R * other.core->face(face).normal;
-  const Vec3 on_face = center - height * n, on_ball = center - part.bound_radius * n;
+  const double gap = gap_over_face(part, over.frame, other, side.frame);
+  if (!(gap > 0)) return 0;
+  const Vec3 on_face = center - height * n, on_part = on_face + gap * n;
+  const bool as_ball = part.kind != PartKind::polyhedron;
   if (of_b)
     return longest([&](const MovingBody& x, const MovingBody& y) {
-      return time_apart(x, part, y, other, -n, on_ball, on_face, allowance, true, false);
+      return time_apart(x, part, y, other, -n, on_part, on_face, allowance, as_ball, false);
     });
   return longest([&](const MovingBody& x, const MovingBody& y) {
-    return time_apart(x, other, y, part, n, on_face, on_ball, allowance, false, true);
+    return time_apart(x, other, y, part, n, on_face, on_part, allowance, false, as_ball);
   });
 }
 
