@@ -32,8 +32,8 @@
          (cylinder 0.22 0.3)
          (map (lambda (k)
                 (let ((angle (around k blades)))
-                  (placed (placed (box 1.05 0.3 0.03) #:orientation (rotation #(1 0 0) 0.5))
-                          #:position (vector (* 0.72 (cos angle)) (* 0.72 (sin angle)) 0)
+                  (placed (placed (box 0.9 0.3 0.03) #:orientation (rotation #(1 0 0) -0.5))
+                          #:position (vector (* 0.68 (cos angle)) (* 0.68 (sin angle)) 0)
                           #:orientation (rotation #(0 0 1) angle))))
               (iota blades))))
 ;; still for two seconds, then faster by two more: the angle is the integral of the speed
@@ -44,7 +44,7 @@
           (else (* speed (- since 1))))))
 (add-body! #:name "fan" #:shape fan #:color #(0.80 0.30 0.16)
            #:motion (lambda (time)
-                      (values #(0 0 0.3) (rotation #(0 0 1) (turned time))))
+                      (values #(0 0 0.16) (rotation #(0 0 1) (turned time))))
            #:max-speed (* 1.35 speed))
 
 ;;; The rain.
@@ -56,4 +56,4 @@
                #:color (list-ref '(#(0.93 0.78 0.30) #(0.30 0.55 0.75) #(0.85 0.85 0.82))
                                  (modulo k 3)))))
 
-(camera #:eye #(3.6 -4.2 3.4) #:target #(0 0 0.45) #:fov 0.75)
+(camera #:eye #(2.9 -3.4 2.9) #:target #(0 0 0.4) #:fov 0.75)

@@ -7,7 +7,7 @@
 (define-scene-parameter rocks 80 "how many rocks")
 (define-scene-parameter restitution 0.7 "coefficient of restitution of all impacts")
 
-(set-contact-parameters! #t #t #:restitution restitution #:friction 0.5)
+(set-contact-parameters! #t #t #:restitution restitution #:friction 0.5 #:rolling-friction 0.01)
 
 (define random-state (scene-random-state))
 (define (uniform from to) (+ from (* (- to from) (random:uniform random-state))))
@@ -27,7 +27,7 @@
    (iota 14)))
 (define (ground-height x y)
   (let ((far (/ (sqrt (+ (* x x) (* y y))) half)))
-    (apply + (* 1.6 far far)
+    (apply + (* 3.2 (expt far 3))
            (map (lambda (wave)
                   (apply (lambda (kx ky phase height)
                            (* 0.55 height (sin (+ (* kx x) (* ky y) phase))))
@@ -38,17 +38,16 @@
                   (lambda (row column)
                     (ground-height (- (* column spacing) half) (- (* row spacing) half))))
 (add-body! #:name "hills" #:shape (height-field heights #:spacing spacing) #:fixed? #t
-           #:color #(0.40 0.44 0.24))
+           #:color #(0.46 0.48 0.27))
 
 ;;; One rock after the other, from the same place: so many metres behind each other.
 (do ((k 0 (1+ k))) ((= k rocks))
   (let* ((size (uniform 0.25 0.6))
-         (row (quotient k 4)) (column (modulo k 4)))
+         (row (quotient k 8)) (column (modulo k 8)))
     (add-body! #:name (format #f "rock-~a" k)
                #:shape (rock #:size size #:vertices 14 #:random-state random-state)
-               #:position (vector (+ -9 (* -0.8 row)) (* 0.8 (- column 1.5))
-                                  (+ 5.5 (* 0.75 row)))
-               #:velocity (vector (uniform 5.5 7.5) (uniform -1.5 1.5) (uniform 1 3))
+               #:position (vector (- -9 (* 0.5 row)) (* 0.75 (- column 3.5)) (+ 6 (* 0.75 row)))
+               #:velocity (vector (uniform 5 7) (uniform -1 1) (uniform 1 3))
                #:angular-velocity (vector (uniform -6 6) (uniform -6 6) (uniform -6 6))
                #:color (let ((tint (uniform 0.8 1.15)))
                          (list->vector (map (lambda (c) (* c tint))
@@ -56,4 +55,7 @@
                                                         (0.74 0.52 0.32) (0.45 0.38 0.35))
                                                       (modulo k 4))))))))
 
-(camera #:eye #(7 -14 9) #:target #(-1 0 0.8) #:fov 0.75)
+(camera #:eye #(8.5 -10 6.5) #:target #(0 -0.5 1) #:fov 0.75)
+;; a sun at the side shows the hills
+(light #:direction #(-0.6 0.5 -1) #:color #(1.0 0.95 0.86))
+(sky #:zenith #(0.22 0.42 0.72) #:horizon #(0.74 0.83 0.92) #:ground #(0.46 0.45 0.42) #:fog 0.002)

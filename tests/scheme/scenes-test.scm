@@ -172,6 +172,28 @@
            '("ball 6 mm" "ball 12 mm" "ball 24 mm" "drum 6 mm" "drum 12 mm" "drum 24 mm"))))
 
 (in-world ()
+  (load-scene-named "gallery/rocks-on-hills" '((rocks . "16")))
+  (run! #:until 14)
+  (test-assert "rocks on hills come to rest, none below the ground"
+    (every (lambda (k)
+             (let ((rock (find-body (format #f "rock-~a" k))))
+               (and (< (norm (velocity rock)) 0.05)
+                    (> (vector-ref (position rock) 2) -2)
+                    (> (hit-distance (ray-cast (v+ (position rock) #(0 0 9)) #(0 0 -1))) 8))))
+           (iota 16))))
+
+(in-world ()
+  (load-scene-named "gallery/fan")
+  (define (inside? body)
+    (< (let ((p (position body))) (norm (vector (vector-ref p 0) (vector-ref p 1) 0))) 1.4))
+  (define balls (filter (lambda (body) (eq? (body-kind body) 'dynamic)) (world-bodies)))
+  (run! #:until 2)
+  (let ((before (count inside? balls)))
+    (run! #:until 8)
+    (test-assert "the fan flings balls out of the drum" (< (count inside? balls) (* 3/4 before))))
+  (test-assert "and works for it" (< 0 (assq-ref (statistics) 'kinematic_work))))
+
+(in-world ()
   (load-scene-named "gallery/shapes" '((count . "24")))
   (let ((before (total-energy)))
     (run! #:until 3)
