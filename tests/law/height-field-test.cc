@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "base/random.h"
+#include "support/crossers.h"
 #include "support/stability-scenes.h"
 
 namespace tw::test {
@@ -29,21 +30,6 @@ void add_ground(World& world, const ShapePtr& shape) {
   ground.shape = shape;
   ground.fixed = true;
   world.add_body(ground);
-}
-
-struct Crosser {
-  const char* name;
-  ShapePtr shape;
-  double friction;
-  Vec3 spin;
-};
-
-std::vector<Crosser> crossers() {
-  return {{"box", make_box({0.3, 0.25, 0.2}), 0, Vec3::Zero()},
-          {"box with friction", make_box({0.3, 0.25, 0.2}), 0.1, Vec3::Zero()},
-          {"sliding ball", make_sphere(0.1), 0, Vec3::Zero()},
-          {"rolling ball", make_sphere(0.1), 0.5, {0, 30, 0}},
-          {"standing cylinder", make_cylinder(0.15, 0.2), 0.1, Vec3::Zero()}};
 }
 
 // After a second at 3 m/s over the ground.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "support/crossers.h"
 #include "support/stability-scenes.h"
 
 namespace tw::test {
@@ -34,20 +35,6 @@ BodyState cross(int tiles, bool one_union, const ShapePtr& shape, double frictio
   const BodyId id = world.add_body(body_of(shape, {0, 0, 0.1 + 1e-5}, {3, 0, 0}, spin));
   world.advance(1);
   return world.state(id);
-}
-
-struct Crosser {
-  const char* name;
-  ShapePtr shape;
-  double friction;
-  Vec3 spin;
-};
-
-std::vector<Crosser> crossers() {
-  return {{"box", make_box({0.3, 0.25, 0.2}), 0, Vec3::Zero()},
-          {"box with friction", make_box({0.3, 0.25, 0.2}), 0.1, Vec3::Zero()},
-          {"sliding ball", make_sphere(0.1), 0, Vec3::Zero()},
-          {"rolling ball", make_sphere(0.1), 0.5, {0, 30, 0}}};
 }
 
 TEST(Seams, forty_are_crossed_as_none) {
