@@ -45,6 +45,15 @@ void parts_near(const Shape& shape, const ConvexPart& other, const Frame& frame,
 // Overwrites `out`.
 void parts_in(const Shape& shape, const Aabb& box, std::vector<std::uint32_t>& out);
 
+// Of two shapes with at least one tree: whether each part of a is looked for in the tree of b, or
+// the other way round.  That of more parts is searched; a height field always is, as some of its
+// numbers stand for no part.
+inline bool searches_second(const Shape& a, const Shape& b) {
+  if (!a.tree() || !b.tree()) return b.tree() != nullptr;
+  const bool field_a = a.height_field() != nullptr, field_b = b.height_field() != nullptr;
+  return field_a != field_b ? field_b : a.part_count() <= b.part_count();
+}
+
 // Calls visit(i, j) for part i of a and part j of b, for all pairs that may be within `reach` (m)
 // of each other: ascending by i, then by j.
 template <class Visit>
@@ -62,8 +71,7 @@ void visit_near_parts(const Shape& a, const Frame& frame_a, const Shape& b, cons
       for (std::size_t j = 0; j < b.part_count(); ++j) visit_if_near(i, j);
     return;
   }
-  // the parts of the shape of fewer parts look for those of the other one
-  const bool in_b = b.tree() && (!a.tree() || a.part_count() <= b.part_count());
+  const bool in_b = searches_second(a, b);
   const Shape& many = in_b ? b : a;
   const Shape& few = in_b ? a : b;
   const Frame frame = in_b ? seen_from(frame_b, frame_a) : seen_from(frame_a, frame_b);

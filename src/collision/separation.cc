@@ -416,7 +416,7 @@ void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, 
 Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape& b,
                                const Frame& frame_b) {
   Nearest nearest{a, frame_a, b, frame_b};
-  const bool in_b = b.tree() && (!a.tree() || a.part_count() <= b.part_count());
+  const bool in_b = searches_second(a, b);
   const Shape& many = in_b ? b : a;
   const Shape& few = in_b ? a : b;
   const Frame frame = in_b ? seen_from(frame_b, frame_a) : seen_from(frame_a, frame_b);

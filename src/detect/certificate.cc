@@ -192,7 +192,8 @@ Certificates::Certificates(const Piece& piece, SimplexCaches& caches, double whe
       caches_(caches),
       when_(when),
       a_(*piece.body_a, piece.a->trajectory(), when),
-      b_(*piece.body_b, piece.b->trajectory(), when) {}
+      b_(*piece.body_b, piece.b->trajectory(), when),
+      rounding_(distance_rounding(*a_.body, a_.point.x, *b_.body, b_.point.x)) {}
 
 const Separation& Certificates::separation(std::size_t i, std::size_t j) {
   const Shape& a = *a_.body->shape_P;
@@ -237,8 +238,7 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
   const MovingBody &a = a_, &b = b_;
   const ConvexPart& pa = a.body->shape_P->part(i);
   const ConvexPart& pb = b.body->shape_P->part(j);
-  // less than this is perhaps not apart
-  const double sure = distance_rounding(*a.body, a.point.x, *b.body, b.point.x) - allowance;
+  const double sure = rounding_ - allowance;
 
   // far apart: the bounding balls will do
   if (std::isfinite(pa.bound_radius) && std::isfinite(pb.bound_radius)) {
@@ -272,7 +272,9 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
   return apart;
 }
 
-// A part by its ball against all parts in a node of the other body's tree by their box.
+// A part by its ball against all parts in a node of the other body's tree by their box.  What these
+// bounds leave out is surely apart, whatever the warm queries said of the parts before it: else the
+// answer would depend on the caches.
 double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& node, bool of_b,
                                  double allowance) {
   const MovingBody& tree = of_b ? b_ : a_;
@@ -281,7 +283,7 @@ double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& n
   const Vec3 seen = tree.frame.to_local(center);
   const Vec3 nearest = seen.cwiseMax(node.box.lo).cwiseMin(node.box.hi);
   const double distance = (seen - nearest).norm();
-  if (!(distance > part.bound_radius)) return 0;
+  if (!(distance - part.bound_radius > rounding_)) return 0;
   const Vec3 out = tree.frame.R * ((seen - nearest) / distance);
   const Vec3 on_box = tree.frame * nearest, on_ball = center - part.bound_radius * out;
   return longest([&](const MovingBody& x, const MovingBody& y) {
@@ -302,7 +304,7 @@ double Certificates::planes_apart(const ConvexPart& part, const ConvexPart& othe
   const double height = other.core->face_separation(world.to_local(center), face);
   const Vec3 n = world.R * other.core->face(face).normal;
   const double gap = gap_over_face(part, over.frame, other, side.frame);
-  if (!(gap > 0)) return 0;
+  if (!(gap > rounding_)) return 0;
   const Vec3 on_face = center - height * n, on_part = on_face + gap * n;
   const bool as_ball = part.kind != PartKind::polyhedron;
   if (of_b)
@@ -347,7 +349,7 @@ double Certificates::until(double allowance) {
     // what comes after the end of the piece says nothing either
     const double last = piece_.end.time > when_ ? std::min(valid, piece_.end.time) : valid;
     least = last - when_;
-    const bool in_b = b.tree() && (!a.tree() || a.part_count() <= b.part_count());
+    const bool in_b = searches_second(a, b);
     const std::size_t few = (in_b ? a : b).part_count();
     for (std::size_t i = 0; i < few && least > -never; ++i)
       search(i, (in_b ? b : a).tree()->root(), in_b, allowance, least);

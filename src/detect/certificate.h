@@ -87,6 +87,7 @@ class Certificates {
   SimplexCaches& caches_;
   double when_;
   MovingBody a_, b_;
+  double rounding_;                            // less than this is perhaps not apart, m
   std::optional<MovingBody> step_a_, step_b_;  // within the present step of the integrator
   static constexpr std::size_t most_kept = 4;
   std::optional<Separation> kept_[most_kept];  // of the first pairs of parts

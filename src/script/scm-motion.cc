@@ -101,11 +101,13 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
   const Frame a(from), b(to);
   const Vec3 turn = turn_between(from.q, to.q);
   if (const HeightField* field = shape_->height_field()) {
-    for (const std::size_t row : {std::size_t{0}, field->rows() - 1})
-      for (const std::size_t column : {std::size_t{0}, field->columns() - 1}) {
-        const Vec3 corner = field->corner(row, column);
-        most = std::max(most, (b * corner - a * corner).norm());
-      }
+    // the corners of its box: a spike may go farther than the rim
+    const Aabb& box = field->tree().root().box;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner((i & 1) ? box.hi.x() : box.lo.x(), (i & 2) ? box.hi.y() : box.lo.y(),
+                        (i & 4) ? box.hi.z() : box.lo.z());
+      most = std::max(most, (b * corner - a * corner).norm());
+    }
     return most;
   }
   for (const ConvexPart& part : shape_->parts()) {

@@ -172,6 +172,26 @@ TEST(PartTree, finds_the_manifolds_of_all_pairs_in_order) {
   EXPECT_GT(points, 1000u);
 }
 
+// A plane cell has one part and two numbers; a union may have more parts than a small field.
+TEST(PartTree, finds_no_part_of_a_field_twice) {
+  Random random(6);
+  const ShapePtr field = make_height_field(std::vector<double>(9, 0.0), 3, 1, 1);
+  std::vector<ShapePtr> parts;
+  for (int i = 0; i < 40; ++i)
+    parts.push_back(
+        place_shape(make_sphere(0.1), Pose{random_vector(random, 0.9), Quat::Identity()}));
+  const ShapePtr many = make_union(parts);
+  ASSERT_GT(many->part_count(), field->part_count());
+  int seen = 0;
+  const auto see = [&](std::size_t number) {
+    EXPECT_TRUE(field->height_field()->exists(number)) << number;
+    ++seen;
+  };
+  visit_near_parts(*field, Frame(), *many, Frame(), 0.1, [&](auto i, auto) { see(i); });
+  visit_near_parts(*many, Frame(), *field, Frame(), 0.1, [&](auto, auto j) { see(j); });
+  EXPECT_GT(seen, 20);
+}
+
 // One part as a shape.
 ShapePtr alone(const ConvexPart& part) {
   if (part.kind == PartKind::sphere)
