@@ -3,6 +3,7 @@
 #include "kernel/bodies.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/constants.h"
 #include "base/hash.h"
@@ -50,7 +51,24 @@ std::unique_ptr<Body> Bodies::make(const BodyDef& def, BodyId id) const {
   const std::string name = def.name.empty() ? "body-" + std::to_string(id) : def.name;
   TW_REQUIRE(!names_.contains(name),
              "name " + name + " is taken; expected a name no other body has");
-  return make_body(def, id, name);
+  std::unique_ptr<Body> body = make_body(def, id, name);
+  require_numbers_of_parts(*body);
+  return body;
+}
+
+void Bodies::require_numbers_of_parts(const Body& body) const {
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (!body.shape_P || body.shape_P->part_count() <= most / most_parts_) return;
+  const std::size_t parts = body.shape_P->part_count();
+  for (const auto& other : sim_.scene.bodies) {
+    if (other->info.removed || !other->shape_P || !(body.dynamic() || other->dynamic())) continue;
+    TW_REQUIRE(parts <= most / other->shape_P->part_count(),
+               body.info.name + " has " + std::to_string(parts) + " parts and " + other->info.name +
+                   " " + std::to_string(other->shape_P->part_count()) +
+                   "; expected a product of at most " + std::to_string(most) +
+                   ", by which their pairs are numbered (shapes of fewer parts, or ground cut "
+                   "into several bodies)");
+  }
 }
 
 // What carries a multibody; null: nothing does.
@@ -144,6 +162,7 @@ void Bodies::enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_a
   if (body->unbounded) sim_.unbounded.push_back(id);
   if (body->kinematic()) sim_.kinematic.push_back(id);
   if (body->kinematic() && body->motion->calls_out()) sim_.calls_out = true;
+  if (body->shape_P) most_parts_ = std::max(most_parts_, body->shape_P->part_count());
   scene.contacts.add_body(*body);
   scene.bodies.push_back(std::move(body));
 }

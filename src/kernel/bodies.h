@@ -44,6 +44,8 @@ class Bodies {
   const Body* carrier_of(const MultibodyDef& def) const;
   // The body with that id as it is defined; errors where it cannot be.
   std::unique_ptr<Body> make(const BodyDef& def, BodyId id) const;
+  // Of a new body and any other that it may meet the pairs of parts are numbered by ints.
+  void require_numbers_of_parts(const Body& body) const;
   // `born_as`: whose id its birth has.
   void enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_as);
   void require_no_overlap(const Body& a, const Body& b) const;
@@ -56,6 +58,7 @@ class Bodies {
   Discontinuities& discontinuities_;
   Editing& editing_;
   std::unordered_map<std::string, BodyId> names_;
+  std::size_t most_parts_ = 1;  // of any body so far
 };
 
 }  // namespace tw

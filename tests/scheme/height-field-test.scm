@@ -63,4 +63,9 @@
 (test-message "no part of a union" "body of its own" (union (sphere 1) (height-field rows)))
 (test-message "not placed within a shape" "#:position" (placed (height-field rows)))
 
+(test-message "too many pairs of parts" "many has 46341 parts and body-0 46341; expected a product"
+  (let ((many (apply union (make-list 46341 (sphere 1)))))
+    (add-body! #:shape many)
+    (add-body! #:shape many #:name "many" #:position #(5 0 0))))
+
 (test-end "height-field")
