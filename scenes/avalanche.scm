@@ -10,7 +10,7 @@
 (define-scene-parameter rocks 300 "number of rocks")
 (define-scene-parameter friction 0.5 "coefficient of friction of all contacts")
 (define-scene-parameter restitution 0.2 "coefficient of restitution of all impacts")
-(define-scene-parameter spacing 0 "m, of a height field in place of the slabs; 0 for slabs")
+(define-scene-parameter spacing 0 "m, at most 1, of a height field in place of the slabs; 0: slabs")
 
 (set-contact-parameters! #t #t #:restitution restitution #:friction friction)
 
