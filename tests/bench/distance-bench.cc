@@ -1,8 +1,10 @@
 // Signed distances of every pair of shapes: the worst errors over random and degenerate poses, and
-// what a query costs beside libccd's test for overlap.  Prints the Markdown table of
-// doc/numerics.md.
+// what a query costs beside libccd's test for overlap and, where it is installed, FCL's signed
+// distance.  Prints the Markdown tables of doc/numerics.md.
 //
-//   distance-bench [POSES A PAIR]        3000 without
+//   distance-bench [POSES A PAIR [TOLERANCE]]
+//
+// 3000 poses without; FCL's tolerance as a share of the larger body's size, 1e-6 without.
 //
 // Sizes are 1e-3 to 1e3 m, those of a pair within 1:10 of each other, proportions 1 to 1:1000.
 // Nothing is compared with another answer: bodies that are apart by d have two points so far apart
@@ -17,6 +19,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/distance-fcl.h"
 #include "collision/ellipsoid-point.h"
 #include "collision/frustum-point.h"
 #include "collision/round-distance.h"
@@ -90,11 +93,74 @@ void ccd_center(const void* object, ccd_vec3_t* point) {
   ccdVec3Set(point, x.x(), x.y(), x.z());
 }
 
+// The same for FCL; `kind` is a place in `names`.
+FclSolid plain(const Solid& solid, int kind) {
+  const ConvexPart& part = solid.part();
+  FclSolid out;
+  out.kind = static_cast<FclSolid::Kind>(kind);
+  switch (out.kind) {
+    case FclSolid::Kind::ball: out.sizes = {part.radius}; break;
+    case FclSolid::Kind::box:
+      for (int k = 0; k < 3; ++k) out.sizes[static_cast<std::size_t>(k)] = 2 * part.half_edges[k];
+      break;
+    case FclSolid::Kind::hull:
+      for (const Vec3& x : part.core->vertices()) out.vertices.push_back({x.x(), x.y(), x.z()});
+      for (const Polyhedron::Face& face : part.core->faces()) {
+        out.faces.push_back(face.count);
+        for (int k = 0; k < face.count; ++k) out.faces.push_back(part.core->corner(face.first + k));
+        ++out.face_count;
+      }
+      break;
+    case FclSolid::Kind::ellipsoid:
+      for (int k = 0; k < 3; ++k) out.sizes[static_cast<std::size_t>(k)] = part.semi_axes[k];
+      break;
+    default: out.sizes = {part.radius + part.margin, 2 * part.half_length};
+  }
+  const Frame frame = solid.frame * part.placement;
+  Eigen::Map<Mat3>(out.rotation.data()) = frame.R;
+  Eigen::Map<Vec3>(out.position.data()) = frame.p;
+  return out;
+}
+
 struct Worst {
   double apart = 0, points = 0, depth = 0;
   long poses = 0, overlaps = 0, ccd_disagrees = 0;
   double ours = 0, theirs = 0;  // ns
 };
+
+// What FCL is asked, and ours to compare with.
+struct Questions {
+  std::vector<FclQuery> queries;
+  std::vector<double> distances, sizes;  // m; the larger body's
+  double cost = 0;                       // of ours, ns a query
+};
+
+#ifdef TW_FCL
+// Prints a row: what FCL's two solvers cost, where they give no answer, and how far theirs is from
+// ours as a share of the size, apart and overlapping: the worst, and how many beyond 1e-4.
+void print_fcl(const char* a, const char* b, const Questions& questions) {
+  std::printf("| %s, %s | %.0f |", a, b, questions.cost);
+  for (const FclSolver solver : {FclSolver::libccd, FclSolver::own}) {
+    const std::vector<FclAnswer> answers = fcl_distances(questions.queries, solver);
+    double cost = 0, apart = 0, depth = 0;
+    long given = 0, far = 0;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      if (!answers[i].given) continue;
+      ++given;
+      cost += answers[i].cost;
+      const double distance = questions.distances[i];
+      const double error = std::abs(answers[i].distance - distance) / questions.sizes[i];
+      double& worst = distance > 0 ? apart : depth;
+      worst = std::max(worst, error);
+      if (!(error < 1e-4)) ++far;
+    }
+    std::printf(" %.0f | %.0e | %.0e | %ld | %zu |", cost / static_cast<double>(given), apart,
+                depth, far, answers.size() - static_cast<std::size_t>(given));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+#endif
 
 double best_slab(const Solid& a, const Solid& b, const Vec3& start, Random& random) {
   double best = -1e300;
@@ -114,7 +180,7 @@ double best_slab(const Solid& a, const Solid& b, const Vec3& start, Random& rand
   return best;
 }
 
-void judge(const Solid& a, const Solid& b, Random& random, Worst& worst) {
+double judge(const Solid& a, const Solid& b, Random& random, Worst& worst) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
     return 1e9 * std::chrono::duration<double>(Clock::now() - start).count();
@@ -145,10 +211,11 @@ void judge(const Solid& a, const Solid& b, Random& random, Worst& worst) {
     note(worst.depth, std::abs(width - s.distance));
     if (worst.overlaps % 4 == 0) note(worst.depth, best_slab(a, b, s.normal, random) - s.distance);
   }
+  return s.distance;
 }
 
 // Degenerate: axes parallel or square to each other, nearest features in exact touch.
-Worst worst_of(int kind_a, int kind_b, int poses) {
+Worst worst_of(int kind_a, int kind_b, int poses, double tolerance, Questions& questions) {
   Random random(static_cast<std::uint64_t>(100 * kind_a + kind_b));
   Worst worst;
   for (int i = 0; i < poses; ++i) {
@@ -174,24 +241,41 @@ Worst worst_of(int kind_a, int kind_b, int poses) {
     if (gap < -0.3 * thin) gap = -0.3 * thin;
     if (degenerate) gap = i % 200 ? 0 : -0.01 * thin;
     b.frame.p -= (far.distance - gap) * far.normal;
-    judge(a, b, random, worst);
+    const double distance = judge(a, b, random, worst);
+    const double larger = std::max(a.size(), b.size());
+    questions.queries.push_back({plain(a, kind_a), plain(b, kind_b), tolerance * larger});
+    questions.distances.push_back(distance);
+    questions.sizes.push_back(larger);
   }
   return worst;
 }
 
-int print_table(int poses) {
+int print_tables(int poses, [[maybe_unused]] double tolerance) {
   std::printf(
       "| pair | poses | apart | points | overlaps | depth | ns | libccd, ns | sign differs |\n");
   std::printf("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  std::vector<Questions> of_pairs;
   for (int i = 0; i < kinds; ++i)
     for (int j = i; j < kinds; ++j) {
-      const Worst w = worst_of(i, j, poses);
+      const Worst w = worst_of(i, j, poses, tolerance, of_pairs.emplace_back());
       const double n = static_cast<double>(w.poses);
+      of_pairs.back().cost = w.ours / n;
       std::printf("| %s, %s | %ld | %.0e | %.0e | %ld | %.0e | %.0f | %.0f | %ld |\n", names[i],
                   names[j], w.poses, w.apart, w.points, w.overlaps, w.depth, w.ours / n,
                   w.theirs / n, w.ccd_disagrees);
       std::fflush(stdout);
     }
+#ifdef TW_FCL
+  std::printf(
+      "\n| pair | ours, ns | FCL, ns | apart | depth | > 1e-4 | none | own, ns | apart | depth | > "
+      "1e-4 | "
+      "none |\n");
+  std::printf(
+      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  std::size_t pair = 0;
+  for (int i = 0; i < kinds; ++i)
+    for (int j = i; j < kinds; ++j) print_fcl(names[i], names[j], of_pairs[pair++]);
+#endif
   return 0;
 }
 
@@ -200,9 +284,11 @@ int print_table(int poses) {
 
 int main(int count, char** arguments) {
   const int poses = count > 1 ? std::atoi(arguments[1]) : 3000;
-  if (poses <= 0) {
-    std::fprintf(stderr, "distance-bench: poses is %s; expected a positive number\n", arguments[1]);
+  const double tolerance = count > 2 ? std::atof(arguments[2]) : 1e-6;
+  if (poses <= 0 || !(tolerance > 0)) {
+    std::fprintf(stderr,
+                 "distance-bench: expected positive numbers of poses and for FCL's tolerance\n");
     return 2;
   }
-  return tw::testing::print_table(poses);
+  return tw::testing::print_tables(poses, tolerance);
 }
