@@ -61,10 +61,12 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
       left = std::min(left, s.distance - travel.against(s.normal));
     };
     if (shape_a.tree() || shape_b.tree()) {
-      // what is farther than this is not looked at
-      constexpr double looked_at = 4;
-      left = (looked_at - 1) * travel.most();
-      visit_near_parts(shape_a, fa, shape_b, fb, looked_at * travel.most(), look);
+      // what is farther than this is not looked at: some times the way, and of what hardly moves a
+      // share of its size
+      const double farthest =
+          std::max(4 * travel.most(), 0.05 * std::min(a.least_width, b.least_width));
+      left = farthest - travel.most();
+      visit_near_parts(shape_a, fa, shape_b, fb, farthest, look);
     } else {
       for (std::size_t i = 0; i < shape_a.part_count() && left > rounding; ++i)
         for (std::size_t j = 0; j < shape_b.part_count() && left > rounding; ++j) look(i, j);
