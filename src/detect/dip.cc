@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "base/interruption.h"
 #include "detect/approach.h"
 
 namespace tw {
@@ -33,8 +34,10 @@ double first_dip(const Piece& piece, SimplexCaches& caches, double from, double 
   const double spacing = std::ldexp(1.0, std::ilogb(0.5 * depth / speed));
   const auto after = [&](double t) { return (std::floor(t / spacing) + 1) * spacing; };
 
+  // of what turns so fast that its points run through a width in an instant there are billions
+  constexpr std::uint64_t between_questions = 64;
   for (double t = from;;) {
-    ++looks;
+    if (++looks % between_questions == 0) raise_if_interrupted();
     const double clear = certificate(piece, caches, t, depth);
     if (t > from && !(clear > t) && distance_at(piece, t) < -depth) return t;
     const double next = std::max(std::floor(clear / spacing) * spacing, after(t));

@@ -18,7 +18,7 @@ namespace tw {
 
 // The first point of the fine grid in (from, to) at which the two are deeper than a dip's share of
 // the thinner one; `never`: none.  A function of the piece and the stretch alone.  `looks`: counts
-// certificates.
+// certificates.  May be given up (base/interruption.h).
 double first_dip(const Piece& piece, SimplexCaches& caches, double from, double to,
                  std::uint64_t& looks);
 

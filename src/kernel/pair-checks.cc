@@ -346,9 +346,15 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
     // what was replaced at the instant at which it began no claim has completed
     for (const State* state : {piece.a, piece.b})
       if (moves_in_group(*state)) state->group->arc->extend(state->group->arc->start().end);
-    const auto end = predicted_exactly(piece) ? follow_exact(pair, piece, counts)
-                                              : follow_on_grid(pair, piece, until, counts);
-    if (end) return *end;
+    try {
+      const auto end = predicted_exactly(piece) ? follow_exact(pair, piece, counts)
+                                                : follow_on_grid(pair, piece, until, counts);
+      if (end) return *end;
+    } catch (...) {
+      // Ctrl-C: a dip that was looked for is looked for again, so all is from the safe time on
+      pair.started = false;
+      throw;
+    }
   }
 }
 
