@@ -57,7 +57,7 @@ come from the shape and the density.
 (define (remove-body! body)
   "Take BODY out of the current world, between runs: it touches nothing from now on, what lay on it
 falls, and callbacks that have it among their targets end.  Its name may be given again; using BODY
-after this is an error."
+after this is an error.  Links of multibodies cannot be removed."
   (%remove-body! (current-world) body))
 
 ;; The motion of the body as the C++ side wants it, or #f.

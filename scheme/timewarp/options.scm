@@ -82,7 +82,7 @@
     (no-overlay ("no-overlay") #f #f "pictures without title, time and scale")
     (record (#\o "record") "FILE" ,(later "the recording format") "not there yet")
     (poses ("poses") "FILE.csv" ,text "write the poses of moving bodies at every frame time")
-    (events ("events") "FILE.csv" ,text "write every committed collision")
+    (events ("events") "FILE.csv" ,text "write every committed collision, fusion and fission")
     (stats ("stats") ("FILE.json") ,optional-text "statistics after the run, printed or as a JSON file")
     (hash ("hash") #f #f "print the SHA-256 of the whole committed history as the last line")
     (define (#\D "define") "NAME=VALUE" ,definition "set a scene parameter (repeatable)")

@@ -25,9 +25,11 @@
   (lambda (hit port)
     (format port "#<hit ~a at ~,4f m>" (%body-name (body-of hit)) (distance-of hit))))
 
-;; BODIES, or all of the current world, without those of IGNORE: a body, a view, or a list of them.
-(define (candidates bodies ignore)
-  (let ((all (or bodies (begin (%require-outside-callbacks "looking at all bodies")
+;; BODIES, or all of the current world, without those of IGNORE: a body, a view, or a list of them;
+;; for WHO, a procedure's name.
+(define (candidates who bodies ignore)
+  (let ((all (or bodies (begin (%require-outside-callbacks
+                                (string-append who " without #:bodies"))
                                (world-bodies))))
         (left-out (map %view-body (if (list? ignore) ignore (list ignore)))))
     (unless (list? all) (bad-value "bodies" all "a list of bodies or views"))
@@ -44,7 +46,8 @@ handed, which #:bodies must list.
 #:max-distance  m, how far the ray goes; without end
 #:ignore        a body or view that the ray passes through, or a list of them; none
 #:bodies        a list of those that it may hit; all bodies of the current world"
-  (let ((found (%ray-cast from direction max-distance (candidates bodies (or ignore '())))))
+  (let ((found (%ray-cast from direction max-distance
+                          (candidates "ray-cast" bodies (or ignore '())))))
     (and found (apply make-hit found))))
 
 (define (hit? object)
@@ -85,7 +88,7 @@ a callback, of the views that it is handed, which #:bodies must list.
 #:orientation  a quaternion #(w x y z); #(1 0 0 0)
 #:ignore       a body or view that doesn't count, or a list of them; none
 #:bodies       a list of those that count; all bodies of the current world"
-  (%overlapping shape position orientation (candidates bodies (or ignore '()))))
+  (%overlapping shape position orientation (candidates "overlapping" bodies (or ignore '()))))
 
 (define (bounding-box body)
   "Return two values: the least and the greatest corner of the box along the world's axes that just holds

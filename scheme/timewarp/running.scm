@@ -53,7 +53,8 @@
   "Run the current world; return when everything up to and including the time to run to is committed
 and observed.  Ctrl-C interrupts; the world stays usable.
 
-#:until  s, the time to run to; the scene's duration"
+#:until  s, the time to run to, counted from the world's start; what is past already changes
+         nothing: restore! and load-scene go back; the scene's duration"
   (let ((world (current-world)))
     (run-world! world (or until (world-duration world)))))
 
@@ -73,7 +74,9 @@ and observed.  Ctrl-C interrupts; the world stays usable.
     (if #f #f)))
 
 (define (statistics)
-  "Return the statistics of the current world as an association list; numbers are SI."
+  "Return the statistics of the current world as an association list of symbols and values;
+numbers are SI.  (assq-ref (statistics) 'collisions) is one of them; what each means tells
+doc/statistics.md in the sources."
   (%statistics (current-world)))
 
 (define (show-statistics)

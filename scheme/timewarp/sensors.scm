@@ -27,9 +27,9 @@ on-collision! it reads what is after the impulse, as angular-velocity does.
 
 (define-keyword-procedure (net-contact-force body #:key from)
   "Return the sum of the forces, friction included, of the lasting contacts of BODY, a body or a view, N, world
-frame; #(0 0 0) where it has none.  An impact is no force but an impulse (collision-impulse tells
-it): in on-collision! it is what was just before.  In a callback, what presses on a body that is fixed
-or moved by #:motion is read from those that touch it: #:from must list their views.
+frame; #(0 0 0) where it has none.  An impact is no force but an impulse, which
+collision-impulse tells: in on-collision! it is what was just before.  In a callback, what presses on a
+body that is fixed or moved by #:motion is read from those that touch it: #:from must list their views.
 
 #:from  a body or view, or a list of them: the forces of those alone; of all"
   (%net-contact-force body (and from (if (list? from) from (list from)))))
@@ -37,7 +37,8 @@ or moved by #:motion is read from those that touch it: #:from must list their vi
 (define-keyword-procedure (rangefinder body direction #:key at max-distance ignore bodies)
   "Return the distance (m) to the first hit of a ray that is fixed to BODY, a body or a view, or #f; BODY itself
 is passed through.  DIRECTION is a vector of the body's frame that is not zero.  In a callback, among the
-views that it is handed, which #:bodies must list.  (ray-cast tells what is hit and where.)
+views that it is handed, which #:bodies must list.  What is hit, and where, ray-cast tells.  Of a link, its
+neighbours are not passed through: #:ignore names them.
 
 #:at            m, where the ray begins in the body's frame; #(0 0 0)
 #:max-distance  m, how far it goes; without end
@@ -46,5 +47,6 @@ views that it is handed, which #:bodies must list.  (ray-cast tells what is hit 
   (match (%mounted-ray body at direction)
     ((from way)
      (let* ((others (if (list? ignore) ignore (if ignore (list ignore) '())))
-            (found (%ray-cast from way max-distance (candidates bodies (cons body others)))))
+            (found (%ray-cast from way max-distance
+                              (candidates "rangefinder" bodies (cons body others)))))
        (and found (match found ((_ _ _ distance) distance)))))))
