@@ -4,6 +4,7 @@
 (define-module (timewarp callbacks)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp arity)
   #:use-module (timewarp worlds)
   #:use-module (timewarp bodies)
   #:use-module ((timewarp multibodies) #:select (multibody? call-with-sides))
@@ -22,14 +23,17 @@
 
 #:start   s, not before the world's time; at once
 #:period  s, positive; #f: PROCEDURE returns its next time, or #f for never again; #f"
-  (%add-callback! (current-world)
-                  (if (or (body? targets) (multibody? targets)) (list targets) targets)
-                  (watched procedure) start period (caller-place)))
+  (let ((targets (if (or (body? targets) (multibody? targets)) (list targets) targets)))
+    (when (list? targets)
+      (check-takes "add-callback!" procedure (1+ (length targets))
+                   "the time and a view of each target"))
+    (%add-callback! (current-world) targets (watched procedure) start period (caller-place))))
 
 (define (on-collision! a b procedure)
   "Call PROCEDURE with the collision and two views, in the order A, B, after each impact between A and
 B; each is a body, a multibody (for each of its links), a material, or #t for all.  It may run again
 after a rollback."
+  (check-takes "on-collision!" procedure 3 "the collision and two views")
   (let ((watched (watched procedure)) (place (caller-place)))
     (call-with-sides (lambda (a b) (%on-collision! (current-world) a b watched place)) a b)))
 
@@ -43,6 +47,7 @@ behind both; until none is deeper than 1 %."
   (let ((world (current-world))
         (place (caller-place)))
     (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))
+    (check-takes "observe!" procedure 1 "what it is to see")
     (match kind
       ((or 'collision 'fusion 'fission 'squeezed)
        (%observe-collisions! world kind procedure place))

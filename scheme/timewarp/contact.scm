@@ -6,6 +6,8 @@
   #:use-module (timewarp worlds)
   #:use-module ((timewarp multibodies) #:select (call-with-sides))
   #:use-module (srfi srfi-9)
+  #:use-module (srfi srfi-9 gnu)
+  #:use-module (ice-9 format)
   #:export (set-contact-parameters! contact-parameters disable-collisions! enable-collisions!
             contacts contact? contact-bodies contact-point contact-normal contact-gap contact-force
             contact-friction contact-slipping?))
@@ -78,6 +80,16 @@ for all."
   (force force-of)
   (friction friction-of)
   (slipping? slipping-of?))
+
+(set-record-type-printer! <contact>
+  (lambda (contact port)
+    (let ((force (force-of contact)))
+      (apply format port "#<contact of ~a and ~a, ~,4f N~a>"
+             (append (map %body-name (bodies-of contact))
+                     (list force
+                           (cond ((zero? force) "")
+                                 ((slipping-of? contact) ", slips")
+                                 (else ", sticks"))))))))
 
 (define-keyword-procedure (contacts #:key body)
   "Return a list of the contacts of all contact groups at world-time, by pairs of bodies in the order in

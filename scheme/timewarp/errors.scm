@@ -6,6 +6,7 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp errors)
   #:use-module (timewarp primitives)
+  #:use-module (timewarp near-names)
   #:use-module (srfi srfi-1)
   #:use-module (ice-9 match)
   #:use-module (ice-9 regex)
@@ -41,8 +42,8 @@
   (let ((folder (own-directory)))
     (cons (string-append (dirname folder) "/timewarp.scm")
           (map (lambda (name) (string-append folder "/" name ".scm"))
-               '("errors" "worlds" "parameters" "shapes" "bodies" "contact" "queries" "sensors" "forces"
-                 "multibodies" "purity" "callbacks" "vectors"
+               '("errors" "worlds" "parameters" "near-names" "arity" "shapes" "bodies" "contact"
+                 "queries" "sensors" "forces" "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
                  "describing" "exit-status" "completion" "effects" "history" "line-editing" "server"
@@ -400,7 +401,18 @@ alone would go on until the memory is full.)"
                     (print port #f key args)
                     (when (and frame (= (length (user-frames 2)) 2))
                       (print-user-frames port)))
-                   (_ (print port frame key args))))))
+                   (_ (print port frame key (with-remedy key args)))))))
+
+;; The arguments of an exception of Guile's, with what can be done where that is known.
+(define (with-remedy key args)
+  (match (cons key args)
+    (('unbound-variable who (? string? message) (and parts ((? symbol? name))) . rest)
+     (cons* who (string-append message "~A") (append parts (list (hint name))) rest))
+    ;; (set! (body-mass ball) 2) is ((setter body-mass) ball 2), of which Guile says only that
+    (('wrong-type-arg "setter" _ (1 (? procedure? procedure)) . _)
+     (list #f "~A cannot be set; expected an accessor, such as velocity"
+           (list (or (procedure-name procedure) procedure)) #f))
+    (_ args)))
 
 (define (print-user-frames port)
   "Print the frames of the user's files on the stack to PORT, one a line."

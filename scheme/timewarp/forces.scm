@@ -3,6 +3,7 @@
 (define-module (timewarp forces)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp arity)
   #:use-module (timewarp worlds)
   #:export (add-drag! add-spring! attach! detach! attached? add-force!))
 
@@ -61,4 +62,5 @@ about the centre of mass), world frame.
 It must be pure: the integrator asks it for times and motions that it only tries, in any order, some
 twelve times a step.  From the view it may read position, orientation, velocity and
 angular-velocity.  A callback that sets applied-force at a rate of its own is cheaper."
+  (check-takes "add-force!" procedure 2 "the time and a view of the body")
   (%add-force! (current-world) body procedure (caller-place)))

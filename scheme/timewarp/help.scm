@@ -3,8 +3,10 @@
 (define-module (timewarp help)
   #:use-module (timewarp describing)
   #:use-module (timewarp errors)
+  #:use-module (timewarp near-names)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
+  #:use-module ((srfi srfi-1) #:select (find))
   #:export (help-groups)
   ;; beside (ice-9 session), which has another one
   #:replace (help))
@@ -64,7 +66,7 @@ A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again
 
 (define last-lines
   "
-(help add-body!) or ,describe add-body! shows all of a procedure; ,apropos TEXT finds names.
+(help add-body!) or ,describe add-body! shows all of a procedure; (help \"force\") finds names.
 Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
 whose description ends with its default.
 Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
@@ -84,10 +86,7 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
 
 (define (show-page)
   (display first-lines)
-  (for-each (match-lambda
-              ((group what . names)
-               (format #t "~%~a: ~a~%~a~%" group what (names->lines names))))
-            help-groups)
+  (for-each (lambda (group) (newline) (show-group group)) help-groups)
   (display last-lines))
 
 (define (show-help name value)
@@ -98,19 +97,35 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
        (#f (format #t "~a~%" text))
        (words (format #t "(~a)~%~%~a~%" (string-join words) text))))))
 
+;; TEXT is a name, a subject, or a part of names.
+(define (help-on text)
+  (define (subject? group) (string-ci=? (car group) text))
+  (cond ((module-variable (current-module) (string->symbol text)) (help (string->symbol text)))
+        ((find subject? help-groups) => show-group)
+        (else
+         (match (names-with text)
+           (() (bad-value "help's argument" (string->symbol text)
+                          "a name, a subject of (help), or a part of a name"))
+           (names (format #t "names with ~a:~%~a~%" text (names->lines names)))))))
+
+(define show-group
+  (match-lambda
+    ((group what . names) (format #t "~a: ~a~%~a~%" group what (names->lines names)))))
+
 (define (name-of value)
   (and (procedure? value) (procedure-name value)))
 
 (define* (help #:optional (what #f))
   "(help) shows what to type first and the procedures by group; (help PROCEDURE), (help 'NAME) and
-(help \"NAME\") show the description of one."
+(help \"NAME\") show the description of one; (help \"TEXT\") also lists a subject that is called so,
+or names in which TEXT occurs."
   (match what
     (#f (show-page))
-    ((? string? name) (help (string->symbol name)))
+    ((? string? text) (help-on text))
     ((? symbol? name)
      (let ((variable (module-variable (current-module) name)))
        (unless (and variable (variable-bound? variable))
-         (bad-value "help's argument" name "a name that is defined; ,apropos TEXT finds names"))
+         (bad-value "help's argument" name "a name that is defined; (help \"TEXT\") finds names"))
        (show-help name (variable-ref variable))))
     (value (show-help (or (name-of value) value) value)))
   (if #f #f))

@@ -62,8 +62,13 @@ ends at the edge of the grid.
                  (or spacing 1)))
 
 (define (rows->array rows)
-  (unless (and (pair? rows) (apply = (map length rows)))
-    (bad-value "heights" (map length rows) "a list of rows of one length"))
+  (when (null? rows) (bad-value "heights" rows "a list of rows of numbers, in metres"))
+  (let ((size (length (car rows))))
+    (for-each (lambda (row j)
+                (unless (= (length row) size)
+                  (raise-error (format #f "row ~a of heights has ~a numbers and row 0 has ~a; ~a"
+                                       j (length row) size "expected rows of one length"))))
+              rows (iota (length rows))))
   (list->array 2 rows))
 
 (define (union . shapes)

@@ -51,6 +51,25 @@
 (expect "a parenthesis too many" "3:13: .*unexpected" ";; nothing" "(define b 3))")
 (expect "a syntax error" "2:[0-9]+: syntax error in let: bad let" "(display 1) (let ((x)) 5)")
 (expect "an unbound name" "3:4: Unbound variable: add-bdy!" "(define a" "  (add-bdy! 3))")
+(expect "a name written otherwise" "2:20: Unbound variable: heightField; is height-field meant\\?"
+        "(define ground 3) (heightField '((0 0) (0 0)))")
+(expect "a name of a module that is not used" "2:2: .*v[+]; [(]use-modules [(]timewarp vectors[)][)] imports"
+        "(v+ #(0 0 1) #(0 0 2))")
+(expect "a name like no other" "2:2: Unbound variable: zorkmid\n$" "(zorkmid 3)")
+(expect "what cannot be set" "3:[0-9]+: body-mass cannot be set; expected an accessor"
+        "(define ball (add-body! #:shape (sphere 1)))"
+        "(set! (body-mass ball) 3)")
+(expect "a callback with too few arguments"
+        "3:1: the procedure of add-callback! takes \\(ball\\); expected one that takes 2 arguments: the time"
+        "(define ball (add-body! #:shape (sphere 1)))"
+        "(add-callback! ball (lambda (ball) 3) #:period 0.1)")
+(expect "a callback on collisions without views" "2:1: .*on-collision! takes .c.; expected .* 3 arguments"
+        "(on-collision! #t #t (lambda (c) c))")
+(expect "an observer with two arguments" "2:1: .*observe! takes .a b.; expected one that takes 1 argument:"
+        "(observe! 'collision (lambda (a b) a))")
+(expect "a force of the view alone" "3:1: .*add-force! takes .ball.; expected one that takes 2"
+        "(define ball (add-body! #:shape (sphere 1)))"
+        "(add-force! ball (lambda (ball) #(0 0 1)))")
 (expect "too many arguments" "2:11: Wrong number of arguments" "(define s (sphere 1 2))")
 (expect "an error in a helper" "3:6: the radius of a sphere is -2"
         "(define (make i)" "  (+ (sphere (- i 2)) 1))" "(for-each make (iota 5))")

@@ -58,6 +58,9 @@
     (let ((all (contacts)))
       (test-equal "a box on the ground has four" 4 (length all))
       (test-assert "they are contacts" (every contact? all))
+      (test-assert "a contact names its bodies, its force and whether it sticks"
+        (string-match "^#<contact of [^ ]+ and [^ ]+, [0-9.]+ N(, s(tick|lip)s)?>$"
+                      (object->string (car all))))
       (test-assert "nothing else is" (not (any contact? (list 1 "a" '() floor #f))))
       (test-assert "between ground and box" (every (lambda (c) (equal? (contact-bodies c) (list floor box))) all))
       (test-assert "normals point up, from the ground to the box"

@@ -50,7 +50,8 @@
 
 (test-message "no array" "heights" (height-field 3))
 (test-message "a vector" "array of rank 2" (height-field #(1 2 3)))
-(test-message "rows of different lengths" "rows of one length" (height-field '((0 0) (0 0 0))))
+(test-message "rows of different lengths" "row 1 of heights has 3 .*row 0 has 2; .*of one length"
+  (height-field '((0 0) (0 0 0))))
 (test-message "one row" "1 rows of 3 heights; expected at least 2 of 2" (height-field '((0 0 0))))
 (test-message "no number" "heights" (height-field '((0 0) (0 a))))
 (test-message "not finite" "height 1 in row 1" (height-field '((0 0) (0 +inf.0))))
