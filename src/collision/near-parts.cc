@@ -3,7 +3,7 @@
 #include "collision/near-parts.h"
 
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "geometry/polyhedron.h"
 
@@ -16,23 +16,23 @@ bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, c
   return (frame_b * b.bound_center - frame_a * a.bound_center).squaredNorm() > near * near;
 }
 
-double gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
-                     const Frame& other_frame) {
-  if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space)
-    return -std::numeric_limits<double>::infinity();
+FaceGap gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
+                      const Frame& other_frame) {
+  if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space) return {};
   const Frame world = other_frame * other.placement;
-  const Vec3 center = world.to_local(frame * part.bound_center);
+  const Vec3 center = frame * part.bound_center;
   int face = 0;
-  const double height = other.core->face_separation(center, face);
+  const double height = other.core->face_separation(world.to_local(center), face);
+  const Vec3 normal = world.R * other.core->face(face).normal;
   double reach = part.bound_radius;
   if (part.kind == PartKind::polyhedron) {
-    const Vec3 down = -(world.R * other.core->face(face).normal);
+    const Vec3 down = -normal;
     const Mat3 R = frame.R * part.placement.R;
     reach = part.core->extent(R.transpose() * down, 0) - down.dot(R * part.core->center());
   }
   // less what rounding can do to it
   const double rounding = 1e-13 * (std::abs(height) + part.bound_radius + other.bound_radius);
-  return height - reach - rounding;
+  return {height - reach - rounding, normal, center - height * normal};
 }
 
 Aabb seen_from(const Frame& frame, const Aabb& box) {
@@ -45,6 +45,13 @@ void parts_in(const Shape& shape, const Aabb& box, std::vector<std::uint32_t>& o
   out.clear();
   shape.tree()->overlapping(box, [&](std::uint32_t number) { out.push_back(number); });
   std::sort(out.begin(), out.end());
+}
+
+void parts_around(const Shape& shape, const Frame& frame, const Aabb& place,
+                  std::vector<std::uint32_t>& out) {
+  if (shape.tree()) return parts_in(shape, seen_from(frame, place), out);
+  out.resize(shape.part_count());
+  std::iota(out.begin(), out.end(), 0);
 }
 
 void parts_near(const Shape& shape, const ConvexPart& other, const Frame& frame, double reach,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,10 +22,15 @@ inline int pair_number(std::size_t i, std::size_t j, const Shape& b) {
   return static_cast<int>(i * b.part_count() + j);
 }
 
-// A lower bound of the distance of two parts, by the face of `other` (a polyhedron; else there is
-// none) that the middle of `part` is most over, m.
-double gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
-                     const Frame& other_frame);
+// A part over the face of a polyhedron that the middle of the part is most over; world frame.
+struct FaceGap {
+  // m: a lower bound of their distance; -infinity where the other is no polyhedron
+  double gap = -std::numeric_limits<double>::infinity();
+  Vec3 normal = Vec3::Zero();  // of the face, outwards
+  Vec3 foot = Vec3::Zero();    // of the middle of the part on the face's plane
+};
+FaceGap gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
+                      const Frame& other_frame);
 
 // Frame B as seen from frame A.
 inline Frame seen_from(const Frame& a, const Frame& b) {
@@ -45,6 +51,11 @@ void parts_near(const Shape& shape, const ConvexPart& other, const Frame& frame,
 // Overwrites `out`.
 void parts_in(const Shape& shape, const Aabb& box, std::vector<std::uint32_t>& out);
 
+// The parts of a placed shape that may come into a box of the world: those of a shape without a
+// tree are all named.  Ascending; overwrites `out`.
+void parts_around(const Shape& shape, const Frame& frame, const Aabb& place,
+                  std::vector<std::uint32_t>& out);
+
 // Of two shapes with at least one tree: whether each part of a is looked for in the tree of b, or
 // the other way round.  That of more parts is searched; a height field always is, as some of its
 // numbers stand for no part.
@@ -62,8 +73,8 @@ void visit_near_parts(const Shape& a, const Frame& frame_a, const Shape& b, cons
   const auto visit_if_near = [&](std::size_t i, std::size_t j) {
     const ConvexPart &part_a = a.part(i), &part_b = b.part(j);
     if (far_apart(part_a, frame_a, part_b, frame_b, reach)) return;
-    if (b.tree() && gap_over_face(part_a, frame_a, part_b, frame_b) > reach) return;
-    if (a.tree() && gap_over_face(part_b, frame_b, part_a, frame_a) > reach) return;
+    if (b.tree() && gap_over_face(part_a, frame_a, part_b, frame_b).gap > reach) return;
+    if (a.tree() && gap_over_face(part_b, frame_b, part_a, frame_a).gap > reach) return;
     visit(i, j);
   };
   if (!a.tree() && !b.tree()) {

@@ -206,9 +206,14 @@ std::optional<RayHit> cast_ray(const Shape& shape, const Frame& frame, const Vec
   const auto search = [&](const auto& again, const PartTree::Node& node) -> void {
     if (node.is_leaf) return try_part(shape.part(node.first));
     const PartTree::Node *first = &tree.node(node.first), *second = &tree.node(node.first + 1);
-    if (entry(*second) < entry(*first)) std::swap(first, second);
-    if (entry(*first) < infinity) again(again, *first);
-    if (entry(*second) < infinity) again(again, *second);
+    double one = entry(*first), two = entry(*second);
+    if (two < one) {
+      std::swap(first, second);
+      std::swap(one, two);
+    }
+    if (one < infinity) again(again, *first);
+    // a hit in the first may be nearer than the second
+    if (two < infinity && (!nearest || two <= nearest->distance)) again(again, *second);
   };
   if (entry(tree.root()) < infinity) search(search, tree.root());
   return nearest;

@@ -379,38 +379,39 @@ struct Nearest {
   const Frame& frame_a;
   const Shape& b;
   const Frame& frame_b;
-  Separation least = {};
-  bool found = false;
+  Separation least = {.distance = std::numeric_limits<double>::infinity()};
 
   // Whether parts apart by this could be nearer, or first.
-  bool may_hold(double bound) const { return !found || !(bound > least.distance); }
+  bool may_hold(double bound) const { return !(bound > least.distance); }
   void try_parts(std::size_t i, std::size_t j) {
     const ConvexPart& part_a = a.part(i);
     const ConvexPart& part_b = b.part(j);
-    if (found && !may_hold(ball_bound(part_a, frame_a, part_b, frame_b))) return;
-    if (found && b.tree() && !may_hold(gap_over_face(part_a, frame_a, part_b, frame_b))) return;
-    if (found && a.tree() && !may_hold(gap_over_face(part_b, frame_b, part_a, frame_a))) return;
+    if (!may_hold(ball_bound(part_a, frame_a, part_b, frame_b))) return;
+    if (b.tree() && !may_hold(gap_over_face(part_a, frame_a, part_b, frame_b).gap)) return;
+    if (a.tree() && !may_hold(gap_over_face(part_b, frame_b, part_a, frame_a).gap)) return;
     Separation s = part_separation(part_a, frame_a, part_b, frame_b, nullptr);
     s.part_a = static_cast<int>(i);
     s.part_b = static_cast<int>(j);
     const bool first = std::pair(s.part_a, s.part_b) < std::pair(least.part_a, least.part_b);
-    if (found && !(s.distance < least.distance || (s.distance == least.distance && first))) return;
-    least = s;
-    found = true;
+    if (s.distance < least.distance || (s.distance == least.distance && first)) least = s;
   }
 };
 
-// All parts of one shape beneath a node of its tree against part `few` of the other, whose box in
-// the tree's frame is given: the nearest boxes first.
-void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, bool of_b,
-            std::size_t few, const Aabb& box) {
-  if (!nearest.may_hold(box_gap(node.box, box))) return;
+// All parts of one shape beneath a node of its tree, whose box is `gap` away, against part `few` of
+// the other, whose box in the tree's frame is given: the nearest boxes first.
+void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, double gap,
+            bool of_b, std::size_t few, const Aabb& box) {
+  if (!nearest.may_hold(gap)) return;
   if (node.is_leaf)
     return of_b ? nearest.try_parts(few, node.first) : nearest.try_parts(node.first, few);
-  const PartTree::Node &one = tree.node(node.first), &two = tree.node(node.first + 1);
-  const bool swap = box_gap(two.box, box) < box_gap(one.box, box);
-  search(nearest, tree, swap ? two : one, of_b, few, box);
-  search(nearest, tree, swap ? one : two, of_b, few, box);
+  const PartTree::Node *near = &tree.node(node.first), *far = &tree.node(node.first + 1);
+  double near_gap = box_gap(near->box, box), far_gap = box_gap(far->box, box);
+  if (far_gap < near_gap) {
+    std::swap(near, far);
+    std::swap(near_gap, far_gap);
+  }
+  search(nearest, tree, *near, near_gap, of_b, few, box);
+  search(nearest, tree, *far, far_gap, of_b, few, box);
 }
 
 Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape& b,
@@ -420,8 +421,11 @@ Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape
   const Shape& many = in_b ? b : a;
   const Shape& few = in_b ? a : b;
   const Frame frame = in_b ? seen_from(frame_b, frame_a) : seen_from(frame_a, frame_b);
-  for (std::size_t i = 0; i < few.part_count(); ++i)
-    search(nearest, *many.tree(), many.tree()->root(), in_b, i, part_bounds(few.part(i), frame));
+  for (std::size_t i = 0; i < few.part_count(); ++i) {
+    const Aabb box = part_bounds(few.part(i), frame);
+    const PartTree::Node& root = many.tree()->root();
+    search(nearest, *many.tree(), root, box_gap(root.box, box), in_b, i, box);
+  }
   return nearest.least;
 }
 

@@ -295,17 +295,12 @@ double Certificates::boxes_apart(const ConvexPart& part, const PartTree::Node& n
 // A part against the face of a polyhedron of the other body that it is most over.
 double Certificates::planes_apart(const ConvexPart& part, const ConvexPart& other, bool of_b,
                                   double allowance) {
-  if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space) return 0;
   const MovingBody& side = of_b ? b_ : a_;
   const MovingBody& over = of_b ? a_ : b_;
-  const Frame world = side.frame * other.placement;
-  const Vec3 center = over.frame * part.bound_center;
-  int face = 0;
-  const double height = other.core->face_separation(world.to_local(center), face);
-  const Vec3 n = world.R * other.core->face(face).normal;
-  const double gap = gap_over_face(part, over.frame, other, side.frame);
-  if (!(gap > rounding_)) return 0;
-  const Vec3 on_face = center - height * n, on_part = on_face + gap * n;
+  const FaceGap over_face = gap_over_face(part, over.frame, other, side.frame);
+  if (!(over_face.gap > rounding_)) return 0;
+  const Vec3 n = over_face.normal, on_face = over_face.foot;
+  const Vec3 on_part = on_face + over_face.gap * n;
   const bool as_ball = part.kind != PartKind::polyhedron;
   if (of_b)
     return longest([&](const MovingBody& x, const MovingBody& y) {

@@ -49,17 +49,13 @@ std::vector<SeamNeighbour> Surroundings::seam_neighbours(const Body& body,
   std::vector<SeamNeighbour> result;
   if (!body.fixed()) return result;
   result.reserve(2 * ground.bodies.size());
+  thread_local std::vector<std::uint32_t> near;
   for (const BodyId id : ground.bodies) {
     if (id == body.id()) continue;
     const Frame frame(scene_.body(id).motion->pose(0));
     const Shape& shape = *scene_.body(id).shape_P;
-    if (shape.tree()) {
-      thread_local std::vector<std::uint32_t> near;
-      parts_in(shape, seen_from(frame, ground.place), near);
-      for (const std::uint32_t i : near) result.push_back({&shape.part(i), frame});
-      continue;
-    }
-    for (const ConvexPart& part : shape.parts()) result.push_back({&part, frame});
+    parts_around(shape, frame, ground.place, near);
+    for (const std::uint32_t i : near) result.push_back({&shape.part(i), frame});
   }
   return result;
 }

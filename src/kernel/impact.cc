@@ -100,10 +100,7 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   const std::size_t parts_b = b.body->shape_P->part_count();
   // of the fixed body's own parts those that come near the mover
   std::vector<std::uint32_t> own;
-  if (shape.tree())
-    parts_in(shape, seen_from(frame, ground.place), own);
-  else
-    for (std::uint32_t i = 0; i < shape.part_count(); ++i) own.push_back(i);
+  parts_around(shape, frame, ground.place, own);
   const auto is_ghost = [&](const ContactPoint& c) {
     const auto pair = static_cast<std::size_t>(c.pair);
     const std::size_t number = fixed == &a ? pair / parts_b : pair % parts_b;
