@@ -100,11 +100,13 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
 ;; TEXT is a name, a subject, or a part of names.
 (define (help-on text)
   (define (subject? group) (string-ci=? (car group) text))
-  (cond ((module-variable (current-module) (string->symbol text)) (help (string->symbol text)))
+  (define name (string->symbol text))
+  (define variable (module-variable (current-module) name))
+  (cond ((and variable (variable-bound? variable)) (show-help name (variable-ref variable)))
         ((find subject? help-groups) => show-group)
         (else
          (match (names-with text)
-           (() (bad-value "help's argument" (string->symbol text)
+           (() (bad-value "help's argument" name
                           "a name, a subject of (help), or a part of a name"))
            (names (format #t "names with ~a:~%~a~%" text (names->lines names)))))))
 
@@ -117,15 +119,11 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
 
 (define* (help #:optional (what #f))
   "(help) shows what to type first and the procedures by group; (help PROCEDURE), (help 'NAME) and
-(help \"NAME\") show the description of one; (help \"TEXT\") also lists a subject that is called so,
-or names in which TEXT occurs."
+(help \"NAME\") show the description of one; (help 'SUBJECT) lists a group of (help), and (help 'PART)
+the names in which PART occurs."
   (match what
     (#f (show-page))
     ((? string? text) (help-on text))
-    ((? symbol? name)
-     (let ((variable (module-variable (current-module) name)))
-       (unless (and variable (variable-bound? variable))
-         (bad-value "help's argument" name "a name that is defined; (help \"TEXT\") finds names"))
-       (show-help name (variable-ref variable))))
+    ((? symbol? name) (help-on (symbol->string name)))
     (value (show-help (or (name-of value) value) value)))
   (if #f #f))

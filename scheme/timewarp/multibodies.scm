@@ -3,6 +3,7 @@
 (define-module (timewarp multibodies)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp near-names)
   #:use-module ((timewarp files) #:select (beside-caller note-file-read))
   #:use-module (timewarp worlds)
   #:use-module (ice-9 format)
@@ -287,7 +288,9 @@ floating and planar joints, <mimic>, moving links without mass.
 (define (find-multibody name)
   "Return the multibody called NAME in the current world; it is an error if there is none."
   (or (%find-multibody (current-world) name)
-      (bad-value "the name" name "the name of a multibody of the current world")))
+      (bad-value "the name" name
+                 (string-append "the name of a multibody of the current world"
+                                (meant name (map multibody-name (world-multibodies)))))))
 
 (define (world-multibodies)
   "Return the list of all multibodies of the current world, in the order in which they were added."

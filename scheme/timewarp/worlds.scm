@@ -3,6 +3,7 @@
 (define-module (timewarp worlds)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp near-names)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
   #:use-module (oop goops)
@@ -174,7 +175,9 @@ first.
 (define (find-body name)
   "Return the body called NAME in the current world; it is an error if there is none."
   (or (%find-body (current-world) name)
-      (bad-value "the name" name "the name of a body of the current world")))
+      (bad-value "the name" name
+                 (string-append "the name of a body of the current world"
+                                (meant name (map %body-name (world-bodies)))))))
 
 ;; ---- before the first run ----
 

@@ -55,6 +55,9 @@
         "(define ground 3) (heightField '((0 0) (0 0)))")
 (expect "a name of a module that is not used" "2:2: .*v[+]; [(]use-modules [(]timewarp vectors[)][)] imports"
         "(v+ #(0 0 1) #(0 0 2))")
+(expect "the name of no body, but nearly" "2:[0-9]+: .*ball1.*is ball-1 meant\\?"
+        "(add-body! #:shape (sphere 1) #:name \"ball-1\") (find-body \"ball1\")")
+(expect "the name of no body" "2:[0-9]+: .*name of a body of the current world\n$" "(find-body \"zorkmid\")")
 (expect "a name like no other" "2:2: Unbound variable: zorkmid\n$" "(zorkmid 3)")
 (expect "what cannot be set" "3:[0-9]+: body-mass cannot be set; expected an accessor"
         "(define ball (add-body! #:shape (sphere 1)))"

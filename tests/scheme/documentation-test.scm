@@ -48,6 +48,11 @@
 (test-assert "(help PROCEDURE) shows keywords and description"
   (string-match "^.camera #:eye #:target(.|\n)*Place the camera"
                 (with-output-to-string (lambda () (help camera)))))
+(test-assert "(help 'SUBJECT) lists a group"
+  (string-match "^Sensors: (.|\n)*rangefinder" (with-output-to-string (lambda () (help 'sensors)))))
+(test-assert "(help 'PART) lists names"
+  (string-match "names with friction:\n(.|\n)*contact-friction"
+                (with-output-to-string (lambda () (help 'friction)))))
 
 ;; the names that scenes rely on
 (for-each
