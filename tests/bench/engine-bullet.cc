@@ -1,0 +1,125 @@
+// The cases with exact results in Bullet.  Restitution is not to be lost to its speculative
+// contacts: only what touches is solved, and depth is mended by split impulses.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+
+#include "bench/engine-cases.h"
+
+namespace tw::bench {
+namespace {
+
+btVector3 to_bullet(const Vec3& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+
+btQuaternion to_bullet(const Quat& q) {
+  return {static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()), static_cast<btScalar>(q.z()),
+          static_cast<btScalar>(q.w())};
+}
+
+// by default those of a pair are multiplied; here all bodies have the same
+btScalar own_friction(const btCollisionObject* a, const btCollisionObject*) {
+  return a->getFriction();
+}
+btScalar own_restitution(const btCollisionObject* a, const btCollisionObject*) {
+  return a->getRestitution();
+}
+
+std::unique_ptr<btCollisionShape> shape_of(const BodyDef& def) {
+  if (const auto r = sphere_radius(def))
+    return std::make_unique<btSphereShape>(static_cast<btScalar>(*r));
+  if (const auto half = box_half(def)) return std::make_unique<btBoxShape>(to_bullet(*half));
+  return std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0));
+}
+
+class Bullet : public CaseEngine {
+ public:
+  Bullet(const test::Case& c, double step);
+  ~Bullet() override;
+  Bullet(const Bullet&) = delete;
+  Bullet& operator=(const Bullet&) = delete;
+  void advance(double duration) override;
+  Pose pose(std::size_t body) const override;
+
+ private:
+  void add(const BodyDef& def, const test::Case& c);
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  double step_;
+};
+
+Bullet::Bullet(const test::Case& c, double step) : step_(step) {
+  gCalculateCombinedFrictionCallback = own_friction;
+  gCalculateCombinedRestitutionCallback = own_restitution;
+  world_.setGravity(to_bullet(c.gravity));
+  if (c.restitution > 0) {
+    world_.getSolverInfo().m_splitImpulsePenetrationThreshold = btScalar(1);
+    world_.getSolverInfo().m_restitutionVelocityThreshold = btScalar(0);
+  }
+  for (const BodyDef& def : c.bodies) add(def, c);
+}
+
+Bullet::~Bullet() {
+  for (const auto& body : bodies_) world_.removeRigidBody(body.get());
+}
+
+void Bullet::add(const BodyDef& def, const test::Case& c) {
+  shapes_.push_back(shape_of(def));
+  btRigidBody::btRigidBodyConstructionInfo info(
+      def.fixed ? btScalar(0) : static_cast<btScalar>(*def.mass), nullptr, shapes_.back().get(),
+      def.fixed ? btVector3(0, 0, 0) : to_bullet(def.inertia->diagonal()));
+  info.m_startWorldTransform = btTransform(to_bullet(def.orientation), to_bullet(def.position));
+  info.m_friction = static_cast<btScalar>(c.friction);
+  info.m_restitution = static_cast<btScalar>(c.restitution);
+  bodies_.push_back(std::make_unique<btRigidBody>(info));
+  btRigidBody& body = *bodies_.back();
+  body.setLinearVelocity(to_bullet(def.velocity));
+  body.setAngularVelocity(to_bullet(def.angular_velocity));
+  body.setActivationState(DISABLE_DEACTIVATION);
+  if (c.restitution > 0) body.setContactProcessingThreshold(btScalar(0));
+  world_.addRigidBody(&body);
+}
+
+void Bullet::advance(double duration) {
+  const auto dt = static_cast<btScalar>(step_);
+  for (long n = std::lround(duration / step_); n > 0; --n) world_.stepSimulation(dt, 0, dt);
+}
+
+Pose Bullet::pose(std::size_t index) const {
+  const btTransform& t = bodies_[index]->getWorldTransform();
+  const btVector3& p = t.getOrigin();
+  const btQuaternion q = t.getRotation();
+  return {Vec3(p.x(), p.y(), p.z()), Quat(q.w(), q.x(), q.y(), q.z())};
+}
+
+std::vector<Setting> settings(const std::string& name) {
+  if (name == "brick") return time_steps({1e-2, 1e-3, 1e-4});
+  if (name == "bounce") return time_steps({1e-2, 1e-3, 1e-4, 1e-5});
+  if (name == "billiard") return time_steps({1e-3, 1e-4, 1e-5});
+  if (name == "gas-200") return time_steps({4e-3, 1e-3});
+  return time_steps({1e-2, 4e-3, 1e-3, 2e-4});
+}
+
+}  // namespace
+}  // namespace tw::bench
+
+int main() {
+  using namespace tw::bench;
+  CaseRunner runner;
+  runner.engine = "Bullet";
+  runner.version =
+      std::to_string(btGetVersion()) + (sizeof(btScalar) == sizeof(float) ? " single" : " double");
+  runner.make = [](const std::string&, const tw::test::Case& c, const Setting& setting) {
+    return std::make_unique<Bullet>(c, setting.value);
+  };
+  runner.settings = settings;
+  return run_cases(runner);
+}

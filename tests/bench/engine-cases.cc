@@ -1,0 +1,212 @@
+// Cases with exact results in any engine: run time against error, as lines of CSV.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "bench/engine-cases.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+
+#include "bench/bench-tools.h"
+#include "geometry/shape.h"
+
+namespace tw::bench {
+
+namespace {
+
+using Rows = std::vector<std::vector<double>>;
+
+constexpr double settled = 1;   // s: the second error of what should stand still counts from here
+constexpr double budget = 0.3;  // CPU s for the runs after the first
+constexpr int most_runs = 30;
+
+const char* const case_names[] = {"brick", "bounce", "billiard", "gas-200",
+                                  "slide", "creep",  "stack"};
+
+bool stands_still(const std::string& name) { return name == "creep" || name == "stack"; }
+
+Rows exact_rows(const std::string& name) {
+  if (name == "slide" || stands_still(name)) return {};
+  return test::read_rows(name + ".exact.txt");
+}
+
+double attitude_error(const CaseEngine& engine, const Rows& exact) {
+  const auto& e = exact.at(0);
+  const Quat q(e[3], e[4], e[5], e[6]);
+  return 2 * (engine.pose(0).q.normalized() * q.conjugate()).vec().norm();
+}
+
+double worst_position(const CaseEngine& engine, const Rows& exact) {
+  double worst = 0;
+  for (const auto& row : exact) {
+    const Vec3 x = engine.pose(static_cast<std::size_t>(row[0])).p;
+    const double off = (x - Vec3(row[1], row[2], row[3])).norm();
+    // a NaN is to stay one
+    if (!(off <= worst)) worst = off;
+  }
+  return worst;
+}
+
+// Where a cube is on a slope under Coulomb's friction that does not hold it: along the slope, for
+// how deep it sinks in is each engine's own law of contact.
+double slide_error(const CaseEngine& engine, const test::Case& c) {
+  const Vec3 normal = c.bodies[0].orientation * Vec3::UnitZ();
+  const double press = -c.gravity.dot(normal);
+  const Vec3 pull = c.gravity + press * normal;
+  const double rate = pull.norm() - c.friction * press;
+  const double way = 0.5 * rate * c.duration * c.duration;
+  return std::abs((engine.pose(1).p - c.bodies[1].position).dot(pull.normalized()) - way);
+}
+
+std::vector<Vec3> positions(const CaseEngine& engine, const test::Case& c) {
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < c.bodies.size(); ++i)
+    result.push_back(c.bodies[i].fixed ? c.bodies[i].position : engine.pose(i).p);
+  return result;
+}
+
+// On a slope the part along it.
+double drift(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const test::Case& c) {
+  const Vec3 normal = c.bodies[0].orientation * Vec3::UnitZ();
+  const bool slope = normal.z() < 0.999;
+  double worst = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    Vec3 d = to[i] - from[i];
+    if (slope) d -= normal.dot(d) * normal;
+    if (!(d.norm() <= worst)) worst = d.norm();
+  }
+  return worst;
+}
+
+// CPU of the loop, and errors: from the start and, of what should stand still, after a second.
+struct Result {
+  double cpu = 0, error = 0, error_settled = 0;
+};
+
+Result run_once(const CaseRunner& runner, const std::string& name, const test::Case& c,
+                const Setting& setting, const Rows& exact) {
+  const auto engine = runner.make(name, c, setting);
+  Result result;
+  const std::vector<Vec3> start = positions(*engine, c);
+  std::vector<Vec3> middle;
+  const auto advance = [&](double duration) {
+    const double before = cpu_seconds();
+    engine->advance(duration);
+    result.cpu += cpu_seconds() - before;
+  };
+  if (stands_still(name)) {
+    advance(settled);
+    middle = positions(*engine, c);
+    advance(c.duration - settled);
+    const std::vector<Vec3> end = positions(*engine, c);
+    result.error = drift(start, end, c);
+    result.error_settled = drift(middle, end, c);
+    return result;
+  }
+  advance(c.duration);
+  if (name == "brick")
+    result.error = attitude_error(*engine, exact);
+  else if (name == "bounce")
+    result.error = std::abs(engine->pose(1).p.z() - exact.at(0)[0]);
+  else if (name == "slide")
+    result.error = slide_error(*engine, c);
+  else
+    result.error = worst_position(*engine, exact);
+  return result;
+}
+
+struct Line {
+  const CaseRunner& runner;
+  std::string name;
+  const Setting& setting;
+
+  void print(double cold, double best, double error) const {
+    std::printf("%s,%s,%s,%s,%.4g,%.4g,", runner.engine.c_str(), runner.version.c_str(),
+                name.c_str(), setting.text.c_str(), cold, best);
+    if (std::isfinite(error))
+      std::printf("%.3g,%s,\n", error, name == "brick" ? "rad" : "m");
+    else
+      std::printf(",%s,unstable\n", name == "brick" ? "rad" : "m");
+  }
+  void fail(const std::string& why) const {
+    std::printf("%s,%s,%s,%s,,,,%s,%s\n", runner.engine.c_str(), runner.version.c_str(),
+                name.c_str(), setting.text.c_str(), name == "brick" ? "rad" : "m", why.c_str());
+  }
+};
+
+void measure(const CaseRunner& runner, const std::string& name, const Setting& setting) {
+  const test::Case c = test::read_case(name);
+  const Rows exact = exact_rows(name);
+  const Result first = run_once(runner, name, c, setting, exact);
+  double best = first.cpu, spent = first.cpu;
+  for (int k = 1; k < most_runs && spent < budget; ++k) {
+    const double cpu = run_once(runner, name, c, setting, exact).cpu;
+    best = std::min(best, cpu);
+    spent += cpu;
+  }
+  Line{runner, name, setting}.print(first.cpu, best, first.error);
+  if (stands_still(name))
+    Line{runner, name + " after 1 s", setting}.print(first.cpu, best, first.error_settled);
+}
+
+// In a process in which nothing has run before, and which may crash.
+void measure_apart(const CaseRunner& runner, const std::string& name, const Setting& setting) {
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    int status = 0;
+    try {
+      measure(runner, name, setting);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s, %s, %s: %s\n", runner.engine.c_str(), name.c_str(),
+                   setting.text.c_str(), error.what());
+      status = 1;
+    }
+    std::fflush(stdout);
+    _exit(status);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) < 0) throw std::runtime_error("cannot fork");
+  if (status == 0) return;
+  Line{runner, name, setting}.fail(WIFSIGNALED(status) ? "crashed" : "failed");
+}
+
+}  // namespace
+
+std::optional<double> sphere_radius(const BodyDef& def) {
+  const ConvexPart& part = def.shape->parts().front();
+  if (part.kind != PartKind::sphere) return std::nullopt;
+  return part.radius;
+}
+
+std::optional<Vec3> box_half(const BodyDef& def) {
+  const ConvexPart& part = def.shape->parts().front();
+  if (!part.is_box) return std::nullopt;
+  return part.half_edges;
+}
+
+std::vector<Setting> time_steps(const std::vector<double>& steps) {
+  std::vector<Setting> result;
+  for (const double step : steps) {
+    char text[40];
+    std::snprintf(text, sizeof text, "step %.0e s", step);
+    result.push_back({text, step});
+  }
+  return result;
+}
+
+int run_cases(const CaseRunner& runner) {
+  try {
+    for (const char* name : case_names)
+      for (const Setting& setting : runner.settings(name)) measure_apart(runner, name, setting);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", runner.engine.c_str(), error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace tw::bench
