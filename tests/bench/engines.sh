@@ -40,7 +40,7 @@ fi
 {
   echo 'set terminal png size 1200,1200 font "sans,10"; set output "engines.png"'
   echo 'set datafile separator ","; set logscale xy; set format "10^{%T}"; set grid'
-  echo 'set multiplot layout 3,3; set xlabel "CPU, s"; set ylabel "error"; set key bottom left'
+  echo 'set multiplot layout 3,3; set xlabel "CPU, s"; set ylabel "error"; set key center left; set yrange [1e-17:20]'
   # an error of 0 is drawn at the bottom
   tail -n +2 engines.csv | cut -d, -f3 | awk '!seen[$0]++' | while read -r name; do
     printf 'set title "%s"\nplot ' "$name"
