@@ -64,6 +64,7 @@ Bullet::Bullet(const test::Case& c, double step) : step_(step) {
     world_.getSolverInfo().m_splitImpulsePenetrationThreshold = btScalar(1);
     world_.getSolverInfo().m_restitutionVelocityThreshold = btScalar(0);
   }
+  if (c.bodies.size() > 2 && c.restitution == 0) world_.getSolverInfo().m_numIterations = 50;
   for (const BodyDef& def : c.bodies) add(def, c);
 }
 
@@ -100,14 +101,6 @@ Pose Bullet::pose(std::size_t index) const {
   return {Vec3(p.x(), p.y(), p.z()), Quat(q.w(), q.x(), q.y(), q.z())};
 }
 
-std::vector<Setting> settings(const std::string& name) {
-  if (name == "brick") return time_steps({1e-2, 1e-3, 1e-4});
-  if (name == "bounce") return time_steps({1e-2, 1e-3, 1e-4, 1e-5});
-  if (name == "billiard") return time_steps({1e-3, 1e-4, 1e-5});
-  if (name == "gas-200") return time_steps({4e-3, 1e-3});
-  return time_steps({1e-2, 4e-3, 1e-3, 2e-4});
-}
-
 }  // namespace
 }  // namespace tw::bench
 
@@ -120,6 +113,6 @@ int main() {
   runner.make = [](const std::string&, const tw::test::Case& c, const Setting& setting) {
     return std::make_unique<Bullet>(c, setting.value);
   };
-  runner.settings = settings;
+  runner.settings = time_steps();
   return run_cases(runner);
 }

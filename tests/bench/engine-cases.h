@@ -37,17 +37,18 @@ struct CaseRunner {
   std::function<std::unique_ptr<CaseEngine>(const std::string& name, const test::Case&,
                                             const Setting&)>
       make;
-  std::function<std::vector<Setting>(const std::string& name)> settings;
+  std::vector<Setting> settings;  // the cheapest first
 };
 
 // The radius of a sphere and the half extents of a box; of other shapes none.
 std::optional<double> sphere_radius(const BodyDef& def);
 std::optional<Vec3> box_half(const BodyDef& def);
 
-// Steps of these lengths, s.
-std::vector<Setting> time_steps(const std::vector<double>& steps);
+// Steps from a 60th of a second down, each a quarter of the one before.
+std::vector<Setting> time_steps();
 
-// Runs all cases with all settings, each in a process of its own.  Returns the exit status.
+// Runs all cases, each setting in a process of its own, until one takes seconds.  Returns the exit
+// status.
 int run_cases(const CaseRunner& runner);
 
 }  // namespace tw::bench

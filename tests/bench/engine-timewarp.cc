@@ -34,9 +34,6 @@ int main() {
   runner.make = [](const std::string&, const tw::test::Case& c, const Setting& setting) {
     return std::make_unique<Timewarp>(c, setting.value);
   };
-  runner.settings = [](const std::string&) {
-    return std::vector<Setting>{
-        {"accuracy 1e-4", 1e-4}, {"accuracy 1e-6", 1e-6}, {"accuracy 1e-8", 1e-8}};
-  };
+  runner.settings = {{"accuracy 1e-4", 1e-4}, {"accuracy 1e-6", 1e-6}, {"accuracy 1e-8", 1e-8}};
   return run_cases(runner);
 }
