@@ -274,7 +274,8 @@ struct Score {
 
 struct Class {
   long poses = 0, overlaps = 0, touching = 0, unproven = 0, agree = 0, both = 0;
-  double turned = 0;  // rad, the greatest angle between the two methods' normals
+  double endless = 0;  // the greatest distance at which a walk had no end, share of the size
+  double turned = 0;   // rad, the greatest angle between the two methods' normals
   Score gjk, vclip;
 };
 
@@ -377,6 +378,7 @@ void judge(const Pair& pair, const Frame& frame_b, SimplexCache* cache, FeatureP
     score_distance(out.vclip, vclip.in_a.distance, overlap, truth, size);
   else {
     ++out.vclip.out_of_steps;
+    out.endless = std::max(out.endless, std::abs(truth) / size);
     // a walk without end is begun anew, as a user would
     if (features != nullptr) *features = FeaturePair();
   }
@@ -396,8 +398,8 @@ void judge(const Pair& pair, const Frame& frame_b, SimplexCache* cache, FeatureP
 void print_class(const std::string& name, const Class& c) {
   std::printf("| %s | %ld | %ld, %ld |", name.c_str(), c.poses, c.overlaps, c.touching);
   std::printf(" %ld, %.0e |", c.poses - c.gjk.right, c.gjk.worst);
-  std::printf(" %ld, %.0e | %ld | %ld | %ld |", c.vclip.off, c.vclip.worst, c.vclip.false_overlap,
-              c.vclip.missed, c.vclip.out_of_steps);
+  std::printf(" %ld, %.0e | %ld, %ld | %ld, %.0e |", c.vclip.off, c.vclip.worst,
+              c.vclip.false_overlap, c.vclip.missed, c.vclip.out_of_steps, c.endless);
   std::printf(" %ld, %ld |", c.gjk.depths, c.vclip.depths);
   std::printf(" %ld, %ld, %ld of %ld |", c.gjk.features, c.vclip.features, c.agree, c.both);
   std::printf(" %.0e | %ld |\n", c.turned, c.unproven);
@@ -405,9 +407,9 @@ void print_class(const std::string& name, const Class& c) {
 }
 
 void print_tracked(const std::vector<Pair>& pairs) {
-  for (const bool warm : {true, false})
-    for (const Pair& pair : pairs) {
-      Class out;
+  for (const bool warm : {true, false}) {
+    Class out;
+    for (const Pair& pair : pairs)
       for (const double degrees : {0.1, 1.0, 10.0, 45.0})
         for (const double gap : {0.01, 0.1, 1.0, 10.0}) {
           for (std::uint64_t seed = 0; seed < paths_of_answers; ++seed) {
@@ -417,8 +419,8 @@ void print_tracked(const std::vector<Pair>& pairs) {
               judge(pair, frame, warm ? &cache : nullptr, warm ? &features : nullptr, out);
           }
         }
-      print_class((warm ? "tracked, " : "cold, ") + pair.name, out);
-    }
+    print_class(warm ? "all pairs, tracked" : "all pairs, cold", out);
+  }
 }
 
 // Near touch: the same path at a small gap or depth.
@@ -495,8 +497,8 @@ void print_special() {
 
 void print_answers(const std::vector<Pair>& pairs) {
   std::printf(
-      "\n| class | poses | overlap, touch | GJK wrong, worst | V-Clip off, worst | false overlaps "
-      "| missed overlaps | no end | depths right: GJK, V-Clip | features: GJK, V-Clip, same | "
+      "\n| class | poses | overlap, touch | GJK wrong, worst | V-Clip wrong, worst | overlap "
+      "false, missed | no end, up to | depths right: GJK, V-Clip | features: GJK, V-Clip, same | "
       "normals apart, rad | unproven |\n");
   std::printf("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   print_tracked(pairs);
