@@ -152,9 +152,8 @@ double box_time_apart(const MovingBody& side, const Aabb& box, const MovingBody&
   }
   double below = never;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 x((corner & 1) ? box.hi.x() : box.lo.x(), (corner & 2) ? box.hi.y() : box.lo.y(),
-                 (corner & 4) ? box.hi.z() : box.lo.z());
-    below = std::min(below, reach(side, n, c + more, u, alpha, side.frame.R * x, 0));
+    const Vec3 x = side.frame.R * box.corner(corner);
+    below = std::min(below, reach(side, n, c + more, u, alpha, x, 0));
   }
   return std::min(below, above);
 }

@@ -120,9 +120,8 @@ Polyhedron::Polyhedron(std::vector<Vec3> vertices, const std::vector<std::vector
 
 Polyhedron Polyhedron::box(const Vec3& half_edges) {
   Polyhedron box;
-  for (int i = 0; i < 8; ++i)
-    box.vertices_.push_back(half_edges.cwiseProduct(
-        Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
+  const Aabb bounds{-half_edges, half_edges};
+  for (int i = 0; i < 8; ++i) box.vertices_.push_back(bounds.corner(i));
   box.set_faces({{0, 4, 6, 2},
                  {1, 3, 7, 5},  // x
                  {0, 1, 5, 4},

@@ -43,6 +43,11 @@ struct Aabb {
   }
   Vec3 size() const { return hi - lo; }
   Vec3 center() const { return 0.5 * (lo + hi); }
+  // Number 0 to 7: bit 0, 1, 2 is set where it lies at hi in x, y, z.
+  Vec3 corner(int number) const {
+    return {(number & 1) ? hi.x() : lo.x(), (number & 2) ? hi.y() : lo.y(),
+            (number & 4) ? hi.z() : lo.z()};
+  }
 };
 
 }  // namespace tw

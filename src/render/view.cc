@@ -22,17 +22,12 @@ void point_axes(View& view, const Vec3& forward, const Vec3& up) {
   view.up = view.right.cross(view.forward);
 }
 
-Vec3 corner_of(const Aabb& box, int corner) {
-  return {(corner & 1) ? box.hi.x() : box.lo.x(), (corner & 2) ? box.hi.y() : box.lo.y(),
-          (corner & 4) ? box.hi.z() : box.lo.z()};
-}
-
 // The least distance from `center` at which all corners of the box are inside the picture:
 // |x| <= (D + z) tan(fov/2), x across and z along the direction of view from the centre.
 double distance_to_fit(const View& view, const Aabb& box, const Vec3& center) {
   double distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 d = corner_of(box, corner) - center;
+    const Vec3 d = box.corner(corner) - center;
     const double across = std::abs(d.dot(view.right)) / (view.tan_half_fov * view.aspect);
     const double upward = std::abs(d.dot(view.up)) / view.tan_half_fov;
     distance = std::max(distance, std::max(across, upward) - d.dot(view.forward));
@@ -44,7 +39,7 @@ double distance_to_fit(const View& view, const Aabb& box, const Vec3& center) {
 Vec3 off_middle(const View& view, const Aabb& box, const Vec3& center, double distance) {
   Eigen::Array2d lo = Eigen::Array2d::Constant(1e300), hi = -lo;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 d = corner_of(box, corner) - center;
+    const Vec3 d = box.corner(corner) - center;
     const Eigen::Array2d at = Eigen::Array2d(d.dot(view.right), d.dot(view.up)) * distance /
                               (distance + d.dot(view.forward));
     lo = lo.min(at);

@@ -104,8 +104,7 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
     // the corners of its box: a spike may go farther than the rim
     const Aabb& box = field->tree().root().box;
     for (int i = 0; i < 8; ++i) {
-      const Vec3 corner((i & 1) ? box.hi.x() : box.lo.x(), (i & 2) ? box.hi.y() : box.lo.y(),
-                        (i & 4) ? box.hi.z() : box.lo.z());
+      const Vec3 corner = box.corner(i);
       most = std::max(most, (b * corner - a * corner).norm());
     }
     return most;
