@@ -47,9 +47,10 @@ inline constexpr double standard_gravity = 9.81;
 // by a tenth of a percent of its size.  The least that is taken by default, and that may be set,
 // m/s.
 inline constexpr double fusion_share = 0.07, least_default_speed = 1e-4, least_fusion_speed = 1e-9;
-// A new contact that slides is given this many times the stretch of the cone, so that it slides at
-// once.
-inline constexpr double preload_beyond = 10;
+// A new contact that slides is given this many times the stretch of the cone: more than 1, so that
+// it slides at once, but little more: what a spring holds beyond its cone does work where the load
+// rises.
+inline constexpr double preload_beyond = 1.5;
 
 // ---- multibodies ----
 // A stop at a joint's limit yields so far under the weight beyond it, rad or share of its reach.
