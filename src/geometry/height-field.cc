@@ -14,7 +14,9 @@ HeightField::HeightField(std::vector<double> heights, std::size_t columns, doubl
       columns_(columns),
       spacing_x_(spacing_x),
       spacing_y_(spacing_y),
-      parts_(2 * (columns - 1) * (heights_.size() / columns - 1)) {
+      rectangles_((columns - 1) * (heights_.size() / columns - 1)),
+      parts_(2 * rectangles_.size()) {
+  join_cells();
   std::vector<Aabb> boxes(parts_.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
     if (exists(i)) boxes[i] = box(i);
@@ -34,22 +36,69 @@ Vec3 HeightField::corner(std::size_t row, std::size_t column) const {
           heights_[row * columns_ + column]};
 }
 
-bool HeightField::is_plane(std::size_t cell) const {
-  const std::size_t row = cell / (columns_ - 1), column = cell % (columns_ - 1);
+// What rounding makes of heights in a plane, and of the faces of a part over these cells.
+double HeightField::rounding(std::size_t row, std::size_t column, const Rectangle& cells) const {
   const double* const low = &heights_[row * columns_ + column];
-  const double* const high = low + columns_;
-  // what rounding makes of heights in a plane, and of the faces of a part of that size
-  const double size = std::abs(low[0] - high[1]) + std::abs(low[1] - high[0]) + depth();
-  const double rounding = 1e-15 * (std::abs(low[0]) + std::abs(high[1])) + 1e-14 * size;
-  return std::abs((low[0] + high[1]) - (low[1] + high[0])) <= rounding;
+  const double* const high = low + cells.rows * columns_;
+  const double span = std::max(cells.rows * spacing_y_, cells.columns * spacing_x_);
+  const double size =
+      std::abs(low[0] - high[cells.columns]) + std::abs(low[cells.columns] - high[0]) + span;
+  return 1e-15 * (std::abs(low[0]) + std::abs(high[cells.columns])) + 1e-14 * size;
+}
+
+// As large as it may be from this cell on; a cut cell where its four corners are in no plane.
+HeightField::Rectangle HeightField::rectangle_from(std::size_t row, std::size_t column) const {
+  const double* const first = &heights_[row * columns_ + column];
+  Rectangle cells;
+  // height of the plane through three corners of what there is, as many cells away
+  const auto expected = [&](std::size_t i, std::size_t j) {
+    const double along_x = (first[cells.columns] - first[0]) / cells.columns;
+    const double along_y = (first[cells.rows * columns_] - first[0]) / cells.rows;
+    return first[0] + (along_x * static_cast<double>(i) + along_y * static_cast<double>(j));
+  };
+  const auto fits = [&](std::size_t i, std::size_t j) {
+    return std::abs(first[j * columns_ + i] - expected(i, j)) <= rounding(row, column, cells);
+  };
+  const auto is_free = [&](std::size_t i, std::size_t j) {
+    return rectangles_[(row + j) * (columns_ - 1) + column + i].rows > 0;
+  };
+  cells.is_cut = !fits(1, 1);
+  if (cells.is_cut) return cells;
+  while (column + cells.columns + 1 < columns_ && is_free(cells.columns, 0) &&
+         fits(cells.columns + 1, 0) && fits(cells.columns + 1, 1))
+    ++cells.columns;
+  const auto row_fits = [&] {
+    for (std::size_t i = 0; i <= cells.columns; ++i) {
+      if (i < cells.columns && !is_free(i, cells.rows)) return false;
+      if (!fits(i, cells.rows + 1)) return false;
+    }
+    return true;
+  };
+  while (row + cells.rows + 1 < rows() && row_fits()) ++cells.rows;
+  return cells;
+}
+
+void HeightField::join_cells() {
+  for (std::size_t row = 0; row + 1 < rows(); ++row)
+    for (std::size_t column = 0; column + 1 < columns_; ++column) {
+      const std::size_t cell = row * (columns_ - 1) + column;
+      if (rectangles_[cell].rows == 0) continue;
+      const Rectangle found = rectangle_from(row, column);
+      for (std::size_t j = 0; j < found.rows; ++j)
+        for (std::size_t i = 0; i < found.columns; ++i)
+          rectangles_[cell + j * (columns_ - 1) + i] = {0, 0, false};
+      rectangles_[cell] = found;
+    }
 }
 
 std::vector<Vec3> HeightField::top(std::size_t number) const {
   const std::size_t cell = number / 2;
   const std::size_t row = cell / (columns_ - 1), column = cell % (columns_ - 1);
-  const Vec3 a = corner(row, column), b = corner(row, column + 1);
-  const Vec3 c = corner(row + 1, column + 1), d = corner(row + 1, column);
-  if (is_plane(cell)) return {a, b, c, d};
+  const Rectangle& cells = rectangles_[cell];
+  const Vec3 a = corner(row, column), b = corner(row, column + cells.columns);
+  const Vec3 c = corner(row + cells.rows, column + cells.columns),
+             d = corner(row + cells.rows, column);
+  if (!cells.is_cut) return {a, b, c, d};
   return number % 2 == 0 ? std::vector<Vec3>{a, b, c} : std::vector<Vec3>{a, c, d};
 }
 

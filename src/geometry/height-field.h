@@ -1,16 +1,20 @@
 // Height fields: ground given by its heights over a rectangular grid.
 //
 // Each cell of the grid is cut along the diagonal from its corner of least x and y to that of
-// greatest x and y, but where its four corners lie in one plane.  What is beneath the two triangles
-// or the quadrilateral is solid: a convex part with vertical sides, whose bottom is as far below
-// its lowest corner as cells are wide.  A part is made when it is first asked for.
+// greatest x and y, but where its four corners lie in one plane.  Cells side by side in one plane
+// are joined to rectangles: from the least row and column on, each as wide as it may be, then as
+// long.  What is beneath the two triangles or the rectangle is solid: a convex part with vertical
+// sides, whose bottom is as far below its lowest corner as cells are wide.  A part is made when it
+// is first asked for.
 //
 // Frames: the shape's own: the middle of the grid at x = y = 0, heights along z, metres.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -34,9 +38,13 @@ class HeightField {
   // The bottom of a part is so far below its lowest corner, m.
   double depth() const { return std::max(spacing_x_, spacing_y_); }
 
-  // Two numbers for each cell; of a cell with a plane top the second one stands for no part.
+  // Two numbers for each cell.  A rectangle has the first number of its first cell; its other ones
+  // stand for no part.
   std::size_t part_count() const { return parts_.size(); }
-  bool exists(std::size_t number) const { return number % 2 == 0 || !is_plane(number / 2); }
+  bool exists(std::size_t number) const {
+    const Rectangle& cells = rectangles_[number / 2];
+    return number % 2 == 0 ? cells.rows > 0 : cells.is_cut;
+  }
   // The top corners of a part, counter-clockwise from above.
   std::vector<Vec3> top(std::size_t number) const;
   // Any number of threads may ask at once.
@@ -44,13 +52,22 @@ class HeightField {
   const PartTree& tree() const { return *tree_; }
 
  private:
-  bool is_plane(std::size_t cell) const;
+  // Of cells in one plane, at the first of them; none where they are another one's.
+  struct Rectangle {
+    std::uint32_t rows = 1, columns = 1;
+    bool is_cut = false;  // one cell, two triangles
+  };
+
+  double rounding(std::size_t row, std::size_t column, const Rectangle& cells) const;
+  void join_cells();
+  Rectangle rectangle_from(std::size_t row, std::size_t column) const;
   Aabb box(std::size_t number) const;
   ConvexPart make_part(std::size_t number) const;
 
   std::vector<double> heights_;
   std::size_t columns_;
   double spacing_x_, spacing_y_;
+  std::vector<Rectangle> rectangles_;  // for each cell
   mutable std::vector<std::atomic<const ConvexPart*>> parts_;
   std::unique_ptr<const PartTree> tree_;
 };

@@ -64,16 +64,55 @@ TEST(HeightField, is_solid_below_its_heights) {
   }
 }
 
-TEST(HeightField, has_one_part_where_four_corners_lie_in_a_plane) {
-  // a plane, but for the last corner
+TEST(HeightField, has_one_part_where_cells_lie_in_a_plane) {
+  // a plane, but for the last corner: two rows, three cells of the third, two triangles
   std::vector<double> heights;
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 5; ++i) heights.push_back(0.1 * i - 0.37 * j);
   heights.back() += 0.01;
   const ShapePtr shape = make_height_field(heights, 5, 1, 1);
-  EXPECT_EQ(all_parts(*shape).size(), 13u);
+  EXPECT_EQ(all_parts(*shape), (std::vector<std::size_t>{0, 16, 22, 23}));
   EXPECT_EQ(shape->part(0).core->faces().size(), 6u);
   EXPECT_EQ(shape->part(23).core->faces().size(), 5u);
+}
+
+// Terraces and ramps: every cell is under one part alone.
+TEST(HeightField, joined_cells_cover_the_ground_once) {
+  Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const std::size_t columns = 12, rows = 10;
+    std::vector<double> heights(columns * rows);
+    for (int terrace = 0; terrace < 4; ++terrace) {
+      const auto from_row = static_cast<std::size_t>(uniform(random, 0, 9));
+      const auto from_column = static_cast<std::size_t>(uniform(random, 0, 11));
+      const double height = uniform(random, 0, 0.5), slope = uniform(random, -0.3, 0.3);
+      for (std::size_t j = from_row; j < rows; ++j)
+        for (std::size_t i = from_column; i < columns; ++i)
+          heights[j * columns + i] = height + slope * static_cast<double>(i + 2 * j);
+    }
+    const ShapePtr shape = make_height_field(heights, columns, 0.5, 0.5);
+    const HeightField& field = *shape->height_field();
+    EXPECT_LT(all_parts(*shape).size(), 2 * (columns - 1) * (rows - 1) * 2 / 3);
+    for (std::size_t j = 0; j + 1 < rows; ++j)
+      for (std::size_t i = 0; i + 1 < columns; ++i)
+        for (const double across : {0.25, 0.75}) {
+          const Vec3 along = field.corner(j + 1, i + 1) - field.corner(j, i);
+          const double x = field.corner(j, i).x() + across * along.x();
+          const double y = field.corner(j, i).y() + (1 - across) * along.y();
+          const double z = ground_at(field, x, y);
+          Aabb line;
+          line.add(Vec3(x, y, z - 0.4));
+          line.add(Vec3(x, y, z + 1e-9));
+          std::vector<std::size_t> under;
+          field.tree().overlapping(line, [&](std::size_t number) {
+            const ConvexPart& part = field.part(number);
+            const Vec3 below = Vec3(x, y, z - 1e-6) - part.placement.p;
+            int face;
+            if (part.core->face_separation(below, face) <= 0) under.push_back(number);
+          });
+          EXPECT_EQ(under.size(), 1u) << x << " " << y;
+        }
+  }
 }
 
 TEST(HeightField, has_the_bounds_of_its_box) {
