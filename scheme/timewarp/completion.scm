@@ -7,6 +7,7 @@
 (define-module (timewarp completion)
   #:use-module (timewarp worlds)
   #:use-module (timewarp bodies)
+  #:use-module ((timewarp help) #:select (help-groups))
   #:use-module ((timewarp multibodies) #:select (world-multibodies multibody-name joint-names))
   #:use-module ((ice-9 session) #:select (apropos-internal procedure-arguments))
   #:use-module (ice-9 ftw)
@@ -96,6 +97,10 @@
 (define (our-names)
   (module-map (lambda (name _) (symbol->string name)) (resolve-interface '(timewarp))))
 
+;; of (help)
+(define (subjects)
+  (map (compose string-downcase car) help-groups))
+
 (define (commands)
   (append-map (match-lambda
                 ((_ . commands)
@@ -174,5 +179,6 @@ they are files.  BEFORE is what was typed of the expression up to the cursor."
                 ((string-prefix? "#:" text) (starting (keywords-left form)))
                 ;; a list of everything would tell nothing
                 ((string-null? text) (if (null? forms) (our-names) (keywords-left form)))
+                ((eq? (head form) 'help) (append (starting (subjects)) (names text)))
                 (else (names text)))
           #f))))))

@@ -1,4 +1,4 @@
-;; (help): what to type first, and the procedures by group; (help NAME): a procedure's docstring.
+;; (help): what to type first, and the procedures by group; (help NAME): a procedure's description.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp help)
   #:use-module (timewarp describing)
@@ -7,6 +7,7 @@
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
   #:use-module ((srfi srfi-1) #:select (find))
+  #:use-module ((system syntax) #:select (syntax-local-binding))
   #:export (help-groups)
   ;; beside (ice-9 session), which has another one
   #:replace (help))
@@ -66,7 +67,8 @@ A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again
 
 (define last-lines
   "
-(help add-body!) or ,describe add-body! shows all of a procedure; (help \"force\") finds names.
+(help add-body!) or ,describe add-body! shows all of a procedure; (help sensors) lists a group
+of the above, (help friction) the names with that in them.
 Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
 whose description ends with its default.
 Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
@@ -97,18 +99,24 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
        (#f (format #t "~a~%" text))
        (words (format #t "(~a)~%~%~a~%" (string-join words) text))))))
 
-;; TEXT is a name, a subject, or a part of names.
-(define (help-on text)
+;; NAME is a name in MODULE, a subject, or a part of names.
+(define* (help-on name #:optional (module (current-module)))
+  (define text (symbol->string name))
   (define (subject? group) (string-ci=? (car group) text))
-  (define name (string->symbol text))
-  (define variable (module-variable (current-module) name))
-  (cond ((and variable (variable-bound? variable)) (show-help name (variable-ref variable)))
+  (define variable (bound-variable module name))
+  (cond ((and variable (description (variable-ref variable)))
+         (show-help name (variable-ref variable)))
         ((find subject? help-groups) => show-group)
+        (variable (show-help name (variable-ref variable)))
         (else
          (match (names-with text)
            (() (bad-value "help's argument" name
                           "a name, a subject of (help), or a part of a name"))
            (names (format #t "names with ~a:~%~a~%" text (names->lines names)))))))
+
+(define (bound-variable module name)
+  (let ((variable (module-variable module name)))
+    (and variable (variable-bound? variable) variable)))
 
 (define show-group
   (match-lambda
@@ -117,13 +125,36 @@ After an error the prompt is as before; ,option on-error debug enters Guile's de
 (define (name-of value)
   (and (procedure? value) (procedure-name value)))
 
-(define* (help #:optional (what #f))
-  "(help) shows what to type first and the procedures by group; (help PROCEDURE), (help 'NAME) and
-(help \"NAME\") show the description of one; (help 'SUBJECT) lists a group of (help), and (help 'PART)
-the names in which PART occurs."
+(define* (help-with #:optional (what #f))
   (match what
     (#f (show-page))
-    ((? string? text) (help-on text))
-    ((? symbol? name) (help-on (symbol->string name)))
+    ((? string? text) (help-on (string->symbol text)))
+    ((? symbol? name) (help-on name))
     (value (show-help (or (name-of value) value) value)))
   (if #f #f))
+
+;; Of what was written without a quote: of a variable that holds a name, the name's.
+(define (help-on-identifier name module)
+  (match (bound-variable (resolve-module module) name)
+    ((and (not #f) (= variable-ref (and value (or #f (? string?) (? symbol?)))))
+     (help-with value))
+    (_ (help-on name (resolve-module module))
+       (if #f #f))))
+
+;; Syntax, as Guile's own is, so that names that nothing has need no quote.
+(define-syntax help
+  (lambda (form)
+    "(help) shows what to type first and the procedures by group; (help NAME) shows the description of a
+procedure, (help SUBJECT) lists a group of (help), and (help PART) the names in which PART occurs.
+Each may be quoted or a string, too."
+    (syntax-case form ()
+      ((_ name)
+       (identifier? #'name)
+       (call-with-values (lambda () (syntax-local-binding #'name))
+         (lambda (kind where)
+           (case kind
+             ((global) #`(help-on-identifier 'name '#,(datum->syntax #'name (cdr where))))
+             ((macro) #'(help-with 'name))
+             (else #'(help-with name))))))
+      ((_ . arguments) #'(help-with . arguments))
+      (_ (identifier? form) #'help-with))))

@@ -29,6 +29,7 @@
   (candidates "(render! \"a.png\" " ""))
 (test-assert "what there is where nothing is typed at all"
   (member "add-body!" (candidates "" "")))
+(test-equal "subjects of (help)" '("queries") (candidates "(help quer" "quer"))
 (test-equal "commands of the REPL" '(",describe") (candidates ",desc" ",desc"))
 (test-equal "bodies in a string" '("steel ball") (candidates "(find-body \"st" "st"))
 (test-equal "links and multibodies, too" '("arm" "arm/upper") (candidates "(find-body \"ar" "ar"))

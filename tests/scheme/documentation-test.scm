@@ -54,6 +54,23 @@
   (string-match "names with friction:\n(.|\n)*contact-friction"
                 (with-output-to-string (lambda () (help 'friction)))))
 
+(define-syntax-rule (shown expression) (with-output-to-string (lambda () expression)))
+(test-equal "a subject needs no quote" (shown (help 'sensors)) (shown (help sensors)))
+(test-equal "nor does a part of names" (shown (help 'friction)) (shown (help friction)))
+(test-equal "nor does syntax" (shown (help 'define-scene-parameter))
+  (shown (help define-scene-parameter)))
+(test-assert "a subject is found where a variable has its name"
+  (begin (module-define! (current-module) 'queries '(1 2))
+         (string-match "^Queries: " (shown (help queries)))))
+(test-equal "a variable that holds a name stands for it" (shown (help "camera"))
+  (let ((name "camera")) (shown (help name))))
+(test-equal "and so does a global one" (shown (help 'camera))
+  (begin (module-define! (current-module) 'my-favourite 'camera) (shown (help my-favourite))))
+(test-equal "help is a procedure, too" (shown (begin (help "camera") (help 'sensors)))
+  (shown (for-each help '("camera" sensors))))
+(test-message "a name that nothing has" "nothing-such; expected a name" (help nothing-such))
+(test-assert "help describes itself" (string-match "SUBJECT" (shown (help help))))
+
 ;; the names that scenes rely on
 (for-each
  (lambda (name)
