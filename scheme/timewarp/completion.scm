@@ -135,8 +135,8 @@
 (define name-takers '(find-body find-multibody))
 ;; whose strings after the first argument are names of links or joints
 (define joint-takers
-  '(link-body joint-limits joint-position joint-velocity joint-torque joint-servo jacobian
-    forward-kinematics inverse-kinematics))
+  '(link-body joint-limits joint-position joint-velocity joint-torque joint-servo joint-force
+    joint-moment jacobian forward-kinematics inverse-kinematics))
 
 ;; What a string that is in FORM may hold: 'files, 'names, 'joints, 'either or #f for anything.
 (define (string-holds form)

@@ -30,8 +30,9 @@
     ("Queries" "rays, distances, what is where"
      ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
      bounding-box all-poses)
-    ("Sensors" "what instruments on a body read, in callbacks too"
-     accelerometer gyro net-contact-force rangefinder)
+    ("Sensors" "what instruments on bodies and in joints read, in callbacks too"
+     accelerometer gyro net-contact-force rangefinder joint-force joint-moment spring-force
+     hold-force hold-torque)
     ("Forces" "what acts on bodies, from now on"
      add-drag! add-spring! attach! detach! attached? add-force!)
     ("Multibodies" "links that hang on one another by joints"

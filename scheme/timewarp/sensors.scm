@@ -1,11 +1,13 @@
-;; Sensors: what instruments read that are fixed to a body, and what presses on it.
+;; Sensors: what instruments read that are fixed to a body, what presses on it, and what passes
+;; through joints, springs and holds.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp sensors)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module ((timewarp queries) #:select (candidates))
   #:use-module (ice-9 match)
-  #:export (accelerometer gyro net-contact-force rangefinder))
+  #:export (accelerometer gyro net-contact-force rangefinder joint-force joint-moment spring-force
+            hold-force hold-torque))
 
 (define-keyword-procedure (accelerometer body #:key at orientation)
   "Return what an accelerometer on BODY reads, a body or a view, in its own axes, m/s^2: the acceleration of
@@ -50,3 +52,38 @@ neighbours are not passed through: #:ignore names them.
             (found (%ray-cast from way max-distance
                               (candidates "rangefinder" bodies (cons body others)))))
        (and found (match found ((_ _ _ distance) distance)))))))
+
+(define (joint-force multibody name)
+  "Return the force that passes through the joint NAME of MULTIBODY, a multibody, a link of one, or a view
+of a link, on the link that it carries, N, world frame: what a force sensor in the joint reads.  A
+pendulum at rest is carried by its weight, upwards.  It holds what drives the joint, too: along the axis of
+a prismatic one it is what torque, servo, spring, damping and friction give together.  Welds are
+joints; a free first link has none.  It is the force on the motion that leads to the event (of a
+multibody and a link: to world-time), as accelerometer has it: impulses are no forces."
+  (%joint-force multibody name))
+
+(define (joint-moment multibody name)
+  "Return the torque that passes through the joint NAME of MULTIBODY, a multibody, a link of one, or a view
+of a link, on the link that it carries, about the origin of the link's frame, N m, world frame: what a
+torque sensor in the joint reads.  Along the axis of a revolute joint it is what torque (see
+joint-torque), servo, spring, damping and friction give together; across it, what the bearing takes.
+Otherwise as joint-force."
+  (%joint-moment multibody name))
+
+(define (spring-force a b)
+  "Return the force on A of the springs, damping included, that add-spring! has put between A and B, N, world
+frame; #(0 0 0) where there are none.  Both are bodies or views; in a callback one that is dynamic, A
+if both are, must be a view.  It is the force on the motion that leads to the event (of a body: to
+world-time)."
+  (%spring-force a b))
+
+(define (hold-force a b)
+  "Return the force on A by which attach! holds A and B together, damping included, N, world frame; #(0 0 0)
+where they are not held.  Both are bodies or views, as of spring-force."
+  (%hold-force a b))
+
+(define (hold-torque a b)
+  "Return the torque on A by which attach! keeps A and B from turning against each other, about the point
+where it holds, N m, world frame; #(0 0 0) where they are not held.  Both are bodies or views, as
+of spring-force."
+  (%hold-torque a b))

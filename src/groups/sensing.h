@@ -5,6 +5,9 @@
 // looked at, so that what a callback reads of it stands and falls with the state:
 // of two that touch across the border of a region each knows the contact as its own arc has it.
 //
+// What passes through a joint follows from how all links are accelerated; what a spring or a hold
+// pulls with from where its two ends are, which the arc of the one knows, too.
+//
 // At the time of a discontinuity it is what was before: an impulse is no force.  At rest nothing
 // accelerates, and contacts are those that it came to rest on.
 //
@@ -37,5 +40,16 @@ SensedMotion sense_motion(const Scene& scene, const Body& body, const State& sta
 
 // Those of a dynamic body, as its own arc has them; none where it is isolated.
 std::vector<ContactReading> contacts_of(const Body& body, const State& state, double when);
+
+// What passes through the joint of a link, on that, about the origin of its frame.  `body`,
+// `state`: of any link of its multibody.  UserError for a free first link, which no joint carries.
+Wrench sense_joint(const Body& body, const State& state, int link, double when);
+
+enum class PullKind { springs, holds };
+
+// What the springs, or the hold, between it and another body do to a dynamic body: the force, and
+// the torque that a hold resists turning by, about the point at which it holds; 0 where there are
+// none.
+Wrench sense_pull(const Body& body, const State& state, BodyId other, PullKind kind, double when);
 
 }  // namespace tw

@@ -44,6 +44,14 @@ class StateView {
   virtual std::vector<ContactReading> contacts() const {
     throw UserError("this view knows no contacts; expected one that a callback is handed");
   }
+  // What springs or the hold to another body do to it, N, N m; what passes through the joint of a
+  // link of its multibody: as above.
+  virtual Wrench pull(BodyId /*other*/, PullKind /*kind*/) const {
+    throw UserError("this view knows no springs or holds; expected one that a callback is handed");
+  }
+  virtual Wrench joint_load(int /*link*/) const {
+    throw UserError("this view knows no joints; expected one that a callback is handed");
+  }
   // Of a link: its multibody and how the joints stand, and when, s; null of other bodies.
   virtual const Multibody* multibody() const { return nullptr; }
   virtual const MultibodyState* joints() const { return nullptr; }

@@ -182,6 +182,14 @@ std::vector<ContactReading> SuccessorView::contacts() const {
   return contacts_of(*successor_.body, before_, key_.time);
 }
 
+Wrench SuccessorView::pull(BodyId other, PullKind kind) const {
+  return sense_pull(*successor_.body, before_, other, kind, key_.time);
+}
+
+Wrench SuccessorView::joint_load(int link) const {
+  return sense_joint(*successor_.body, before_, link, key_.time);
+}
+
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }
 
 void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {

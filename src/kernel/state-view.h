@@ -36,6 +36,8 @@ class SuccessorView : public StateView {
   const SlotsPtr& slots() const override { return successor_.data.slots; }
   SensedMotion sensed_motion() const override;
   std::vector<ContactReading> contacts() const override;
+  Wrench pull(BodyId other, PullKind kind) const override;
+  Wrench joint_load(int link) const override;
   const Multibody* multibody() const override { return successor_.body->multibody; }
   const MultibodyState* joints() const override { return successor_.joints.get(); }
   double joints_time() const override { return key_.time; }

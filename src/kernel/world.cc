@@ -251,6 +251,16 @@ std::vector<ContactReading> World::contacts_of(BodyId id, double when) const {
   });
   return contacts;
 }
+Wrench World::pull(BodyId id, BodyId other, PullKind kind, double when) const {
+  const Simulation& simulation = kernel_->simulation;
+  return sense_pull(simulation.body(id), *state_at(simulation, id, when), other, kind, when);
+}
+Wrench World::joint_load(std::uint32_t multibody, int link) const {
+  const Simulation& simulation = kernel_->simulation;
+  const BodyId first = simulation.scene.multibodies[multibody]->links.front();
+  const double now = simulation.present.time;
+  return sense_joint(simulation.body(first), *state_at(simulation, first, now), link, now);
+}
 Vec3 World::total_momentum() const {
   return tw::total_momentum(kernel_->simulation, kernel_->simulation.present.time);
 }

@@ -148,6 +148,10 @@ class World {
   // `when` as above.
   SensedMotion sensed_motion(BodyId id, double when) const;
   std::vector<ContactReading> contacts_of(BodyId id, double when) const;
+  // Of a body that is dynamic: what springs or the hold to another do to it.  Of the joint of a
+  // link: what passes through it, at time() (groups/sensing.h).
+  Wrench pull(BodyId id, BodyId other, PullKind kind, double when) const;
+  Wrench joint_load(std::uint32_t multibody, int link) const;
   Vec3 total_momentum() const;  // linear, kg m/s, dynamic bodies, at time()
   // SHA-256, 64 hexadecimal digits, of the committed history and of every body's state at time().
   // Needs set_hash(true) before the first run.

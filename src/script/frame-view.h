@@ -29,6 +29,10 @@ class FrameView : public StateView {
     if (!world_) refuse("its contacts are not");
     return world_->contacts_of(pose_->body, time_);
   }
+  Wrench pull(BodyId other, PullKind kind) const override {
+    if (!world_) refuse("what pulls at it is not");
+    return world_->pull(pose_->body, other, kind, time_);
+  }
   void set_velocity(const Vec3&) override { refuse_change(); }
   void set_angular_velocity(const Vec3&) override { refuse_change(); }
   void set_applied_force(const Vec3&) override { refuse_change(); }

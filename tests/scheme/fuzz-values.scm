@@ -189,7 +189,8 @@
     ((targets) (if (chance 0.5) 
                    `(a-body ,(draw 10))
                    `(list (a-body ,(draw 10)) (a-body ,(draw 10)))))
-    ((a b) (one-of-these `(a-body ,(draw 10)) `(a-body ,(draw 10)) #t ''rubber))
+    ((a b) (one-of-these `(a-body ,(draw 10)) `(a-body ,(draw 10)) `(a-kept 'view ,(draw 20)) #t
+                         ''rubber))
     ((collision) `(a-kept 'collision ,(draw 20)))
     ((contact) `(a-kept 'contact ,(draw 20)))
     ((checkpoint) `(a-kept 'struct ,(draw 20)))

@@ -244,4 +244,173 @@
 (run! #:until 0.1)
 (test-assert "in a callback, among its views" (close? 2.9 (slot probe 'range) 1e-12))
 
+;; ---- what passes through joints ----
+
+(reset!)
+(define (bob-on-a-string name y)
+  (add-multibody! #:name name #:position (vector 0 y 3)
+    (link "bob" #:joint (revolute #:axis #(0 1 0)) #:mass 2 #:slots '((pull . #f))
+          #:shape (placed (sphere 0.1) #:position #(0 0 -1)))))
+(define still (bob-on-a-string "still" 0))
+(define swings (bob-on-a-string "swings" 2))
+(test-assert "before any run: a pendulum hangs by its weight"
+  (close? (vector 0 0 (* 2 g)) (joint-force still "bob") 1e-12))
+;; a third of the way down, and at the bottom: from level, m (g cos q + l w^2) towards the pivot
+(set! (joint-position swings "bob") (/ (acos -1) 2))
+(add-callback! (link-body swings "bob")
+  (lambda (time bob) (set! (slot bob 'pull) (joint-force bob "bob")))
+  #:period 1/64)
+(define I/m (+ 1 (* 2/5 0.01)))                         ; about the pivot
+(define (test-pull name swings mass)
+  (let* ((q (joint-position swings "bob")) (w (joint-velocity swings "bob"))
+         (a (/ (* -1 g (sin q)) I/m))
+         ;; q turns the string from down to -x
+         (inwards (vector (sin q) 0 (cos q))) (along (vector (- (cos q)) 0 (sin q))))
+    (test-assert name
+      (close? (v* mass (v+ (v* (+ (* g (cos q)) (* w w)) inwards) (v* (+ a (* g (sin q))) along)))
+              (joint-force swings "bob") 1e-7))
+    (test-assert "its bearing lets it turn"
+      (close? #(0 0 0) (joint-moment swings "bob") 1e-7))))
+(run! #:until 0.5)
+(test-pull "a pendulum on its way" swings 2)
+(test-assert "a callback reads the same"
+  (close? (joint-force swings "bob") (slot (link-body swings "bob") 'pull) 1e-12))
+;; the bottom: between two instants of different sides
+(let loop ((h 1/16))
+  (when (> h 1e-7)
+    (let ((before (checkpoint)))
+      (run-for! h)
+      (cond ((negative? (joint-position swings "bob")) (restore! before) (loop (/ h 2)))
+            (else (loop h))))))
+(let ((w (joint-velocity swings "bob")))
+  (test-assert "it fell through the bottom at the speed that energy gives"
+    (close? (/ (* 2 g) I/m) (* w w) 1e-6))
+  (test-assert "where m g + m v^2/l carries it"
+    (close? (vector 0 0 (+ (* 2 g) (* 2 w w))) (joint-force swings "bob") 1e-4)))
+(test-assert "the other one still hangs" (close? (vector 0 0 (* 2 g)) (joint-force still "bob") 1e-6))
+
+;; an arm held level by a servo, a crate welded on; a piston; loads come through
+(reset!)
+(define arm
+  (add-multibody! #:name "arm" #:position #(0 0 2)
+    (link "boom" #:joint (revolute #:axis #(0 1 0)) #:mass 3
+          #:shape (placed (box 1 0.1 0.1) #:position #(0.5 0 0))
+      (link "crate" #:joint (weld #:at #(1 0 0)) #:mass 5
+            #:shape (placed (box 0.2 0.2 0.2) #:position #(0.1 0 0))))))
+(set! (joint-servo arm "boom") (servo #:target 0 #:stiffness 1e5 #:damping 1e3))
+(define lift*
+  (add-multibody! #:name "lift" #:position #(5 0 0)
+    (link "platform" #:joint (prismatic #:axis #(0 0 1)) #:mass 4 #:shape (box 1 1 0.1))))
+(set! (joint-torque lift* "platform") 60)
+(define passenger (add-body! #:name "passenger" #:shape (box 0.2 0.2 0.2) #:mass 1
+                             #:position #(5.3 0 0.15)))
+(run! #:until 2)
+(test-assert "a weld carries what is welded on" 
+  (and (close? (vector 0 0 (* 5 g)) (joint-force arm "crate") 1e-3)
+       (close? (vector 0 (* -0.1 5 g) 0) (joint-moment arm "crate") 1e-3)))
+(test-assert "the joint carries both"
+  (and (close? (vector 0 0 (* 8 g)) (joint-force arm "boom") 1e-3)
+       (close? (vector 0 (* -1 g (+ (* 0.5 3) (* 1.1 5))) 0) (joint-moment arm "boom") 2e-3)))
+(test-assert "along its axis a piston pushes by what it is given"
+  (close? 60 (vector-ref (joint-force lift* "platform") 2) 1e-9))
+(test-assert "across it bears the passenger's side"
+  (let ((load (vector-ref (net-contact-force passenger) 2)))
+    (close? (* -0.3 load) (vector-ref (joint-moment lift* "platform") 1) 0.01)))
+(define floats (add-multibody! #:name "floats" #:base 'free #:position #(0 8 5)
+                 (link "hull" #:shape (sphere 0.2))))
+(test-message "what floats hangs on nothing" "hull of floats is free" (joint-force floats "hull"))
+(test-message "no such joint" "has no link or joint elbow" (joint-force arm "elbow"))
+(test-message "no multibody" "joint-moment is 5" (joint-moment 5 "x"))
+
+;; at rest on the ground a joint carries what the ground does not
+(reset!)
+(ground)
+(define flail
+  (add-multibody! #:name "flail" #:base 'free #:position #(0 0 0.1)
+    (link "ball" #:mass 1 #:shape (sphere 0.1)
+      (link "end" #:joint (revolute #:axis #(0 1 0) #:at #(0.15 0 0)) #:mass 1
+            #:shape (placed (box 0.2 0.2 0.2) #:position #(0.15 0 0))))))
+(set-contact-parameters! #t #t #:restitution 0)
+(run! #:until 5)
+(test-assert "at rest: forces on each link are in balance"
+  (let ((end (link-body flail "end")))
+    (close? (vector 0 0 (* g 1)) (v+ (joint-force flail "end") (net-contact-force end)) 0.05)))
+
+;; ---- springs and holds ----
+
+(reset!)
+(define (weight* name x z)
+  (add-body! #:name name #:shape (sphere 0.05) #:mass 2 #:position (vector x 0 z)
+             #:slots '((pull . #f) (turn . #f))))
+(define (hook* name x)
+  (add-body! #:name name #:shape #f #:fixed? #t #:position (vector x 0 2)
+             #:mass 1 #:inertia #(1 1 1) #:center-of-mass #(0 0 0)))
+(define nail (hook* "nail" 0))
+(define quiet (weight* "quiet" 0 (- 1.5 (/ (* 2 g) 200))))
+(add-spring! quiet nail #:stiffness 200 #:rest 0.5)
+(define bounces (weight* "bounces" 2 1.3))
+(define nail-2 (hook* "nail-2" 2))
+(add-spring! nail-2 bounces #:stiffness 200 #:rest 0.5)
+(define upper (weight* "upper" 4 3))
+(define lower (weight* "lower" 4 2.4))
+(add-spring! upper lower #:stiffness 300 #:damping 2 #:rest 0.5)
+(add-callback! (list bounces nail-2)
+  (lambda (time bounces nail-2) (set! (slot bounces 'pull) (spring-force nail-2 bounces)))
+  #:period 0.35)
+(add-callback! (list upper lower)
+  (lambda (time upper lower) (set! (slot upper 'pull) (spring-force lower upper)))
+  #:period 0.35)
+(test-assert "before any run: a spring that is 0.2 m too long"
+  (close? #(0 0 40) (spring-force bounces nail-2) 1e-9))
+(run! #:until 0.7)
+(test-assert "a weight at rest on a spring" (close? (vector 0 0 (* 2 g)) (spring-force quiet nail) 1e-4))
+(test-assert "the nail feels the opposite" (close? (vector 0 0 (* -2 g)) (spring-force nail quiet) 1e-4))
+;; z = 1.5 - m g/k - A cos wt, A = 0.2 - m g/k: the spring is m g/k + A cos wt too long
+(let* ((A (- 0.2 (/ (* 2 g) 200))) (stretch (+ (/ (* 2 g) 200) (* A (cos (* 10 0.7))))))
+  (test-assert "a weight that swings on one"
+    (close? (vector 0 0 (* 200 stretch)) (spring-force bounces nail-2) 1e-4))
+  (test-assert "a callback reads the same"
+    (close? (v* -1 (spring-force bounces nail-2)) (slot bounces 'pull) 1e-12)))
+(let ((l (- (vector-ref (position upper) 2) (vector-ref (position lower) 2)))
+      (v (- (vector-ref (velocity upper) 2) (vector-ref (velocity lower) 2))))
+  (test-assert "between two that move, damping included"
+    (close? (vector 0 0 (+ (* 300 (- l 0.5)) (* 2 v))) (spring-force lower upper) 1e-9))
+  (test-assert "the two are opposite"
+    (close? #(0 0 0) (v+ (spring-force lower upper) (spring-force upper lower)) 1e-12))
+  (test-assert "in a callback, too"
+    (close? (spring-force lower upper) (slot upper 'pull) 1e-9)))
+(test-equal "no spring, no force" #(0.0 0.0 0.0) (spring-force quiet bounces))
+(test-equal "springs are no holds" #(0.0 0.0 0.0) (hold-force quiet nail))
+
+(reset!)
+(define wall* (add-body! #:name "wall" #:shape (box 0.2 1 1) #:fixed? #t #:position #(-0.1 0 2)))
+(define shelf (add-body! #:name "shelf" #:shape (box 0.4 0.1 0.1) #:mass 2 #:position #(0.3 0 2)))
+(define pot (add-body! #:name "pot" #:shape (box 0.1 0.1 0.1) #:mass 1 #:position #(0.6 0 2)
+                       #:slots '((pull . #f))))
+(attach! shelf wall* #:at #(-0.3 0 0))
+(attach! pot shelf #:at #(-0.1 0 0))
+(add-callback! (list pot shelf)
+  (lambda (time pot shelf) (set! (slot pot 'pull) (list (hold-force pot shelf) (hold-torque pot shelf))))
+  #:period 0.5)
+(run! #:until 2)
+(test-assert "a hold carries both by its force"
+  (close? (vector 0 0 (* 3 g)) (hold-force shelf wall*) 1e-3))
+(test-assert "and by its torque about where it holds"
+  (close? (vector 0 (* -1 g (+ (* 2 0.3) (* 1 0.6))) 0) (hold-torque shelf wall*) 0.02))
+(test-assert "the wall feels the opposite"
+  (and (close? #(0 0 0) (v+ (hold-force wall* shelf) (hold-force shelf wall*)) 1e-9)
+       (close? #(0 0 0) (v+ (hold-torque wall* shelf) (hold-torque shelf wall*)) 1e-9)))
+(test-assert "the pot's hold"
+  (and (close? (vector 0 0 g) (hold-force pot shelf) 1e-3)
+       (close? (vector 0 (* -0.1 g) 0) (hold-torque pot shelf) 0.02)
+       (close? #(0 0 0) (v+ (hold-torque pot shelf) (hold-torque shelf pot)) 1e-9)))
+(test-assert "a callback reads the same"
+  (and (close? (hold-force pot shelf) (first (slot pot 'pull)) 1e-9)
+       (close? (hold-torque pot shelf) (second (slot pot 'pull)) 1e-9)))
+(detach! pot shelf)
+(test-equal "what is let go is not held" #(0.0 0.0 0.0) (hold-force pot shelf))
+(test-message "one body alone" "the second body is 7" (hold-force pot 7))
+(test-refused "of two bodies one must be read by a view" "spring-force was used inside a callback"
+              (plate other) (spring-force plate other))
+
 (test-end "sensors")

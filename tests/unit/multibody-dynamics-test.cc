@@ -9,6 +9,7 @@
 #include "multibody/forward-dynamics.h"
 #include "multibody/inverse-dynamics.h"
 #include "multibody/jacobian.h"
+#include "multibody/joint-forces.h"
 #include "support/random-tree.h"
 
 namespace tw::test {
@@ -63,6 +64,46 @@ TEST(MultibodyDynamics, forward_and_inverse_dynamics_and_mass_matrix_agree) {
     worst = std::max(worst, (by_matrix - column(rate)).norm() / column(rate).norm());
   }
   EXPECT_LT(worst, 1e-12);
+}
+
+// Along its axes a joint passes on what drives it; what passes to links of the base is all that
+// acts and accelerates.
+TEST(MultibodyDynamics, joints_pass_on_the_torques_that_drive_them) {
+  Random random(2);
+  for (int round = 0; round < 200; ++round) {
+    const int count = 1 + static_cast<int>(random.below(12));
+    const TreeState s(random_links(random, count, false), random, true);
+    const Tree& tree = s.tree;
+    Kinematics k(tree);
+    place(tree, s.q, s.u, s.around, k);
+    std::vector<Force> wrenches;
+    for (int i = 0; i < tree.link_count(); ++i) {
+      const Vec3 c = link_center_of_mass(tree, k, i);
+      const Vec3 force = random_vector(random, 20), torque = random_vector(random, 5);
+      add_force(tree, k, i, c, force);
+      add_torque(tree, k, i, torque);
+      wrenches.push_back({(c - k.origin).cross(force) + torque, force});
+    }
+    const Numbers tau = random_numbers(random, s.u.size(), 10);
+    Numbers rate = s.zeros(), back = s.zeros();
+    Articulation a(tree);
+    ASSERT_TRUE(forward_dynamics(tree, k, tau, a, rate));
+    InverseDynamics work(tree);
+    inverse_dynamics(tree, k, rate, work, back);
+    const std::vector<Force> through = joint_forces(tree, k, a.acceleration, wrenches);
+    double scale = 1;
+    for (const Force& f : through) scale = std::max(scale, f.vector().norm());
+    for (int i = 0; i < tree.link_count(); ++i) {
+      const Link& link = tree.link(i);
+      const Force& f = through[static_cast<std::size_t>(i)];
+      for (int d = link.u; d < link.u + link.dofs; ++d)
+        EXPECT_NEAR(dot(k.axis(d), f), tau[static_cast<std::size_t>(d)], 1e-12 * scale);
+      // the first of its node: the node's own force
+      if (link.joint == JointKind::weld) continue;
+      const Force& whole = work.force[static_cast<std::size_t>(link.node)];
+      EXPECT_LT((f - whole).vector().norm(), 1e-12 * scale) << "round " << round;
+    }
+  }
 }
 
 TEST(MultibodyDynamics, a_rod_swings_as_a_pendulum) {
