@@ -10,7 +10,7 @@
   #:use-module (ice-9 format)
   #:export (set-contact-parameters! contact-parameters disable-collisions! enable-collisions!
             contacts contact? contact-bodies contact-point contact-normal contact-gap contact-force
-            contact-friction contact-slipping?))
+            contact-friction contact-slipping? contact-torque))
 
 (define-keyword-procedure
   (set-contact-parameters! a b #:key restitution friction rolling-friction spinning-friction
@@ -71,7 +71,7 @@ for all."
 ;; ---- contacts at present ----
 
 (define-record-type <contact>
-  (make-contact bodies point normal gap force friction slipping?)
+  (make-contact bodies point normal gap force friction slipping? torque)
   a-contact?
   (bodies bodies-of)
   (point point-of)
@@ -79,7 +79,8 @@ for all."
   (gap gap-of)
   (force force-of)
   (friction friction-of)
-  (slipping? slipping-of?))
+  (slipping? slipping-of?)
+  (torque torque-of))
 
 (set-record-type-printer! <contact>
   (lambda (contact port)
@@ -137,3 +138,9 @@ on has the forces that its own motion is made of.
 (define (contact-slipping? contact)
   "Return #t where CONTACT touches with its friction at the limit, #f where it sticks or doesn't touch."
   (part contact slipping-of?))
+
+(define (contact-torque contact)
+  "Return the torque of CONTACT on B by which #:rolling-friction and #:spinning-friction resist, a vector in
+the world frame, N m; A has its opposite.  Along the normal it is that against spinning, across it that
+against rolling; the torques of normal force and friction about anything come on top."
+  (part contact torque-of))

@@ -26,7 +26,7 @@
     ("Contact" "restitution and friction, who collides, the contacts at present"
      set-contact-parameters! contact-parameters disable-collisions! enable-collisions! contacts
      contact-bodies contact-point contact-normal contact-gap contact-force contact-friction
-     contact-slipping? contact?)
+     contact-slipping? contact-torque contact?)
     ("Queries" "rays, distances, what is where"
      ray-cast hit? hit-body hit-point hit-normal hit-distance closest-points overlapping
      bounding-box all-poses)

@@ -21,6 +21,7 @@ ContactReading reading_of(const ContactTag& tag, const ContactForce& force) {
   reading.force = force.normal_force;
   reading.friction = sign * force.friction;
   reading.slipping = force.slipping;
+  reading.torque = sign * force.torque;
   return reading;
 }
 

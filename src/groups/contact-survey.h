@@ -22,6 +22,9 @@ struct ContactReading {
   double force = 0;              // N, on body2 along the normal, >= 0; 0: not in touch just now
   Vec3 friction = Vec3::Zero();  // N, on body2, world
   bool slipping = false;         // in touch, with the friction at its limit
+  // N m, on body2, world, beside that of the forces: against rolling, and along the normal against
+  // spinning.
+  Vec3 torque = Vec3::Zero();
 };
 
 // Of a contact of a group, turned so that body1 < body2.

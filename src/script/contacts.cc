@@ -40,8 +40,9 @@ bool joins(const ContactReading& contact, BodyId body) {
 
 }  // namespace
 
-TW_PRIMITIVE(contacts, "%contacts", (SCM world, SCM body),
-             "Return (((A B) point normal gap force friction slipping?) ...) of all or one body.") {
+TW_PRIMITIVE(
+    contacts, "%contacts", (SCM world, SCM body),
+    "Return (((A B) point normal gap force friction slipping? torque) ...) of all or one.") {
   std::vector<ContactReading> found;
   if (scm_is_true(body)) {
     found = contacts_of(body, "contacts");
@@ -53,10 +54,11 @@ TW_PRIMITIVE(contacts, "%contacts", (SCM world, SCM body),
   SCM list = SCM_EOL;
   for (auto c = found.rbegin(); c != found.rend(); ++c) {
     const SCM bodies = scm_list_2(from_body(world, c->body1), from_body(world, c->body2));
-    list = scm_cons(scm_list_n(bodies, from_vec3(c->point), from_vec3(c->normal),
-                               scm_from_double(c->gap), scm_from_double(c->force),
-                               from_vec3(c->friction), scm_from_bool(c->slipping), SCM_UNDEFINED),
-                    list);
+    list = scm_cons(
+        scm_list_n(bodies, from_vec3(c->point), from_vec3(c->normal), scm_from_double(c->gap),
+                   scm_from_double(c->force), from_vec3(c->friction), scm_from_bool(c->slipping),
+                   from_vec3(c->torque), SCM_UNDEFINED),
+        list);
   }
   return list;
 }

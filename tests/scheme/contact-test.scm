@@ -1,6 +1,7 @@
 ;; Contact parameters: how they are looked up, and which pairs collide.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
+(use-modules ((timewarp vectors) #:select (rotate)))
 
 (test-begin "contact")
 
@@ -92,6 +93,51 @@
       (every (lambda (c)
                (close? (vector-ref (contact-friction c) 0) (* -0.3 (contact-force c)) 1e-3))
              loaded))))
+
+;; ---- the torques of rolling and spinning friction ----
+
+(define (ball-on tilt y velocity spin)
+  (add-body! #:shape (sphere 0.1) #:position (rotate tilt (vector 0 y 0.1))
+             #:velocity velocity #:angular-velocity spin))
+(define (torque-on ball)
+  (match (contacts #:body ball) ((contact) (contact-torque contact))))
+
+(in-world ()
+  (let* ((slope 0.05) (tilt (rotation #(0 1 0) slope)))            ; downhill is +x
+    (add-body! #:shape (half-space (rotate tilt #(0 0 1)) 0) #:fixed? #t)
+    (set-contact-parameters! #t #t #:rolling-friction 0.02 #:restitution 0)
+    (let* ((ball (ball-on tilt 0 #(0 0 0) #(0 0 0)))
+           (needed (* 9.81 (body-mass ball) 0.1 (sin slope))))
+      (run! #:until 1)
+      ;; friction m g sin(a) uphill would set it rolling by r times that
+      (test-assert "what rolling friction holds on a slope takes the torque that this needs"
+        (close? (torque-on ball) (vector 0 (- needed) 0) (* 1e-3 needed)))
+      (run-for! 20)
+      (test-assert "at rest, too"
+        (close? (torque-on ball) (vector 0 (- needed) 0) (* 1e-3 needed))))))
+
+(in-world ()
+  (let ((floor (ground)))
+    (set-contact-parameters! #t #t #:rolling-friction 0.004 #:spinning-friction 0.003 #:restitution 0)
+    (let* ((rolls (ball-on #(1 0 0 0) 0 #(1 0 0) #(0 10 0)))
+           (spins (ball-on #(1 0 0 0) 3 #(0 0 0) #(0 0 30)))
+           (weight (* 9.81 (body-mass rolls))))
+      (run! #:until 0.2)
+      (test-assert "rolling takes the length times the force, against the roll"
+        (close? (torque-on rolls) (vector 0 (* -0.004 weight) 0) (* 1e-4 weight)))
+      (test-assert "spinning likewise, along the normal"
+        (close? (torque-on spins) (vector 0 0 (* -0.003 weight)) (* 1e-4 weight)))
+      (test-assert "the first body's is the opposite of the second's: B is what was added later"
+        (every (lambda (c) (eq? floor (car (contact-bodies c)))) (contacts)))
+      (test-message "of what is no contact" "the contact is 5" (contact-torque 5)))))
+
+(in-world ()
+  (ground)
+  (let ((box (add-body! #:shape (box 0.2 0.2 0.2) #:position #(0 0 0.1) #:velocity #(1 0 0)
+                        #:angular-velocity #(0 0 1))))
+    (run! #:until 0.1)
+    (test-assert "none where nothing resists rolling or spinning"
+      (every (lambda (c) (equal? (contact-torque c) #(0.0 0.0 0.0))) (contacts #:body box)))))
 
 (in-world ()
   (let ((ball (add-body! #:shape (sphere 1))))
