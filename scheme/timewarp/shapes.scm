@@ -2,10 +2,12 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp shapes)
   #:use-module (timewarp primitives)
+  #:use-module (timewarp arity)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp vectors)
   #:use-module (timewarp files)
+  #:use-module (ice-9 match)
   #:export (sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
             rock load-shape rotation
             shape-volume shape-inertia shape-centroid shape-radius shape?))
@@ -46,7 +48,7 @@ the points."
 only."
   (%half-space normal offset))
 
-(define-keyword-procedure (height-field heights #:key spacing)
+(define-keyword-procedure (height-field heights #:key spacing colors)
   "Return ground by its HEIGHTS in metres: an array of rank 2, or a list of its rows, with x growing
 along a row and y from row to row.  The middle of the grid is at x = y = 0 of the body's frame.  For
 fixed or kinematic bodies only.
@@ -55,21 +57,88 @@ Cells are cut along the diagonal from their corner of least x and y, but where t
 in one plane.  The ground is solid down to a cell's width below the lowest corner of each cell, and
 ends at the edge of the grid.
 
-#:spacing  m, between neighbours of the grid, or #(dx dy) along x and y; 1"
-  (%height-field (if (and (list? heights) (and-map list? heights))
-                     (rows->array heights)
-                     heights)
-                 (or spacing 1)))
+#:spacing  m, between neighbours of the grid, or #(dx dy) along x and y; 1
+#:colors   by height, a list ((HEIGHT #(r g b)) ...) with heights in m that grow, between which one colour
+           turns into the next; a procedure of x, y and height, m, in the body's frame, that returns
+           #(r g b); or #(r g b) for each height, an array or a list of rows.  They go before #:color of
+           the body; the body's"
+  (let ((heights (rows-or-array heights "heights" "numbers, in metres"))
+        (spacing (or spacing 1)))
+    (%height-field heights spacing (and colors (colors->array colors heights spacing)))))
 
-(define (rows->array rows)
-  (when (null? rows) (bad-value "heights" rows "a list of rows of numbers, in metres"))
+(define (rows-or-array object name what)
+  (if (and (list? object) (and-map list? object)) (rows->array object name what) object))
+
+(define (rows->array rows name what)
+  (when (null? rows) (bad-value name rows (string-append "a list of rows of " what)))
   (let ((size (length (car rows))))
     (for-each (lambda (row j)
                 (unless (= (length row) size)
-                  (raise-error (format #f "row ~a of heights has ~a numbers and row 0 has ~a; ~a"
-                                       j (length row) size "expected rows of one length"))))
+                  (raise-error (format #f "row ~a of ~a has ~a ~a and row 0 has ~a; ~a"
+                                       j name (length row) (car (string-split what #\,)) size
+                                       "expected rows of one length"))))
               rows (iota (length rows))))
   (list->array 2 rows))
+
+;; ---- colours of the ground ----
+
+;; By what a color of a height field is chosen, as an array of one for each of the heights.  What is
+;; wrong with heights or spacing is left to be told by what makes the shape.
+(define (colors->array colors heights spacing)
+  (match colors
+    (((height (? vector?)) . _)
+     (=> otherwise)
+     (if (vector? height)                               ; two colours in a row
+         (otherwise)
+         (let ((steps (check-steps colors)))
+           (map-heights (lambda (x y height) (color-between steps height)) heights spacing))))
+    ((? procedure?)
+     (check-takes "#:colors of height-field" colors 3 "x, y and the height")
+     (map-heights colors heights spacing))
+    (_ (rows-or-array colors "colors" "colors, #(r g b)"))))
+
+(define (map-heights procedure heights spacing)
+  (define (over? a) (and (array? a) (= (array-rank a) 2)))     ; a grid
+  (define-values (dx dy)
+    (match spacing
+      ((? real? d) (values d d))
+      ((or #((? real? dx) (? real? dy)) ((? real? dx) (? real? dy))) (values dx dy))
+      (_ (values 1 1))))
+  (and (over? heights)
+       (match (array-shape heights)
+         (((first-row last-row) (first-column last-column))
+          (let ((result (make-array #f (- (1+ last-row) first-row) (- (1+ last-column) first-column))))
+            (define (from-middle i first last) (- i (/ (- last first) 2)))
+            (array-index-map!
+             result
+             (lambda (row column)
+               (let ((height (array-ref heights (+ first-row row) (+ first-column column))))
+                 (if (real? height)
+                     (procedure (* dx (from-middle column first-column last-column))
+                                (* dy (from-middle row first-row last-row))
+                                height)
+                     #(0 0 0)))))
+            result)))))
+
+;; ((HEIGHT . COLOR) ...)
+(define (check-steps steps)
+  (define expected "a list ((HEIGHT #(r g b)) ...) with heights that grow")
+  (define pairs
+    (map (match-lambda
+           (((? real? height) (and color #((? real?) (? real?) (? real?)))) (cons height color))
+           (_ (bad-value "colors" steps expected)))
+         steps))
+  (unless (apply < (map car pairs)) (bad-value "colors" steps expected))
+  pairs)
+
+;; Of a height below the first step or above the last one that step's.
+(define (color-between steps height)
+  (match steps
+    (((low . color)) color)
+    (((low . color) (high . next) . _)
+     (cond ((<= height low) color)
+           ((< height high) (lerp color next (/ (- height low) (- high low))))
+           (else (color-between (cdr steps) height))))))
 
 (define (union . shapes)
   "Return the union of SHAPES, a shape that need not be convex.  Where parts overlap, mass properties

@@ -9,8 +9,9 @@
 namespace tw {
 
 HeightField::HeightField(std::vector<double> heights, std::size_t columns, double spacing_x,
-                         double spacing_y)
+                         double spacing_y, std::vector<Vec3> colors)
     : heights_(std::move(heights)),
+      colors_(std::move(colors)),
       columns_(columns),
       spacing_x_(spacing_x),
       spacing_y_(spacing_y),

@@ -25,16 +25,22 @@ namespace tw {
 
 class HeightField {
  public:
-  // Row by row, x growing within a row and y from row to row.
-  HeightField(std::vector<double> heights, std::size_t columns, double spacing_x, double spacing_y);
+  // Row by row, x growing within a row and y from row to row.  `colors`: sRGB, one a height, or
+  // none.
+  HeightField(std::vector<double> heights, std::size_t columns, double spacing_x, double spacing_y,
+              std::vector<Vec3> colors = {});
   ~HeightField();
   HeightField(const HeightField&) = delete;
   HeightField& operator=(const HeightField&) = delete;
 
   std::size_t rows() const { return heights_.size() / columns_; }
   std::size_t columns() const { return columns_; }
-  // A point of the grid.
+  // A point of the grid; by its number, row by row.
   Vec3 corner(std::size_t row, std::size_t column) const;
+  Vec3 corner(std::size_t point) const { return corner(point / columns_, point % columns_); }
+  // What it looks like, sRGB: for drawing alone.
+  bool has_colors() const { return !colors_.empty(); }
+  const Vec3& color(std::size_t point) const { return colors_[point]; }
   // The bottom of a part is so far below its lowest corner, m.
   double depth() const { return std::max(spacing_x_, spacing_y_); }
 
@@ -65,6 +71,7 @@ class HeightField {
   ConvexPart make_part(std::size_t number) const;
 
   std::vector<double> heights_;
+  std::vector<Vec3> colors_;
   std::size_t columns_;
   double spacing_x_, spacing_y_;
   std::vector<Rectangle> rectangles_;  // for each cell

@@ -316,7 +316,7 @@ ShapePtr make_half_space(const Vec3& normal, double offset) {
 }
 
 ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, double spacing_x,
-                           double spacing_y) {
+                           double spacing_y, std::vector<Vec3> colors) {
   require_length("the spacing of a height field along x", spacing_x);
   require_length("the spacing of a height field along y", spacing_y);
   TW_ASSERT(columns > 0 && heights.size() % columns == 0, "rows of different lengths");
@@ -331,11 +331,19 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
                "height " + std::to_string(i % columns) + " in row " + std::to_string(i / columns) +
                    " of a height field is " + show(heights[i]) +
                    "; expected a number of metres, at most " + tw::show(greatest_length));
+  TW_REQUIRE(colors.empty() || colors.size() == heights.size(),
+             "a height field has " + std::to_string(colors.size()) + " colors for " +
+                 std::to_string(heights.size()) + " heights; expected one a height");
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    TW_REQUIRE(is_finite(colors[i]) && colors[i].minCoeff() >= 0 && colors[i].maxCoeff() <= 1,
+               "color " + std::to_string(i % columns) + " in row " + std::to_string(i / columns) +
+                   " of a height field is #(" + show(colors[i].x()) + " " + show(colors[i].y()) +
+                   " " + show(colors[i].z()) + "); expected red, green and blue from 0 to 1");
 
   auto shape = std::make_shared<Shape>();
   shape->kind_name_ = "height field";
-  shape->field_ =
-      std::make_shared<const HeightField>(std::move(heights), columns, spacing_x, spacing_y);
+  shape->field_ = std::make_shared<const HeightField>(std::move(heights), columns, spacing_x,
+                                                      spacing_y, std::move(colors));
   const HeightField& field = *shape->field_;
   // the tree belongs to the field
   shape->tree_ = std::shared_ptr<const PartTree>(shape->field_, &field.tree());

@@ -97,7 +97,7 @@ class Shape {
   friend ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
                                const MassProperties& mass);
   friend ShapePtr make_height_field(std::vector<double> heights, std::size_t columns,
-                                    double spacing_x, double spacing_y);
+                                    double spacing_x, double spacing_y, std::vector<Vec3> colors);
   std::size_t field_parts() const;
   const ConvexPart& field_part(std::size_t i) const;
 
@@ -127,9 +127,10 @@ ShapePtr make_ellipsoid(const Vec3& semi_axes);
 ShapePtr make_hull(const std::vector<Vec3>& points);
 // Solid where normal.x <= offset; the normal is normalised.
 ShapePtr make_half_space(const Vec3& normal, double offset);
-// Ground by its heights over a rectangular grid: see geometry/height-field.h.
+// Ground by its heights over a rectangular grid: see geometry/height-field.h.  `colors`: sRGB, one
+// a height, or none.
 ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, double spacing_x,
-                           double spacing_y);
+                           double spacing_y, std::vector<Vec3> colors = {});
 ShapePtr make_union(const std::vector<ShapePtr>& shapes);
 // The shape moved by `pose` within the body's frame.
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose);

@@ -12,11 +12,6 @@ namespace tw {
 
 namespace {
 
-double linear_channel(double c) {
-  // IEC 61966-2-1
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 // Ground and rocks are, made things aren't.
 bool has_grain(const ConvexPart& part, const DrawBody& body) {
   return body.fixed && part.kind == PartKind::polyhedron && !part.is_box;
@@ -47,8 +42,6 @@ GLuint make_buffer(const GlApi& gl, GLenum kind, const T& data, std::size_t coun
 
 }  // namespace
 
-Vec3 linear_color(const Vec3& srgb) { return srgb.unaryExpr(&linear_channel); }
-
 BodyDrawer::BodyDrawer(const GlApi& gl) : gl_(&gl) {
   static const std::array<float, 8> corners = {-1, -1, 1, -1, -1, 1, 1, 1};
   gl.GenVertexArrays(1, &ball_vertex_array_);
@@ -68,7 +61,9 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
   Part record;
   record.body = index;
   if (body.shape->height_field()) {
-    record.color << color.cast<float>(), gloss_of(body.fixed, body.fixed);
+    // its own colours, if it has some, go before that of the body
+    const Vec3 shown = body.shape->height_field()->has_colors() ? Vec3(Vec3::Ones()) : color;
+    record.color << shown.cast<float>(), gloss_of(body.fixed, body.fixed);
     return add_height_field(body, record);
   }
   for (const ConvexPart& part : body.shape->parts()) {
@@ -144,6 +139,7 @@ BodyDrawer::MeshGroup BodyDrawer::make_group(const Mesh& mesh) {
   make_buffer(*gl_, GL_ARRAY_BUFFER, mesh.vertices, mesh.vertices.size());
   declare_input(*gl_, 0, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, position), 0);
   declare_input(*gl_, 1, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, normal), 0);
+  declare_input(*gl_, 6, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, tint), 0);
   make_buffer(*gl_, GL_ELEMENT_ARRAY_BUFFER, mesh.indices, mesh.indices.size());
   gl_->GenBuffers(1, &group.instance_buffer);
   gl_->BindBuffer(GL_ARRAY_BUFFER, group.instance_buffer);

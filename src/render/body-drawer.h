@@ -18,9 +18,6 @@
 
 namespace tw {
 
-// From sRGB, as users give colours, to light that adds up.
-Vec3 linear_color(const Vec3& srgb);
-
 class BodyDrawer {
  public:
   explicit BodyDrawer(const GlApi& gl);

@@ -11,6 +11,11 @@ namespace tw {
 
 namespace {
 
+double linear_channel(double c) {
+  // IEC 61966-2-1
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
 std::string show_vector(const Vec3& v) {
   return "#(" + show(v.x()) + " " + show(v.y()) + " " + show(v.z()) + ")";
 }
@@ -32,6 +37,8 @@ Vec3 default_color(std::size_t body, bool fixed) {
                                                Vec3(0.62, 0.68, 0.29), Vec3(0.43, 0.47, 0.60)};
   return palette[body % palette.size()];
 }
+
+Vec3 linear_color(const Vec3& srgb) { return srgb.unaryExpr(&linear_channel); }
 
 void check_color(const Vec3& color, const char* what) {
   TW_REQUIRE(is_finite(color) && color.minCoeff() >= 0 && color.maxCoeff() <= 1,

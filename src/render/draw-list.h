@@ -101,6 +101,9 @@ struct ImageSize {
 // A pleasant colour, the same for the same index at any time; fixed bodies are a grey beige.
 Vec3 default_color(std::size_t body, bool fixed);
 
+// From sRGB, as users give colours, to light that adds up.
+Vec3 linear_color(const Vec3& srgb);
+
 // Raise UserError with the value and what was expected.
 void check_color(const Vec3& color, const char* what);
 void check_camera(const Camera& camera, std::size_t body_count);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "render/draw-list.h"
+
 namespace tw {
 
 namespace {
@@ -111,13 +113,16 @@ Mesh height_field_mesh(const HeightField& field, bool smooth) {
         field.corner(std::min(row + 1, rows - 1), column) - field.corner(before(row), column);
     return Vec3(along_x.cross(along_y).normalized());
   };
-  const auto add = [&](const Vec3& point, const Vec3& normal) {
-    mesh.vertices.push_back({point.cast<float>(), normal.cast<float>()});
+  // at a point of the grid, or below it
+  const auto add = [&](std::size_t point, const Vec3& place, const Vec3& normal) {
+    mesh.vertices.push_back({place.cast<float>(), normal.cast<float>()});
+    if (field.has_colors())
+      mesh.vertices.back().tint = linear_color(field.color(point)).cast<float>();
   };
   if (smooth) {
     for (std::size_t row = 0; row < rows; ++row)
       for (std::size_t column = 0; column < columns; ++column)
-        add(field.corner(row, column), slope_normal(row, column));
+        add(row * columns + column, field.corner(row, column), slope_normal(row, column));
     for (std::size_t row = 0; row + 1 < rows; ++row)
       for (std::size_t column = 0; column + 1 < columns; ++column) {
         const auto a = static_cast<std::uint32_t>(row * columns + column);
@@ -125,33 +130,43 @@ Mesh height_field_mesh(const HeightField& field, bool smooth) {
         mesh.indices.insert(mesh.indices.end(), {a, a + 1, d + 1, a, d + 1, d});
       }
   } else {
-    for (std::size_t number = 0; number < field.part_count(); ++number) {
-      if (!field.exists(number)) continue;
-      const std::vector<Vec3> top = field.top(number);
-      const Vec3 normal = (top[1] - top[0]).cross(top[2] - top[0]).normalized();
+    const auto add_facet = [&](std::initializer_list<std::size_t> points) {
+      const Vec3 a = field.corner(points.begin()[0]), b = field.corner(points.begin()[1]);
+      const Vec3 normal = (b - a).cross(field.corner(points.begin()[2]) - a).normalized();
       const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (const Vec3& p : top) add(p, normal);
-      add_fan(mesh, first, static_cast<int>(top.size()));
-    }
+      for (const std::size_t point : points) add(point, field.corner(point), normal);
+      add_fan(mesh, first, static_cast<int>(points.size()));
+    };
+    // cell by cell: parts of many cells would leave cracks beside small ones, and one colour
+    for (std::size_t row = 0; row + 1 < rows; ++row)
+      for (std::size_t column = 0; column + 1 < columns; ++column) {
+        const std::size_t a = row * columns + column, d = a + columns;
+        add_facet({a, a + 1, d + 1});
+        add_facet({a, d + 1, d});
+      }
   }
 
   // the rim, from one corner of the grid to the next
-  const auto add_wall = [&](const Vec3& p, const Vec3& q) {
+  const auto add_wall = [&](std::size_t from, std::size_t to) {
+    const Vec3 p = field.corner(from), q = field.corner(to);
     const Vec3 down = (std::min(p.z(), q.z()) - field.depth()) * Vec3::UnitZ();
     const Vec3 flat_p(p.x(), p.y(), 0), flat_q(q.x(), q.y(), 0);
     const Vec3 outward = (q - p).cross(Vec3::UnitZ()).normalized();
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Vec3& corner : {p, Vec3(flat_p + down), Vec3(flat_q + down), q})
-      add(corner, outward);
+    add(from, p, outward);
+    add(from, flat_p + down, outward);
+    add(to, flat_q + down, outward);
+    add(to, q, outward);
     add_fan(mesh, first, 4);
   };
-  for (std::size_t column = 0; column + 1 < columns; ++column) {
-    add_wall(field.corner(0, column), field.corner(0, column + 1));
-    add_wall(field.corner(rows - 1, column + 1), field.corner(rows - 1, column));
+  const std::size_t last_row = (rows - 1) * columns;
+  for (std::size_t i = 0; i + 1 < columns; ++i) {
+    add_wall(i, i + 1);
+    add_wall(last_row + i + 1, last_row + i);
   }
-  for (std::size_t row = 0; row + 1 < rows; ++row) {
-    add_wall(field.corner(row + 1, 0), field.corner(row, 0));
-    add_wall(field.corner(row, columns - 1), field.corner(row + 1, columns - 1));
+  for (std::size_t i = 0; i < last_row; i += columns) {
+    add_wall(i + columns, i);
+    add_wall(i + columns - 1, i + 2 * columns - 1);
   }
   return mesh;
 }

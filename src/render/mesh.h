@@ -14,6 +14,7 @@ namespace tw {
 struct Mesh {
   struct Vertex {
     Eigen::Vector3f position, normal;
+    Eigen::Vector3f tint = Eigen::Vector3f::Ones();  // times the body's colour, linear
   };
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -24,7 +25,7 @@ Mesh facet_mesh(const Polyhedron& polyhedron);
 // Rounded looks: a vertex's normal is the mean of its faces' normals, weighted by their angles.
 Mesh smooth_mesh(const Polyhedron& polyhedron);
 // The ground with its rim, without a bottom.  Smooth: the normals of what the heights are samples
-// of.
+// of.  Tints are the ground's colours, where it has some.
 Mesh height_field_mesh(const HeightField& field, bool smooth);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
 Mesh facet_sphere_mesh();

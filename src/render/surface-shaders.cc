@@ -12,7 +12,9 @@ layout(location = 2) in vec4 row_x;   // body to eye-relative world
 layout(location = 3) in vec4 row_y;
 layout(location = 4) in vec4 row_z;
 layout(location = 5) in vec4 color;   // linear; gloss
+layout(location = 6) in vec3 tint;    // linear
 out vec3 surface_normal;
+out vec3 surface_tint;
 flat out vec4 surface_color;
 void main() {
   vec4 p = vec4(position, 1);
@@ -21,6 +23,7 @@ void main() {
   surface_normal = vec3(dot(cross(row_y.xyz, row_z.xyz), normal),
                         dot(cross(row_z.xyz, row_x.xyz), normal),
                         dot(cross(row_x.xyz, row_y.xyz), normal));
+  surface_tint = tint;
   surface_color = color;
 }
 )";
@@ -39,9 +42,10 @@ layout(location = 1) out vec2 out_normal;
 
 const char* const mesh_fragment = R"(
 in vec3 surface_normal;
+in vec3 surface_tint;
 flat in vec4 surface_color;
 void main() {
-  out_color = surface_color;
+  out_color = vec4(surface_tint * surface_color.rgb, surface_color.a);
   out_normal = encode_normal(normalize(surface_normal));
 }
 )";

@@ -42,6 +42,31 @@ TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.
   return from_shape(make_hull(to_points(points, "points")));
 }
 
+// The colours of the points of a height field, an array of rank 2, row by row.
+static std::vector<Vec3> to_colors(SCM array, std::size_t rows, std::size_t columns) {
+  constexpr const char* expected = "an array of rank 2 of colors, with rows as the heights have";
+  if (!scm_is_true(scm_array_p(array, SCM_UNDEFINED)) || scm_c_array_rank(array) != 2)
+    throw BadValue{"colors", array, expected};
+  scm_t_array_handle handle;
+  scm_array_get_handle(array, &handle);
+  const scm_t_array_dim* const dims = scm_array_handle_dims(&handle);
+  const auto length = [](const scm_t_array_dim& dim) {
+    return static_cast<std::size_t>(dim.ubnd - dim.lbnd + 1);
+  };
+  const bool fits = length(dims[0]) == rows && length(dims[1]) == columns;
+  // the array keeps them
+  std::vector<SCM> elements;
+  for (std::size_t i = 0; fits && i < rows * columns; ++i)
+    elements.push_back(
+        scm_array_handle_ref(&handle, static_cast<ssize_t>(i / columns) * dims[0].inc +
+                                          static_cast<ssize_t>(i % columns) * dims[1].inc));
+  scm_array_handle_release(&handle);
+  if (!fits) throw BadValue{"colors", array, expected};
+  std::vector<Vec3> colors;
+  for (const SCM element : elements) colors.push_back(to_vec3(element, "a color of the ground"));
+  return colors;
+}
+
 // The elements of an array of rank 2, row by row; `columns` in a row.
 static std::vector<double> to_rows(SCM array, std::size_t& columns) {
   constexpr const char* expected = "an array of rank 2 of numbers, in metres";
@@ -66,8 +91,8 @@ static std::vector<double> to_rows(SCM array, std::size_t& columns) {
   return numbers;
 }
 
-TW_PRIMITIVE(height_field, "%height-field", (SCM heights, SCM spacing),
-             "Return the ground with these heights.") {
+TW_PRIMITIVE(height_field, "%height-field", (SCM heights, SCM spacing, SCM colors),
+             "Return the ground with these heights; colors: an array, or #f.") {
   constexpr const char* expected = "a number of metres, or #(dx dy) of them";
   std::vector<SCM> apart{spacing, spacing};
   if (!scm_is_real(spacing)) apart = to_elements(spacing, "spacing", expected);
@@ -76,7 +101,9 @@ TW_PRIMITIVE(height_field, "%height-field", (SCM heights, SCM spacing),
   std::size_t columns = 0;
   std::vector<double> numbers = to_rows(heights, columns);
   TW_REQUIRE(!numbers.empty(), "the heights are an empty array; expected at least 2 rows of 2");
-  return from_shape(make_height_field(std::move(numbers), columns, x, y));
+  std::vector<Vec3> painted;
+  if (scm_is_true(colors)) painted = to_colors(colors, numbers.size() / columns, columns);
+  return from_shape(make_height_field(std::move(numbers), columns, x, y, std::move(painted)));
 }
 
 TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls),

@@ -75,5 +75,23 @@ TEST(Mesh, balls_cones_and_capsules_have_their_volumes) {
   }
 }
 
+// Whether smooth or not, top and rim: of each vertex, the colour of the point of the grid that is
+// nearest in the plane.
+TEST(Mesh, height_fields_have_the_colors_of_their_points) {
+  const std::vector<Vec3> colors = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 1, 0}, {1, 1, 1}};
+  const HeightField field({0, 1, 0, 0.5, 0, 2}, 3, 1, 1, colors), plain({0, 1, 0, 2}, 2, 1, 1);
+  for (bool smooth : {false, true}) {
+    for (const Mesh::Vertex& vertex : height_field_mesh(field, smooth).vertices) {
+      const auto column = static_cast<std::size_t>(std::lround(vertex.position.x() + 1));
+      const auto row = static_cast<std::size_t>(std::lround(vertex.position.y() + 0.5f));
+      // 0 and 1 are the same in light
+      EXPECT_EQ(Vec3(vertex.tint.cast<double>()), colors[3 * row + column]);
+    }
+    for (const Mesh::Vertex& vertex : height_field_mesh(plain, smooth).vertices)
+      EXPECT_EQ(vertex.tint, Eigen::Vector3f::Ones());
+  }
+}
+
 }  // namespace
 }  // namespace tw::test

@@ -166,6 +166,8 @@
     ((position velocity angular-velocity eye normal axis center-of-mass up direction v
                gravity)
      (a-vector))
+    ((colors) (one-of '('((0 #(0 0 0)) (1 #(1 1 1))) '((1 #(0 0 0)) (0 #(1 1 1)))
+                        (lambda (x y height) #(0.5 0.5 0)) '((#(0 0 0) #(1 0 0)) (#(0 1 0) #(0 0 1))))))
     ((color zenith horizon ground) (one-of '(#(1 0 0) #(0.2 0.5 1) #(0 0 0))))
     ((orientation q) (a-quaternion))
     ((body view contact-body) (if (chance 0.7) `(a-body ,(draw 10)) `(a-kept 'view ,(draw 20))))

@@ -48,6 +48,53 @@
                  (all-poses)))))
     (equal? (run 1) (run 0.07))))
 
+;; ---- colours ----
+
+(define two-rows '((0 1) (2 3)))
+(test-assert "colours by height" 
+  (shape? (height-field rows #:colors '((0 #(0.2 0.5 0.2)) (1 #(0.5 0.4 0.3)) (2 #(1 1 1))))))
+(test-assert "colours for each height, as rows or an array"
+  (every shape? (list (height-field two-rows #:colors '((#(0 0 0) #(1 0 0)) (#(0 1 0) #(0 0 1))))
+                      (height-field typed #:colors (make-array #(1 0.5 0) 2 2)))))
+(test-equal "a procedure gets x, y and the height of each point of the grid"
+  '((-1.0 -0.25 0) (-1.0 0.25 2) (1.0 -0.25 1) (1.0 0.25 3))
+  (let ((seen '()))
+    (height-field two-rows #:spacing #(2 0.5)
+                  #:colors (lambda (x y height)
+                             (set! seen (cons (list (* 1.0 x) (* 1.0 y) height) seen))
+                             #(1 1 1)))
+    (sort seen (lambda (a b) (or (< (car a) (car b))
+                                 (and (= (car a) (car b)) (< (cadr a) (cadr b))))))))
+(test-assert "arrays may count from anywhere"
+  (shape? (height-field (make-shared-array (list->array 2 two-rows) (lambda (i j) (list (- i 3) (1- j)))
+                                           '(3 4) '(1 2))
+                        #:colors (lambda (x y height) (if (= (abs x) (abs y) 1/2) #(1 0 0) 'wrong)))))
+(test-equal "a body falls as without" '(#t)
+  (let ((end (lambda (colors)
+               (in-world ()
+                 (add-body! #:shape (height-field rows #:colors colors) #:fixed? #t)
+                 (add-body! #:shape (box 0.2 0.2 0.2) #:position #(0.1 0 3))
+                 (run! #:until 1)
+                 (all-poses)))))
+    (list (equal? (end #f) (end '((0 #(0 0 0)) (1 #(1 1 1))))))))
+(test-message "colours of a wrong size" "colors.*rows as the heights"
+  (height-field rows #:colors '((#(0 0 0) #(1 0 0)) (#(0 1 0) #(0 0 1)))))
+(test-message "rows of colours of different lengths" "row 1 of colors has 1 colors and row 0 has 2"
+  (height-field two-rows #:colors '((#(0 0 0) #(1 0 0)) (#(0 1 0)))))
+(test-message "heights that do not grow" "heights that grow"
+  (height-field rows #:colors '((0 #(0 0 0)) (0 #(1 1 1)))))
+(test-message "no colour at a height" "heights that grow"
+  (height-field rows #:colors '((0 #(0 0 0)) (1 red))))
+(test-message "a colour that is none" "color 1 in row 0 of a height field is #.0 2 0.; expected red, green and blue"
+  (height-field two-rows #:colors '((#(0 0 0) #(0 2 0)) (#(0 1 0) #(0 0 1)))))
+(test-message "a procedure that returns none" "a color of the ground"
+  (height-field two-rows #:colors (lambda (x y height) 5)))
+(test-message "a procedure of one argument" "#:colors.*takes.*expected one that takes 3"
+  (height-field two-rows #:colors (lambda (height) #(0 0 0))))
+(test-message "no colours" "colors" (height-field rows #:colors 'green))
+(test-message "wrong heights are told first" "heights"
+  (height-field '((0 a) (0 0)) #:colors (lambda (x y height) #(0 0 0))))
+
 (test-message "no array" "heights" (height-field 3))
 (test-message "a vector" "array of rank 2" (height-field #(1 2 3)))
 (test-message "rows of different lengths" "row 1 of heights has 3 .*row 0 has 2; .*of one length"
