@@ -10,13 +10,13 @@
 namespace tw::bench {
 namespace {
 
-btVector3 to_bullet(const Vec3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+btVector3 to_bullet(const test::Numbers3& v) {
+  return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
 }
 
-btQuaternion to_bullet(const Quat& q) {
-  return {static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()), static_cast<btScalar>(q.z()),
-          static_cast<btScalar>(q.w())};
+btQuaternion to_bullet(const std::array<double, 4>& q) {
+  return {static_cast<btScalar>(q[1]), static_cast<btScalar>(q[2]), static_cast<btScalar>(q[3]),
+          static_cast<btScalar>(q[0])};
 }
 
 // by default those of a pair are multiplied; here all bodies have the same
@@ -27,24 +27,24 @@ btScalar own_restitution(const btCollisionObject* a, const btCollisionObject*) {
   return a->getRestitution();
 }
 
-std::unique_ptr<btCollisionShape> shape_of(const BodyDef& def) {
-  if (const auto r = sphere_radius(def))
-    return std::make_unique<btSphereShape>(static_cast<btScalar>(*r));
-  if (const auto half = box_half(def)) return std::make_unique<btBoxShape>(to_bullet(*half));
+std::unique_ptr<btCollisionShape> shape_of(const CaseBody& def) {
+  if (def.shape == "sphere")
+    return std::make_unique<btSphereShape>(static_cast<btScalar>(def.size[0]));
+  if (def.shape == "box") return std::make_unique<btBoxShape>(to_bullet(def.size));
   return std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), btScalar(0));
 }
 
 class Bullet : public CaseEngine {
  public:
-  Bullet(const test::Case& c, double step);
+  Bullet(const CaseTable& c, double step);
   ~Bullet() override;
   Bullet(const Bullet&) = delete;
   Bullet& operator=(const Bullet&) = delete;
   void advance(double duration) override;
-  Pose pose(std::size_t body) const override;
+  EnginePose pose(std::size_t body) const override;
 
  private:
-  void add(const BodyDef& def, const test::Case& c);
+  void add(const CaseBody& def, const CaseTable& c);
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
@@ -56,7 +56,7 @@ class Bullet : public CaseEngine {
   double step_;
 };
 
-Bullet::Bullet(const test::Case& c, double step) : step_(step) {
+Bullet::Bullet(const CaseTable& c, double step) : step_(step) {
   gCalculateCombinedFrictionCallback = own_friction;
   gCalculateCombinedRestitutionCallback = own_restitution;
   world_.setGravity(to_bullet(c.gravity));
@@ -65,18 +65,18 @@ Bullet::Bullet(const test::Case& c, double step) : step_(step) {
     world_.getSolverInfo().m_restitutionVelocityThreshold = btScalar(0);
   }
   if (c.bodies.size() > 2 && c.restitution == 0) world_.getSolverInfo().m_numIterations = 50;
-  for (const BodyDef& def : c.bodies) add(def, c);
+  for (const CaseBody& def : c.bodies) add(def, c);
 }
 
 Bullet::~Bullet() {
   for (const auto& body : bodies_) world_.removeRigidBody(body.get());
 }
 
-void Bullet::add(const BodyDef& def, const test::Case& c) {
+void Bullet::add(const CaseBody& def, const CaseTable& c) {
   shapes_.push_back(shape_of(def));
   btRigidBody::btRigidBodyConstructionInfo info(
-      def.fixed ? btScalar(0) : static_cast<btScalar>(*def.mass), nullptr, shapes_.back().get(),
-      def.fixed ? btVector3(0, 0, 0) : to_bullet(def.inertia->diagonal()));
+      def.fixed ? btScalar(0) : static_cast<btScalar>(def.mass), nullptr, shapes_.back().get(),
+      def.fixed ? btVector3(0, 0, 0) : to_bullet(def.inertia));
   info.m_startWorldTransform = btTransform(to_bullet(def.orientation), to_bullet(def.position));
   info.m_friction = static_cast<btScalar>(c.friction);
   info.m_restitution = static_cast<btScalar>(c.restitution);
@@ -94,11 +94,11 @@ void Bullet::advance(double duration) {
   for (long n = std::lround(duration / step_); n > 0; --n) world_.stepSimulation(dt, 0, dt);
 }
 
-Pose Bullet::pose(std::size_t index) const {
+EnginePose Bullet::pose(std::size_t index) const {
   const btTransform& t = bodies_[index]->getWorldTransform();
   const btVector3& p = t.getOrigin();
   const btQuaternion q = t.getRotation();
-  return {Vec3(p.x(), p.y(), p.z()), Quat(q.w(), q.x(), q.y(), q.z())};
+  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ int main() {
   runner.engine = "Bullet";
   runner.version =
       std::to_string(btGetVersion()) + (sizeof(btScalar) == sizeof(float) ? " single" : " double");
-  runner.make = [](const std::string&, const tw::test::Case& c, const Setting& setting) {
+  runner.make = [](const CaseTable& c, const Setting& setting) {
     return std::make_unique<Bullet>(c, setting.value);
   };
   runner.settings = time_steps();

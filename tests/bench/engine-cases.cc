@@ -11,13 +11,15 @@
 #include <cstdio>
 #include <exception>
 
-#include "bench/bench-tools.h"
-#include "geometry/shape.h"
+#include "base/cpu-clock.h"
+#include "math/vec.h"
 
 namespace tw::bench {
 
 namespace {
 
+using test::CaseTable;
+using test::Numbers3;
 using Rows = std::vector<std::vector<double>>;
 
 constexpr double settled = 1;   // s: the second error of what should stand still counts from here
@@ -36,16 +38,23 @@ Rows exact_rows(const std::string& name) {
   return test::read_rows(name + ".exact.txt");
 }
 
+Vec3 vector_of(const Numbers3& x) { return {x[0], x[1], x[2]}; }
+Quat rotation_of(const std::array<double, 4>& q) { return Quat(q[0], q[1], q[2], q[3]); }
+
+Vec3 position(const CaseEngine& engine, std::size_t body) {
+  return vector_of(engine.pose(body).position);
+}
+
 double attitude_error(const CaseEngine& engine, const Rows& exact) {
   const auto& e = exact.at(0);
   const Quat q(e[3], e[4], e[5], e[6]);
-  return 2 * (engine.pose(0).q.normalized() * q.conjugate()).vec().norm();
+  return 2 * (rotation_of(engine.pose(0).orientation).normalized() * q.conjugate()).vec().norm();
 }
 
 double worst_position(const CaseEngine& engine, const Rows& exact) {
   double worst = 0;
   for (const auto& row : exact) {
-    const Vec3 x = engine.pose(static_cast<std::size_t>(row[0])).p;
+    const Vec3 x = position(engine, static_cast<std::size_t>(row[0]));
     const double off = (x - Vec3(row[1], row[2], row[3])).norm();
     // a NaN is to stay one
     if (!(off <= worst)) worst = off;
@@ -53,27 +62,31 @@ double worst_position(const CaseEngine& engine, const Rows& exact) {
   return worst;
 }
 
+// Of the ground, the first body.
+Vec3 normal_of(const CaseTable& c) { return rotation_of(c.bodies[0].orientation) * Vec3::UnitZ(); }
+
 // Where a cube is on a slope under Coulomb's friction that does not hold it: along the slope, for
 // how deep it sinks in is each engine's own law of contact.
-double slide_error(const CaseEngine& engine, const test::Case& c) {
-  const Vec3 normal = c.bodies[0].orientation * Vec3::UnitZ();
-  const double press = -c.gravity.dot(normal);
-  const Vec3 pull = c.gravity + press * normal;
+double slide_error(const CaseEngine& engine, const CaseTable& c) {
+  const Vec3 normal = normal_of(c), gravity = vector_of(c.gravity);
+  const double press = -gravity.dot(normal);
+  const Vec3 pull = gravity + press * normal;
   const double rate = pull.norm() - c.friction * press;
   const double way = 0.5 * rate * c.duration * c.duration;
-  return std::abs((engine.pose(1).p - c.bodies[1].position).dot(pull.normalized()) - way);
+  const Vec3 moved = position(engine, 1) - vector_of(c.bodies[1].position);
+  return std::abs(moved.dot(pull.normalized()) - way);
 }
 
-std::vector<Vec3> positions(const CaseEngine& engine, const test::Case& c) {
+std::vector<Vec3> positions(const CaseEngine& engine, const CaseTable& c) {
   std::vector<Vec3> result;
   for (std::size_t i = 0; i < c.bodies.size(); ++i)
-    result.push_back(c.bodies[i].fixed ? c.bodies[i].position : engine.pose(i).p);
+    result.push_back(c.bodies[i].fixed ? vector_of(c.bodies[i].position) : position(engine, i));
   return result;
 }
 
 // On a slope the part along it.
-double drift(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const test::Case& c) {
-  const Vec3 normal = c.bodies[0].orientation * Vec3::UnitZ();
+double drift(const std::vector<Vec3>& from, const std::vector<Vec3>& to, const CaseTable& c) {
+  const Vec3 normal = normal_of(c);
   const bool slope = normal.z() < 0.999;
   double worst = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -89,16 +102,17 @@ struct Result {
   double cpu = 0, error = 0, error_settled = 0;
 };
 
-Result run_once(const CaseRunner& runner, const std::string& name, const test::Case& c,
-                const Setting& setting, const Rows& exact) {
-  const auto engine = runner.make(name, c, setting);
+Result run_once(const CaseRunner& runner, const CaseTable& c, const Setting& setting,
+                const Rows& exact) {
+  const std::string& name = c.name;
+  const auto engine = runner.make(c, setting);
   Result result;
   const std::vector<Vec3> start = positions(*engine, c);
   std::vector<Vec3> middle;
   const auto advance = [&](double duration) {
-    const double before = cpu_seconds();
+    const double before = thread_cpu_seconds();
     engine->advance(duration);
-    result.cpu += cpu_seconds() - before;
+    result.cpu += thread_cpu_seconds() - before;
   };
   if (stands_still(name)) {
     advance(settled);
@@ -113,7 +127,7 @@ Result run_once(const CaseRunner& runner, const std::string& name, const test::C
   if (name == "brick")
     result.error = attitude_error(*engine, exact);
   else if (name == "bounce")
-    result.error = std::abs(engine->pose(1).p.z() - exact.at(0)[0]);
+    result.error = std::abs(position(*engine, 1).z() - exact.at(0)[0]);
   else if (name == "slide")
     result.error = slide_error(*engine, c);
   else
@@ -124,7 +138,7 @@ Result run_once(const CaseRunner& runner, const std::string& name, const test::C
 struct Line {
   const CaseRunner& runner;
   std::string name;
-  const Setting& setting;
+  Setting setting;
 
   void print(double cold, double best, double error) const {
     std::printf("%s,%s,%s,%s,%.4g,%.4g,", runner.engine.c_str(), runner.version.c_str(),
@@ -141,12 +155,12 @@ struct Line {
 };
 
 void measure(const CaseRunner& runner, const std::string& name, const Setting& setting) {
-  const test::Case c = test::read_case(name);
+  const CaseTable c = test::read_table(name);
   const Rows exact = exact_rows(name);
-  const Result first = run_once(runner, name, c, setting, exact);
+  const Result first = run_once(runner, c, setting, exact);
   double best = first.cpu, spent = first.cpu;
   for (int k = 1; k < most_runs && spent < budget; ++k) {
-    const double cpu = run_once(runner, name, c, setting, exact).cpu;
+    const double cpu = run_once(runner, c, setting, exact).cpu;
     best = std::min(best, cpu);
     spent += cpu;
   }
@@ -181,18 +195,6 @@ double measure_apart(const CaseRunner& runner, const std::string& name, const Se
 
 }  // namespace
 
-std::optional<double> sphere_radius(const BodyDef& def) {
-  const ConvexPart& part = def.shape->parts().front();
-  if (part.kind != PartKind::sphere) return std::nullopt;
-  return part.radius;
-}
-
-std::optional<Vec3> box_half(const BodyDef& def) {
-  const ConvexPart& part = def.shape->parts().front();
-  if (!part.is_box) return std::nullopt;
-  return part.half_edges;
-}
-
 std::vector<Setting> time_steps() {
   std::vector<Setting> result;
   for (long rate = 60; rate <= 15728640; rate *= 4)
@@ -202,9 +204,14 @@ std::vector<Setting> time_steps() {
 
 int run_cases(const CaseRunner& runner) {
   try {
-    for (const char* name : case_names)
+    for (const char* name : case_names) {
+      if (const std::string why = runner.unable(test::read_table(name)); !why.empty()) {
+        Line{runner, name, {}}.fail(why);
+        continue;
+      }
       for (const Setting& setting : runner.settings)
         if (measure_apart(runner, name, setting) > longest) break;
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", runner.engine.c_str(), error.what());
     return 1;

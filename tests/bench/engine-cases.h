@@ -6,15 +6,23 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "support/case-file.h"
+#include "support/case-table.h"
 
 namespace tw::bench {
+
+using test::CaseBody;
+using test::CaseTable;
+
+struct EnginePose {
+  test::Numbers3 position{};
+  std::array<double, 4> orientation{};  // w x y z
+};
 
 // An engine, filled with a case.
 class CaseEngine {
@@ -23,7 +31,7 @@ class CaseEngine {
   // By a whole number of steps, if the engine has steps.
   virtual void advance(double duration) = 0;
   // Of the body's centre of mass and principal axes.
-  virtual Pose pose(std::size_t body) const = 0;
+  virtual EnginePose pose(std::size_t body) const = 0;
 };
 
 // How an engine is run: a time step, s, or an accuracy.
@@ -34,15 +42,11 @@ struct Setting {
 
 struct CaseRunner {
   std::string engine, version;
-  std::function<std::unique_ptr<CaseEngine>(const std::string& name, const test::Case&,
-                                            const Setting&)>
-      make;
+  std::function<std::unique_ptr<CaseEngine>(const CaseTable&, const Setting&)> make;
   std::vector<Setting> settings;  // the cheapest first
+  // Why the engine can't do a case, without commas; empty where it can.
+  std::function<std::string(const CaseTable&)> unable = [](const CaseTable&) { return ""; };
 };
-
-// The radius of a sphere and the half extents of a box; of other shapes none.
-std::optional<double> sphere_radius(const BodyDef& def);
-std::optional<Vec3> box_half(const BodyDef& def);
 
 // Steps from a 60th of a second down, each a quarter of the one before.
 std::vector<Setting> time_steps();

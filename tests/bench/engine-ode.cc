@@ -12,20 +12,18 @@ namespace {
 
 constexpr int quick_iterations = 50;  // 20 by default: too few for a stack of ten
 
-Vec3 vector_of(const dReal* x) { return {x[0], x[1], x[2]}; }
-
 class Ode : public CaseEngine {
  public:
-  Ode(const test::Case& c, double step, bool direct);
+  Ode(const CaseTable& c, double step, bool direct);
   ~Ode() override;
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
   void advance(double duration) override;
-  Pose pose(std::size_t body) const override;
+  EnginePose pose(std::size_t body) const override;
 
  private:
-  dBodyID add(const BodyDef& def);
-  dGeomID shape(const BodyDef& def);
+  dBodyID add(const CaseBody& def);
+  dGeomID shape(const CaseBody& def);
   void touch(dGeomID a, dGeomID b);
 
   dWorldID world_;
@@ -36,16 +34,16 @@ class Ode : public CaseEngine {
   bool direct_;
 };
 
-Ode::Ode(const test::Case& c, double step, bool direct)
+Ode::Ode(const CaseTable& c, double step, bool direct)
     : friction_(c.friction), restitution_(c.restitution), step_(step), direct_(direct) {
   dInitODE2(0);
   dAllocateODEDataForThread(dAllocateMaskAll);
   world_ = dWorldCreate();
   space_ = dHashSpaceCreate(nullptr);
   contacts_ = dJointGroupCreate(0);
-  dWorldSetGravity(world_, c.gravity.x(), c.gravity.y(), c.gravity.z());
+  dWorldSetGravity(world_, c.gravity[0], c.gravity[1], c.gravity[2]);
   dWorldSetQuickStepNumIterations(world_, quick_iterations);
-  for (const BodyDef& def : c.bodies) bodies_.push_back(add(def));
+  for (const CaseBody& def : c.bodies) bodies_.push_back(add(def));
 }
 
 Ode::~Ode() {
@@ -55,30 +53,31 @@ Ode::~Ode() {
   dCloseODE();
 }
 
-dGeomID Ode::shape(const BodyDef& def) {
-  if (const auto r = sphere_radius(def)) return dCreateSphere(space_, *r);
-  if (const auto half = box_half(def))
-    return dCreateBox(space_, 2 * half->x(), 2 * half->y(), 2 * half->z());
-  const Vec3 n = def.orientation * Vec3::UnitZ();
-  return dCreatePlane(space_, n.x(), n.y(), n.z(), n.dot(def.position));
+dGeomID Ode::shape(const CaseBody& def) {
+  const auto& [x, y, z] = def.size;
+  if (def.shape == "sphere") return dCreateSphere(space_, x);
+  if (def.shape == "box") return dCreateBox(space_, 2 * x, 2 * y, 2 * z);
+  dMatrix3 R;
+  dQtoR(def.orientation.data(), R);
+  const auto& p = def.position;
+  const double n[] = {R[2], R[6], R[10]};
+  return dCreatePlane(space_, n[0], n[1], n[2], n[0] * p[0] + n[1] * p[1] + n[2] * p[2]);
 }
 
-dBodyID Ode::add(const BodyDef& def) {
+dBodyID Ode::add(const CaseBody& def) {
   const dGeomID geom = shape(def);
   if (def.fixed) return nullptr;
   const dBodyID body = dBodyCreate(world_);
   dGeomSetBody(geom, body);
-  const Mat3& i = *def.inertia;
+  const auto& [ix, iy, iz] = def.inertia;
   dMass mass;
-  dMassSetParameters(&mass, *def.mass, 0, 0, 0, i(0, 0), i(1, 1), i(2, 2), 0, 0, 0);
+  dMassSetParameters(&mass, def.mass, 0, 0, 0, ix, iy, iz, 0, 0, 0);
   dBodySetMass(body, &mass);
-  const Quat& o = def.orientation;
-  const dQuaternion q = {o.w(), o.x(), o.y(), o.z()};
-  dBodySetQuaternion(body, q);
-  const Vec3 &p = def.position, &v = def.velocity, &w = def.angular_velocity;
-  dBodySetPosition(body, p.x(), p.y(), p.z());
-  dBodySetLinearVel(body, v.x(), v.y(), v.z());
-  dBodySetAngularVel(body, w.x(), w.y(), w.z());
+  dBodySetQuaternion(body, def.orientation.data());
+  const auto &p = def.position, &v = def.velocity, &w = def.angular_velocity;
+  dBodySetPosition(body, p[0], p[1], p[2]);
+  dBodySetLinearVel(body, v[0], v[1], v[2]);
+  dBodySetAngularVel(body, w[0], w[1], w[2]);
   return body;
 }
 
@@ -112,9 +111,10 @@ void Ode::advance(double duration) {
   }
 }
 
-Pose Ode::pose(std::size_t index) const {
+EnginePose Ode::pose(std::size_t index) const {
+  const dReal* p = dBodyGetPosition(bodies_[index]);
   const dReal* q = dBodyGetQuaternion(bodies_[index]);
-  return {vector_of(dBodyGetPosition(bodies_[index])), Quat(q[0], q[1], q[2], q[3])};
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
 }  // namespace
@@ -125,8 +125,8 @@ int main() {
   CaseRunner runner;
   runner.engine = "ODE";
   runner.version = sizeof(dReal) == sizeof(double) ? "double" : "single";
-  runner.make = [](const std::string& name, const tw::test::Case& c, const Setting& setting) {
-    return std::make_unique<Ode>(c, setting.value, name != "stack");
+  runner.make = [](const CaseTable& c, const Setting& setting) {
+    return std::make_unique<Ode>(c, setting.value, c.name != "stack");
   };
   runner.settings = time_steps();
   return run_cases(runner);

@@ -1,21 +1,24 @@
 // The cases with exact results in timewarp.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "bench/engine-cases.h"
+#include "support/case-file.h"
 
 namespace tw::bench {
 namespace {
 
 class Timewarp : public CaseEngine {
  public:
-  Timewarp(const test::Case& c, double accuracy) {
+  Timewarp(const CaseTable& c, double accuracy) {
     world_.set_accuracy(accuracy);
-    test::fill(world_, c);
+    test::fill(world_, test::case_of(c));
   }
   // The first one pays for the start, too: first claims, predictions, the check for overlaps.
   void advance(double duration) override { world_.advance(now_ += duration); }
-  Pose pose(std::size_t body) const override {
+  EnginePose pose(std::size_t body) const override {
     const BodyState state = world_.state(static_cast<BodyId>(body));
-    return {state.position, state.orientation};
+    const Vec3& p = state.position;
+    const Quat& q = state.orientation;
+    return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
   }
 
  private:
@@ -31,7 +34,7 @@ int main() {
   CaseRunner runner;
   runner.engine = "timewarp";
   runner.version = PACKAGE_VERSION;
-  runner.make = [](const std::string&, const tw::test::Case& c, const Setting& setting) {
+  runner.make = [](const CaseTable& c, const Setting& setting) {
     return std::make_unique<Timewarp>(c, setting.value);
   };
   runner.settings = {{"accuracy 1e-4", 1e-4}, {"accuracy 1e-6", 1e-6}, {"accuracy 1e-8", 1e-8}};

@@ -7,7 +7,7 @@
 # doc/engines.md holds such tables between its markers, doc/pictures/engines.png such a picture.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 echo "engine,version,case,setting,cold_cpu_s,cpu_s,error,unit,note" > engines.csv
-for engine in timewarp ode bullet; do
+for engine in timewarp ode bullet mujoco simbody dart; do
   program=
   for each; do
     [ "${each##*/engine-}" != $engine ] || program=$each

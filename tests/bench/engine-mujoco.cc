@@ -1,0 +1,151 @@
+// The cases with exact results in MuJoCo.
+//
+// It has no coefficient of restitution: what bounces gets a spring and a damper that give the
+// coefficient in the limit of short steps.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+#include "bench/engine-cases.h"
+#include "bench/mujoco-text.h"
+#include "math/vec.h"
+
+namespace tw::bench {
+namespace {
+
+// s: contacts of what slides and rests are mended within this, at least
+constexpr double slowest = 2e-3;
+// what bounces touches for ten steps at least and, as steps shrink, for sqrt(step * 0.1 s)
+constexpr double bounce_steps = 10, bounce_length = 0.1;
+
+template <std::size_t N>
+std::string text_of(const std::array<double, N>& numbers) {
+  std::ostringstream out;
+  out << std::setprecision(17);
+  for (const double x : numbers) out << x << ' ';
+  return out.str();
+}
+
+// What a damped spring leaves of a speed, if it only pushes and lets go where its force vanishes;
+// `damping` is a fraction of the critical one, below sqrt(1/2).
+double restitution_of(double damping) {
+  const double root = std::sqrt(1 - damping * damping);
+  const double phase = pi - std::atan2(2 * damping * root, 1 - 2 * damping * damping);
+  return std::exp(-damping / root * phase);
+}
+
+double damping_of(double restitution) {
+  double low = 0, high = 0.7;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (restitution_of(middle) > restitution ? low : high) = middle;
+  }
+  return low;
+}
+
+class Mujoco : public CaseEngine {
+ public:
+  Mujoco(const CaseTable& c, double step) : made_(text(c, step)), step_(step) {
+    mju_user_warning = [](const char*) {};
+    set_velocities(c);
+    mj_kinematics(made_.model, made_.data);
+  }
+  void advance(double duration) override {
+    for (long n = std::lround(duration / step_); n > 0; --n) mj_step(made_.model, made_.data);
+    mj_kinematics(made_.model, made_.data);
+  }
+  EnginePose pose(std::size_t body) const override;
+
+ private:
+  static std::string text(const CaseTable& c, double step);
+  void set_velocities(const CaseTable& c);
+
+  MujocoModel made_;
+  double step_;
+};
+
+// Of the reference acceleration of contacts, and how near to it they get.
+std::string contact_text(const CaseTable& c, double step) {
+  std::ostringstream out;
+  out << std::setprecision(17);
+  if (c.restitution == 0) {
+    out << "solref='" << std::max(2 * step, slowest) << " 1' solimp='0.99 0.99 0.001'";
+  } else {
+    const double length = std::max(bounce_steps * step, std::sqrt(bounce_length * step));
+    const double rate = pi / length;
+    out << "solref='" << -rate * rate << ' ' << -2 * damping_of(c.restitution) * rate
+        << "' solimp='0.9999 0.9999 0.001'";
+  }
+  return out.str();
+}
+
+std::string Mujoco::text(const CaseTable& c, double step) {
+  std::ostringstream out;
+  const bool contacts = c.bodies.size() > 1;
+  out << std::setprecision(17)
+      << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/><option "
+         "gravity='"
+      << text_of(c.gravity) << "' timestep='" << step << "' integrator='"
+      << (contacts ? "Euler" : "RK4") << "' cone='"
+      << (c.name == "stack" ? "pyramidal" : "elliptic")
+      << "' impratio='100' tolerance='1e-14'/><default><geom condim='" << (c.friction > 0 ? 3 : 1)
+      << "' friction='" << c.friction << " 0 0' " << contact_text(c, step)
+      << "/></default><worldbody>";
+  for (const CaseBody& body : c.bodies) {
+    const std::string place =
+        "pos='" + text_of(body.position) + "' quat='" + text_of(body.orientation) + "'";
+    if (body.fixed) {
+      // an empty body keeps the numbers
+      out << "<body/><geom type='plane' size='0 0 1' " << place << "/>";
+      continue;
+    }
+    out << "<body " << place << "><freejoint/><inertial pos='0 0 0' mass='" << body.mass
+        << "' diaginertia='" << text_of(body.inertia) << "'/><geom type='" << body.shape
+        << "' size='" << text_of(body.size) << "'/></body>";
+  }
+  out << "</worldbody></mujoco>";
+  return out.str();
+}
+
+// A free joint has its angular velocity in the body's frame.
+void Mujoco::set_velocities(const CaseTable& c) {
+  const mjModel& model = *made_.model;
+  for (std::size_t i = 0; i < c.bodies.size(); ++i) {
+    const CaseBody& body = c.bodies[i];
+    const int number = static_cast<int>(i) + 1;
+    if (model.body_dofnum[number] == 0) continue;
+    double* qvel = made_.data->qvel + model.body_dofadr[number];
+    mju_copy3(qvel, body.velocity.data());
+    double back[4];
+    mju_negQuat(back, body.orientation.data());
+    mju_rotVecQuat(qvel + 3, body.angular_velocity.data(), back);
+  }
+}
+
+EnginePose Mujoco::pose(std::size_t body) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const mjData& data = *made_.data;
+  // where it became unstable it has begun anew by itself
+  for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+    if (data.warning[kind].number > 0) return {{nan, nan, nan}, {nan, nan, nan, nan}};
+  const mjtNum *p = data.xpos + 3 * (body + 1), *q = data.xquat + 4 * (body + 1);
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+}
+
+}  // namespace
+}  // namespace tw::bench
+
+int main() {
+  using namespace tw::bench;
+  CaseRunner runner;
+  runner.engine = "MuJoCo";
+  runner.version = mj_versionString();
+  runner.make = [](const CaseTable& c, const Setting& setting) {
+    return std::make_unique<Mujoco>(c, setting.value);
+  };
+  runner.settings = time_steps();
+  return run_cases(runner);
+}

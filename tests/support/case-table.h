@@ -1,0 +1,94 @@
+// The tables of tests/data (see tests/data/README.md) as plain numbers: nothing of the simulator
+// and no matrices, so that programs around other engines read them as their libraries were
+// compiled.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tw::test {
+
+inline std::string data_file(const std::string& name) {
+#ifdef TW_TEST_DATA_DIR
+  const std::string folder = TW_TEST_DATA_DIR;
+#else
+  const char* from_environment = std::getenv("TW_TEST_DATA");
+  const std::string folder = from_environment ? from_environment : "tests/data";
+#endif
+  return folder + "/" + name;
+}
+
+// Rows of numbers, comments left out.
+inline std::vector<std::vector<double>> read_rows(const std::string& name) {
+  std::ifstream file(data_file(name));
+  if (!file) throw std::runtime_error("cannot read " + data_file(name));
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream in(line);
+    rows.emplace_back();
+    for (double x; in >> x;) rows.back().push_back(x);
+  }
+  return rows;
+}
+
+using Numbers3 = std::array<double, 3>;
+
+struct CaseBody {
+  std::string shape;  // sphere, box, plane
+  bool fixed = false;
+  // a sphere's radius, a box's half edges
+  Numbers3 size{};
+  double mass = 0;
+  Numbers3 inertia{}, position{};
+  std::array<double, 4> orientation{};  // w x y z
+  Numbers3 velocity{}, angular_velocity{};
+};
+
+struct CaseTable {
+  std::string name;
+  Numbers3 gravity{};
+  double friction = 0, restitution = 1, duration = 0;
+  std::vector<CaseBody> bodies;
+};
+
+template <std::size_t N>
+std::istream& operator>>(std::istream& in, std::array<double, N>& numbers) {
+  for (double& x : numbers) in >> x;
+  return in;
+}
+
+// Reads NAME.bodies.txt.
+inline CaseTable read_table(const std::string& name) {
+  std::ifstream file(data_file(name + ".bodies.txt"));
+  if (!file) throw std::runtime_error("cannot read " + data_file(name + ".bodies.txt"));
+  CaseTable result;
+  result.name = name;
+  std::string line, word;
+  std::getline(file, line);
+  std::istringstream header(line);
+  while (header >> word) {
+    if (word == "gravity") header >> result.gravity;
+    if (word == "friction") header >> result.friction;
+    if (word == "restitution") header >> result.restitution;
+    if (word == "duration") header >> result.duration;
+  }
+  while (std::getline(file, line)) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream in(line);
+    int id, hull;
+    CaseBody body;
+    in >> id >> body.shape >> body.fixed >> body.size >> hull >> body.mass >> body.inertia;
+    in >> body.position >> body.orientation >> body.velocity >> body.angular_velocity;
+    result.bodies.push_back(body);
+  }
+  return result;
+}
+
+}  // namespace tw::test
