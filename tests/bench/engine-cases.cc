@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -27,6 +28,7 @@ constexpr double budget = 0.3;  // CPU s for the runs after the first
 constexpr int most_runs = 30;
 // CPU s, of all runs of a setting: the next one, with steps a quarter as long, is left out then
 constexpr double longest = 3;
+constexpr rlim_t too_long = 60;  // CPU s: a process is ended then
 
 const char* const case_names[] = {"brick", "bounce", "billiard", "gas-200",
                                   "slide", "creep",  "stack"};
@@ -174,6 +176,8 @@ double measure_apart(const CaseRunner& runner, const std::string& name, const Se
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
+    const rlimit limit{too_long, too_long};
+    setrlimit(RLIMIT_CPU, &limit);
     int status = 0;
     try {
       measure(runner, name, setting);
@@ -188,7 +192,12 @@ double measure_apart(const CaseRunner& runner, const std::string& name, const Se
   int status = 0;
   rusage used;
   if (child < 0 || wait4(child, &status, 0, &used) < 0) throw std::runtime_error("cannot fork");
-  if (status != 0) Line{runner, name, setting}.fail(WIFSIGNALED(status) ? "crashed" : "failed");
+  const bool out_of_time =
+      WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGXCPU);
+  if (out_of_time)
+    Line{runner, name, setting}.fail("not within " + std::to_string(too_long) + " s");
+  else if (status != 0)
+    Line{runner, name, setting}.fail(WIFSIGNALED(status) ? "crashed" : "failed");
   return static_cast<double>(used.ru_utime.tv_sec) +
          1e-6 * static_cast<double>(used.ru_utime.tv_usec);
 }
