@@ -1,0 +1,122 @@
+// The cases with exact results in DART.
+//
+// Compiled as DART's library was, since that decides how Eigen's matrices are laid out: nothing of
+// ours that includes Eigen may be included here.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+// not <dart/dart.hpp>: in Debian 12 it wants headers of other packages
+#include <dart/collision/dart/DARTCollisionDetector.hpp>
+#include <dart/config.hpp>
+#include <dart/constraint/ConstraintSolver.hpp>
+#include <dart/dynamics/BodyNode.hpp>
+#include <dart/dynamics/BoxShape.hpp>
+#include <dart/dynamics/FreeJoint.hpp>
+#include <dart/dynamics/Skeleton.hpp>
+#include <dart/dynamics/SphereShape.hpp>
+#include <dart/dynamics/WeldJoint.hpp>
+#include <dart/simulation/World.hpp>
+
+#include <cmath>
+
+#include "bench/engine-cases.h"
+
+namespace tw::bench {
+namespace {
+
+namespace dynamics = dart::dynamics;
+
+// m: of the box that stands for a half-space, which DART's own detector does not know
+constexpr double ground = 100;
+
+Eigen::Vector3d vector_of(const test::Numbers3& x) { return {x[0], x[1], x[2]}; }
+
+Eigen::Isometry3d placement(const CaseBody& def) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  const auto& q = def.orientation;
+  result.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  result.translation() = vector_of(def.position);
+  return result;
+}
+
+dynamics::ShapePtr shape_of(const CaseBody& def) {
+  if (def.shape == "sphere") return std::make_shared<dynamics::SphereShape>(def.size[0]);
+  if (def.shape == "box")
+    return std::make_shared<dynamics::BoxShape>(Eigen::Vector3d(2 * vector_of(def.size)));
+  return std::make_shared<dynamics::BoxShape>(Eigen::Vector3d(ground, ground, ground));
+}
+
+class Dart : public CaseEngine {
+ public:
+  Dart(const CaseTable& c, double step);
+  void advance(double duration) override {
+    for (long n = std::lround(duration / step_); n > 0; --n) world_->step();
+  }
+  EnginePose pose(std::size_t body) const override;
+
+ private:
+  void add(const CaseBody& def, const CaseTable& c);
+
+  dart::simulation::WorldPtr world_ = dart::simulation::World::create();
+  std::vector<dynamics::BodyNode*> bodies_;
+  double step_;
+};
+
+Dart::Dart(const CaseTable& c, double step) : step_(step) {
+  world_->setTimeStep(step);
+  world_->setGravity(vector_of(c.gravity));
+  world_->getConstraintSolver()->setCollisionDetector(
+      dart::collision::DARTCollisionDetector::create());
+  for (const CaseBody& def : c.bodies) add(def, c);
+}
+
+void Dart::add(const CaseBody& def, const CaseTable& c) {
+  const auto skeleton = dynamics::Skeleton::create("body-" + std::to_string(bodies_.size()));
+  dynamics::BodyNode* body;
+  if (def.fixed) {
+    const auto made = skeleton->createJointAndBodyNodePair<dynamics::WeldJoint>();
+    Eigen::Isometry3d place = placement(def);
+    place.translation() -= 0.5 * ground * place.linear().col(2);
+    made.first->setTransformFromParentBodyNode(place);
+    body = made.second;
+    skeleton->setMobile(false);
+  } else {
+    const auto made = skeleton->createJointAndBodyNodePair<dynamics::FreeJoint>();
+    body = made.second;
+    const Eigen::Vector3d i = vector_of(def.inertia);
+    body->setInertia(
+        dynamics::Inertia(def.mass, Eigen::Vector3d::Zero(), Eigen::Matrix3d(i.asDiagonal())));
+    made.first->setTransform(placement(def));
+    made.first->setLinearVelocity(vector_of(def.velocity));
+    made.first->setAngularVelocity(vector_of(def.angular_velocity));
+  }
+  // DART multiplies the coefficients of a pair
+  const double own_restitution = std::sqrt(c.restitution);
+  auto* node = body->createShapeNodeWith<dynamics::VisualAspect, dynamics::CollisionAspect,
+                                         dynamics::DynamicsAspect>(shape_of(def));
+  node->getDynamicsAspect()->setFrictionCoeff(c.friction);
+  node->getDynamicsAspect()->setRestitutionCoeff(own_restitution);
+  bodies_.push_back(body);
+  world_->addSkeleton(skeleton);
+}
+
+EnginePose Dart::pose(std::size_t index) const {
+  const Eigen::Isometry3d& t = bodies_[index]->getWorldTransform();
+  const Eigen::Vector3d p = t.translation();
+  const Eigen::Quaterniond q(t.linear());
+  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+}
+
+}  // namespace
+}  // namespace tw::bench
+
+int main() {
+  using namespace tw::bench;
+  CaseRunner runner;
+  runner.engine = "DART";
+  runner.version = DART_VERSION;
+  runner.make = [](const CaseTable& c, const Setting& setting) {
+    return std::make_unique<Dart>(c, setting.value);
+  };
+  runner.settings = time_steps();
+  return run_cases(runner);
+}
