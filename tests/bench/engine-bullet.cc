@@ -1,6 +1,9 @@
 // The cases with exact results in Bullet.  Restitution is not to be lost to its speculative
 // contacts: only what touches is solved, and depth is mended by split impulses.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -101,18 +104,78 @@ EnginePose Bullet::pose(std::size_t index) const {
   return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
 }
 
+// Hinged bodies without a turn at the start, as one multibody: reduced coordinates.
+class BulletTree : public CaseEngine {
+ public:
+  BulletTree(const CaseTable& c, double step);
+  ~BulletTree() override { world_.removeMultiBody(&tree_); }
+  BulletTree(const BulletTree&) = delete;
+  BulletTree& operator=(const BulletTree&) = delete;
+  void advance(double duration) override {
+    const auto dt = static_cast<btScalar>(step_);
+    for (long n = std::lround(duration / step_); n > 0; --n) world_.stepSimulation(dt, 0, dt);
+  }
+  EnginePose pose(std::size_t body) const override;
+
+ private:
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btMultiBodyConstraintSolver solver_;
+  btMultiBodyDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  btMultiBody tree_;  // its links are numbered by their hinges
+  std::vector<int> links_;
+  double step_;
+};
+
+BulletTree::BulletTree(const CaseTable& c, double step)
+    : tree_(static_cast<int>(c.hinges.size()), 0, btVector3(0, 0, 0), true, false), step_(step) {
+  world_.setGravity(to_bullet(c.gravity));
+  links_.resize(c.bodies.size());
+  for (int k = 0; k < static_cast<int>(c.hinges.size()); ++k) {
+    const test::CaseHinge& hinge = c.hinges[static_cast<std::size_t>(k)];
+    const CaseBody& def = c.bodies[static_cast<std::size_t>(hinge.child)];
+    links_[static_cast<std::size_t>(hinge.child)] = k;
+    const auto parent = static_cast<std::size_t>(hinge.parent);
+    const bool root = hinge.parent < 0;
+    const btVector3 anchor = to_bullet(hinge.anchor);
+    const btVector3 origin = root ? btVector3(0, 0, 0) : to_bullet(c.bodies[parent].position);
+    tree_.setupRevolute(k, static_cast<btScalar>(def.mass), to_bullet(def.inertia),
+                        root ? -1 : links_[parent], btQuaternion::getIdentity(),
+                        to_bullet(hinge.axis), anchor - origin, to_bullet(def.position) - anchor);
+  }
+  tree_.finalizeMultiDof();
+  tree_.setLinearDamping(0);
+  tree_.setAngularDamping(0);
+  tree_.useRK4Integration(true);
+  tree_.setCanSleep(false);
+  world_.addMultiBody(&tree_);
+}
+
+EnginePose BulletTree::pose(std::size_t body) const {
+  const int link = links_[body];
+  const btVector3 p = tree_.localPosToWorld(link, btVector3(0, 0, 0));
+  const btVector3 x = tree_.localDirToWorld(link, btVector3(1, 0, 0));
+  const btVector3 y = tree_.localDirToWorld(link, btVector3(0, 1, 0));
+  const btVector3 z = x.cross(y);
+  btQuaternion q;
+  btMatrix3x3(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()).getRotation(q);
+  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+}
+
 }  // namespace
 }  // namespace tw::bench
 
-int main() {
+int main(int argc, char** argv) {
   using namespace tw::bench;
   CaseRunner runner;
   runner.engine = "Bullet";
   runner.version =
       std::to_string(btGetVersion()) + (sizeof(btScalar) == sizeof(float) ? " single" : " double");
-  runner.make = [](const CaseTable& c, const Setting& setting) {
+  runner.make = [](const CaseTable& c, const Setting& setting) -> std::unique_ptr<CaseEngine> {
+    if (!c.hinges.empty()) return std::make_unique<BulletTree>(c, setting.value);
     return std::make_unique<Bullet>(c, setting.value);
   };
   runner.settings = time_steps();
-  return run_cases(runner);
+  return run_cases(runner, argc, argv);
 }

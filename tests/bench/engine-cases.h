@@ -51,8 +51,8 @@ struct CaseRunner {
 // Steps from a 60th of a second down, each a quarter of the one before.
 std::vector<Setting> time_steps();
 
-// Runs all cases, each setting in a process of its own, until one takes seconds.  Returns the exit
-// status.
-int run_cases(const CaseRunner& runner);
+// Runs all cases, or those that the command line names, each setting in a process of its own, until
+// one takes seconds.  Returns the exit status.
+int run_cases(const CaseRunner& runner, int argc, char** argv);
 
 }  // namespace tw::bench

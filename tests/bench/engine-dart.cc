@@ -11,6 +11,7 @@
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/BoxShape.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
+#include <dart/dynamics/RevoluteJoint.hpp>
 #include <dart/dynamics/Skeleton.hpp>
 #include <dart/dynamics/SphereShape.hpp>
 #include <dart/dynamics/WeldJoint.hpp>
@@ -55,6 +56,7 @@ class Dart : public CaseEngine {
 
  private:
   void add(const CaseBody& def, const CaseTable& c);
+  void add_hinged(const CaseTable& c);
 
   dart::simulation::WorldPtr world_ = dart::simulation::World::create();
   std::vector<dynamics::BodyNode*> bodies_;
@@ -66,7 +68,39 @@ Dart::Dart(const CaseTable& c, double step) : step_(step) {
   world_->setGravity(vector_of(c.gravity));
   world_->getConstraintSolver()->setCollisionDetector(
       dart::collision::DARTCollisionDetector::create());
-  for (const CaseBody& def : c.bodies) add(def, c);
+  add_hinged(c);
+  for (const CaseBody& def : c.bodies)
+    if (c.hinges.empty()) add(def, c);
+}
+
+dynamics::Inertia inertia_of(const CaseBody& def) {
+  const Eigen::Vector3d i = vector_of(def.inertia);
+  return dynamics::Inertia(def.mass, Eigen::Vector3d::Zero(), Eigen::Matrix3d(i.asDiagonal()));
+}
+
+// One skeleton of bodies without a turn at the start; their frames are at the centres of mass.
+void Dart::add_hinged(const CaseTable& c) {
+  const auto skeleton = dynamics::Skeleton::create(c.name);
+  for (const test::CaseHinge& hinge : c.hinges) {
+    const auto child = static_cast<std::size_t>(hinge.child);
+    const auto parent = static_cast<std::size_t>(hinge.parent);
+    // else it tells on stdout that it has made up a name
+    dynamics::RevoluteJoint::Properties joint;
+    joint.mName = "hinge-" + std::to_string(child);
+    const auto made = skeleton->createJointAndBodyNodePair<dynamics::RevoluteJoint>(
+        hinge.parent < 0 ? nullptr : bodies_[parent], joint,
+        dynamics::BodyNode::AspectProperties("body-" + std::to_string(child)));
+    made.second->setInertia(inertia_of(c.bodies[child]));
+    made.first->setAxis(vector_of(hinge.axis));
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    place.translation() = vector_of(hinge.anchor);
+    if (hinge.parent >= 0) place.translation() -= vector_of(c.bodies[parent].position);
+    made.first->setTransformFromParentBodyNode(place);
+    place.translation() = vector_of(hinge.anchor) - vector_of(c.bodies[child].position);
+    made.first->setTransformFromChildBodyNode(place);
+    bodies_.push_back(made.second);
+  }
+  world_->addSkeleton(skeleton);
 }
 
 void Dart::add(const CaseBody& def, const CaseTable& c) {
@@ -82,9 +116,7 @@ void Dart::add(const CaseBody& def, const CaseTable& c) {
   } else {
     const auto made = skeleton->createJointAndBodyNodePair<dynamics::FreeJoint>();
     body = made.second;
-    const Eigen::Vector3d i = vector_of(def.inertia);
-    body->setInertia(
-        dynamics::Inertia(def.mass, Eigen::Vector3d::Zero(), Eigen::Matrix3d(i.asDiagonal())));
+    body->setInertia(inertia_of(def));
     made.first->setTransform(placement(def));
     made.first->setLinearVelocity(vector_of(def.velocity));
     made.first->setAngularVelocity(vector_of(def.angular_velocity));
@@ -109,7 +141,7 @@ EnginePose Dart::pose(std::size_t index) const {
 }  // namespace
 }  // namespace tw::bench
 
-int main() {
+int main(int argc, char** argv) {
   using namespace tw::bench;
   CaseRunner runner;
   runner.engine = "DART";
@@ -118,5 +150,5 @@ int main() {
     return std::make_unique<Dart>(c, setting.value);
   };
   runner.settings = time_steps();
-  return run_cases(runner);
+  return run_cases(runner, argc, argv);
 }

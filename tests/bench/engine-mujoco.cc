@@ -82,9 +82,26 @@ std::string contact_text(const CaseTable& c, double step) {
   return out.str();
 }
 
+// The bodies that hang on a body, each with what hangs on it; `from` is where the body's own hinge
+// is.  Bodies without a turn at the start; MuJoCo numbers them by depth, as the tables do chains.
+void write_hinged(std::ostream& out, const CaseTable& c, int parent, const test::Numbers3& from) {
+  for (const test::CaseHinge& hinge : c.hinges) {
+    if (hinge.parent != parent) continue;
+    const CaseBody& body = c.bodies[static_cast<std::size_t>(hinge.child)];
+    test::Numbers3 place, center;
+    mju_sub3(place.data(), hinge.anchor.data(), from.data());
+    mju_sub3(center.data(), body.position.data(), hinge.anchor.data());
+    out << "<body pos='" << text_of(place) << "'><joint type='hinge' axis='" << text_of(hinge.axis)
+        << "'/><inertial pos='" << text_of(center) << "' mass='" << body.mass << "' diaginertia='"
+        << text_of(body.inertia) << "'/>";
+    write_hinged(out, c, hinge.child, hinge.anchor);
+    out << "</body>";
+  }
+}
+
 std::string Mujoco::text(const CaseTable& c, double step) {
   std::ostringstream out;
-  const bool contacts = c.bodies.size() > 1;
+  const bool contacts = c.bodies.size() > 1 && c.hinges.empty();
   out << std::setprecision(17)
       << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/><option "
          "gravity='"
@@ -94,7 +111,9 @@ std::string Mujoco::text(const CaseTable& c, double step) {
       << "' impratio='100' tolerance='1e-14'/><default><geom condim='" << (c.friction > 0 ? 3 : 1)
       << "' friction='" << c.friction << " 0 0' " << contact_text(c, step)
       << "/></default><worldbody>";
+  write_hinged(out, c, -1, {});
   for (const CaseBody& body : c.bodies) {
+    if (!c.hinges.empty()) break;
     const std::string place =
         "pos='" + text_of(body.position) + "' quat='" + text_of(body.orientation) + "'";
     if (body.fixed) {
@@ -116,7 +135,7 @@ void Mujoco::set_velocities(const CaseTable& c) {
   for (std::size_t i = 0; i < c.bodies.size(); ++i) {
     const CaseBody& body = c.bodies[i];
     const int number = static_cast<int>(i) + 1;
-    if (model.body_dofnum[number] == 0) continue;
+    if (model.body_dofnum[number] != 6) continue;
     double* qvel = made_.data->qvel + model.body_dofadr[number];
     mju_copy3(qvel, body.velocity.data());
     double back[4];
@@ -131,14 +150,14 @@ EnginePose Mujoco::pose(std::size_t body) const {
   // where it became unstable it has begun anew by itself
   for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
     if (data.warning[kind].number > 0) return {{nan, nan, nan}, {nan, nan, nan, nan}};
-  const mjtNum *p = data.xpos + 3 * (body + 1), *q = data.xquat + 4 * (body + 1);
+  const mjtNum *p = data.xipos + 3 * (body + 1), *q = data.xquat + 4 * (body + 1);
   return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
 }  // namespace
 }  // namespace tw::bench
 
-int main() {
+int main(int argc, char** argv) {
   using namespace tw::bench;
   CaseRunner runner;
   runner.engine = "MuJoCo";
@@ -147,5 +166,5 @@ int main() {
     return std::make_unique<Mujoco>(c, setting.value);
   };
   runner.settings = time_steps();
-  return run_cases(runner);
+  return run_cases(runner, argc, argv);
 }

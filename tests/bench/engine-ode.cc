@@ -44,6 +44,15 @@ Ode::Ode(const CaseTable& c, double step, bool direct)
   dWorldSetGravity(world_, c.gravity[0], c.gravity[1], c.gravity[2]);
   dWorldSetQuickStepNumIterations(world_, quick_iterations);
   for (const CaseBody& def : c.bodies) bodies_.push_back(add(def));
+  for (const test::CaseHinge& hinge : c.hinges) {
+    const auto body = [this](int i) {
+      return i < 0 ? nullptr : bodies_[static_cast<std::size_t>(i)];
+    };
+    const dJointID joint = dJointCreateHinge(world_, nullptr);
+    dJointAttach(joint, body(hinge.child), body(hinge.parent));
+    dJointSetHingeAnchor(joint, hinge.anchor[0], hinge.anchor[1], hinge.anchor[2]);
+    dJointSetHingeAxis(joint, hinge.axis[0], hinge.axis[1], hinge.axis[2]);
+  }
 }
 
 Ode::~Ode() {
@@ -65,10 +74,10 @@ dGeomID Ode::shape(const CaseBody& def) {
 }
 
 dBodyID Ode::add(const CaseBody& def) {
-  const dGeomID geom = shape(def);
+  const dGeomID geom = def.shape == "rod" ? nullptr : shape(def);
   if (def.fixed) return nullptr;
   const dBodyID body = dBodyCreate(world_);
-  dGeomSetBody(geom, body);
+  if (geom) dGeomSetBody(geom, body);
   const auto& [ix, iy, iz] = def.inertia;
   dMass mass;
   dMassSetParameters(&mass, def.mass, 0, 0, 0, ix, iy, iz, 0, 0, 0);
@@ -120,7 +129,7 @@ EnginePose Ode::pose(std::size_t index) const {
 }  // namespace
 }  // namespace tw::bench
 
-int main() {
+int main(int argc, char** argv) {
   using namespace tw::bench;
   CaseRunner runner;
   runner.engine = "ODE";
@@ -129,5 +138,5 @@ int main() {
     return std::make_unique<Ode>(c, setting.value, c.name != "stack");
   };
   runner.settings = time_steps();
-  return run_cases(runner);
+  return run_cases(runner, argc, argv);
 }

@@ -49,6 +49,7 @@ class Simbody : public CaseEngine {
  private:
   SimTK::ContactMaterial material_of(const CaseTable& c, double accuracy) const;
   void add(const CaseBody& def, const SimTK::ContactMaterial& material);
+  void add_hinged(const CaseTable& c, const test::CaseHinge& hinge);
 
   SimTK::MultibodySystem system_;
   SimTK::SimbodyMatterSubsystem matter_{system_};
@@ -98,15 +99,35 @@ void Simbody::add(const CaseBody& def, const SimTK::ContactMaterial& material) {
       SimTK::MobilizedBody::Free(ground, SimTK::Transform(), body, SimTK::Transform()));
 }
 
+// Bodies without a turn at the start; their frames are at the centres of mass.
+void Simbody::add_hinged(const CaseTable& c, const test::CaseHinge& hinge) {
+  const CaseBody& def = c.bodies[static_cast<std::size_t>(hinge.child)];
+  const SimTK::Body::Rigid body(
+      SimTK::MassProperties(def.mass, SimTK::Vec3(0), SimTK::Inertia(vector_of(def.inertia))));
+  // a pin turns about z
+  const SimTK::Rotation axes(SimTK::UnitVec3(vector_of(hinge.axis)), SimTK::ZAxis);
+  const SimTK::Vec3 anchor = vector_of(hinge.anchor);
+  const auto parent = static_cast<std::size_t>(hinge.parent);
+  const SimTK::Vec3 origin =
+      hinge.parent < 0 ? SimTK::Vec3(0) : vector_of(c.bodies[parent].position);
+  SimTK::MobilizedBody& on =
+      hinge.parent < 0 ? static_cast<SimTK::MobilizedBody&>(matter_.updGround()) : bodies_[parent];
+  bodies_.push_back(
+      SimTK::MobilizedBody::Pin(on, SimTK::Transform(axes, anchor - origin), body,
+                                SimTK::Transform(axes, anchor - vector_of(def.position))));
+}
+
 Simbody::Simbody(const CaseTable& c, double accuracy) {
   SimTK::Force::UniformGravity(forces_, matter_, vector_of(c.gravity));
   const SimTK::ContactMaterial material = material_of(c, accuracy);
-  for (const CaseBody& body : c.bodies) add(body, material);
+  for (const test::CaseHinge& hinge : c.hinges) add_hinged(c, hinge);
+  for (const CaseBody& body : c.bodies)
+    if (c.hinges.empty()) add(body, material);
   contacts_.setTransitionVelocity(viscous_speed * std::sqrt(accuracy));
   SimTK::State state = system_.realizeTopology();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const CaseBody& def = c.bodies[i];
-    if (def.fixed) continue;
+    if (def.fixed || !c.hinges.empty()) continue;
     bodies_[i].setQToFitTransform(
         state, SimTK::Transform(rotation_of(def.orientation), vector_of(def.position)));
     bodies_[i].setUToFitVelocity(
@@ -129,7 +150,7 @@ EnginePose Simbody::pose(std::size_t body) const {
 }  // namespace
 }  // namespace tw::bench
 
-int main() {
+int main(int argc, char** argv) {
   using namespace tw::bench;
   CaseRunner runner;
   runner.engine = "Simbody";
@@ -144,5 +165,5 @@ int main() {
   runner.unable = [](const CaseTable& c) {
     return c.name == "stack" ? "no contacts of boxes with boxes" : "";
   };
-  return run_cases(runner);
+  return run_cases(runner, argc, argv);
 }

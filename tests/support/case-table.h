@@ -41,9 +41,9 @@ inline std::vector<std::vector<double>> read_rows(const std::string& name) {
 using Numbers3 = std::array<double, 3>;
 
 struct CaseBody {
-  std::string shape;  // sphere, box, plane
+  std::string shape;  // sphere, box, plane, rod
   bool fixed = false;
-  // a sphere's radius, a box's half edges
+  // a sphere's radius, a box's half edges, the length of a rod along x that touches nothing
   Numbers3 size{};
   double mass = 0;
   Numbers3 inertia{}, position{};
@@ -51,11 +51,18 @@ struct CaseBody {
   Numbers3 velocity{}, angular_velocity{};
 };
 
+// Between two bodies; in the world, at the start.
+struct CaseHinge {
+  int parent = -1, child = 0;  // numbers of bodies, -1: the world
+  Numbers3 anchor{}, axis{};
+};
+
 struct CaseTable {
   std::string name;
   Numbers3 gravity{};
   double friction = 0, restitution = 1, duration = 0;
   std::vector<CaseBody> bodies;
+  std::vector<CaseHinge> hinges;  // that of a parent before those of its children
 };
 
 template <std::size_t N>
@@ -64,7 +71,7 @@ std::istream& operator>>(std::istream& in, std::array<double, N>& numbers) {
   return in;
 }
 
-// Reads NAME.bodies.txt.
+// Reads NAME.bodies.txt and, if it is there, NAME.hinges.txt.
 inline CaseTable read_table(const std::string& name) {
   std::ifstream file(data_file(name + ".bodies.txt"));
   if (!file) throw std::runtime_error("cannot read " + data_file(name + ".bodies.txt"));
@@ -87,6 +94,14 @@ inline CaseTable read_table(const std::string& name) {
     in >> id >> body.shape >> body.fixed >> body.size >> hull >> body.mass >> body.inertia;
     in >> body.position >> body.orientation >> body.velocity >> body.angular_velocity;
     result.bodies.push_back(body);
+  }
+  std::ifstream hinges(data_file(name + ".hinges.txt"));
+  while (std::getline(hinges, line)) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream in(line);
+    CaseHinge hinge;
+    in >> hinge.parent >> hinge.child >> hinge.anchor >> hinge.axis;
+    result.hinges.push_back(hinge);
   }
   return result;
 }
