@@ -4,7 +4,8 @@
 #
 #   engines.sh PROGRAM...     each prints lines of CSV (engine-cases.h)
 #
-# doc/engines.md holds such tables between its markers, doc/pictures/engines.png such a picture.
+# doc/engines.md holds such tables between its markers (engine-tables.sh engines.csv PAGE writes them
+# there), doc/pictures/engines.png such a picture.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 echo "engine,version,case,setting,cold_cpu_s,cpu_s,error,unit,note" > engines.csv
 for engine in timewarp ode bullet mujoco simbody dart; do
@@ -18,29 +19,16 @@ for engine in timewarp ode bullet mujoco simbody dart; do
   fi
   "$program" >> engines.csv || exit 1
 done
-awk -F, '
-  NR == 1 { next }
-  !($3 in rows) { order[++cases] = $3 }
-  {
-    error = $7 == "" ? $9 : $7 " " $8
-    cold = $5 == "" ? "" : sprintf("%.3g", 1e3 * $5)
-    best = $6 == "" ? "" : sprintf("%.3g", 1e3 * $6)
-    rows[$3] = rows[$3] sprintf("| %s, %s | %s | %s | %s | %s |\n", $1, $2, $4, cold, best, error)
-  }
-  END {
-    for (i = 1; i <= cases; ++i)
-      printf "\n### %s\n\n| engine | setting | first run, ms | best, ms | error |\n| --- | --- | --- | --- | --- |\n%s",
-        order[i], rows[order[i]]
-  }' engines.csv > engines.md
+"${0%/*}/engine-tables.sh" engines.csv > engines.md
 cat engines.md
 if ! command -v gnuplot > /dev/null; then
   echo "engines: gnuplot is not installed: no picture"
   exit 0
 fi
 {
-  echo 'set terminal png size 1200,1200 font "sans,10"; set output "engines.png"'
+  echo 'set terminal png size 1600,1200 font "sans,10"; set output "engines.png"'
   echo 'set datafile separator ","; set logscale xy; set format "10^{%T}"; set grid'
-  echo 'set multiplot layout 3,3; set xlabel "CPU, s"; set ylabel "error"; set key center left; set yrange [1e-17:20]'
+  echo 'set multiplot layout 3,4; set xlabel "CPU, s"; set ylabel "error"; set key bottom left; set yrange [1e-17:20]'
   # an error of 0 is drawn at the bottom
   tail -n +2 engines.csv | cut -d, -f3 | awk '!seen[$0]++' | while read -r name; do
     printf 'set title "%s"\nplot ' "$name"
