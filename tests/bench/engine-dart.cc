@@ -8,6 +8,7 @@
 #include <dart/collision/dart/DARTCollisionDetector.hpp>
 #include <dart/config.hpp>
 #include <dart/constraint/ConstraintSolver.hpp>
+#include <dart/constraint/ContactConstraint.hpp>
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/BoxShape.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
@@ -68,6 +69,8 @@ Dart::Dart(const CaseTable& c, double step) : step_(step) {
   world_->setGravity(vector_of(c.gravity));
   world_->getConstraintSolver()->setCollisionDetector(
       dart::collision::DARTCollisionDetector::create());
+  // by default a part in 1e5 of an impact is lost; this is the least that DART takes
+  if (c.restitution > 0) dart::constraint::ContactConstraint::setConstraintForceMixing(1e-9);
   add_hinged(c);
   for (const CaseBody& def : c.bodies)
     if (c.hinges.empty()) add(def, c);

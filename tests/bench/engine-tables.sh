@@ -49,7 +49,7 @@ tables() {
           for (e = 1; e <= engines; ++e) {
             engine = engine_names[e]; cell = cost(name, engine, 1e-4)
             if ((name, engine) in unable) cell = "can not"
-            else if (cell == "") cell = "not in " duration(longest[name, engine])
+            else if (cell == "" && (name, engine) in longest) cell = "not in " duration(longest[name, engine])
             line = line " " cell " |"
           }
           print line
@@ -59,14 +59,17 @@ tables() {
       for (c = 1; c <= cases; ++c) {
         name = case_names[c]
         printf "%s### %s\n\n%s\n", (c > 1 ? "\n" : ""), name, header("within, " units[name])
-        for (k = 1; k <= 12; ++k) {
-          line = sprintf("| 1e-%d |", k); any = 0
+        # of rows with the same costs the strictest
+        last = ""
+        for (k = 1; k <= 13; ++k) {
+          line = ""; any = 0
           for (e = 1; e <= engines; ++e) {
             cell = cost(name, engine_names[e], 10 ^ -k)
             if (cell != "") any = 1
             line = line " " cell " |"
           }
-          if (any) print line
+          if (last != "" && (line != last || k == 13)) printf "| 1e-%d |%s\n", k - 1, last
+          last = any ? line : ""
         }
         line = "| nearest |"
         for (e = 1; e <= engines; ++e) {
