@@ -70,6 +70,9 @@ int main(int argc, char** argv) {
   runner.make = [](const CaseTable& c, const Setting& setting) {
     return std::make_unique<Timewarp>(c, setting.value);
   };
-  runner.settings = {{"accuracy 1e-4", 1e-4}, {"accuracy 1e-6", 1e-6}, {"accuracy 1e-8", 1e-8}};
+  runner.settings = {{"accuracy 1e-4", 1e-4},
+                     {"accuracy 1e-6", 1e-6},
+                     {"accuracy 1e-8", 1e-8},
+                     {"accuracy 1e-10", 1e-10}};
   return run_cases(runner, argc, argv);
 }
