@@ -168,14 +168,12 @@ EnginePose BulletTree::pose(std::size_t body) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "Bullet";
-  runner.version =
-      std::to_string(btGetVersion()) + (sizeof(btScalar) == sizeof(float) ? " single" : " double");
+  CaseRunner runner =
+      runner_of<Bullet>("Bullet", std::to_string(btGetVersion()) +
+                                      (sizeof(btScalar) == sizeof(float) ? " single" : " double"));
   runner.make = [](const CaseTable& c, const Setting& setting) -> std::unique_ptr<CaseEngine> {
     if (!c.hinges.empty()) return std::make_unique<BulletTree>(c, setting.value);
     return std::make_unique<Bullet>(c, setting.value);
   };
-  runner.settings = time_steps();
   return run_cases(runner, argc, argv);
 }

@@ -51,6 +51,19 @@ struct CaseRunner {
 // Steps from a 60th of a second down, each a quarter of the one before.
 std::vector<Setting> time_steps();
 
+// Of a program whose engine is made from a case and a setting's value, by default a time step.
+template <class Engine>
+CaseRunner runner_of(const std::string& name, const std::string& version) {
+  CaseRunner runner;
+  runner.engine = name;
+  runner.version = version;
+  runner.make = [](const CaseTable& c, const Setting& setting) {
+    return std::make_unique<Engine>(c, setting.value);
+  };
+  runner.settings = time_steps();
+  return runner;
+}
+
 // Runs all cases, or those that the command line names, each setting in a process of its own, until
 // one takes seconds.  Returns the exit status.
 int run_cases(const CaseRunner& runner, int argc, char** argv);

@@ -146,12 +146,5 @@ EnginePose Dart::pose(std::size_t index) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "DART";
-  runner.version = DART_VERSION;
-  runner.make = [](const CaseTable& c, const Setting& setting) {
-    return std::make_unique<Dart>(c, setting.value);
-  };
-  runner.settings = time_steps();
-  return run_cases(runner, argc, argv);
+  return run_cases(runner_of<Dart>("DART", DART_VERSION), argc, argv);
 }

@@ -159,12 +159,5 @@ EnginePose Mujoco::pose(std::size_t body) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "MuJoCo";
-  runner.version = mj_versionString();
-  runner.make = [](const CaseTable& c, const Setting& setting) {
-    return std::make_unique<Mujoco>(c, setting.value);
-  };
-  runner.settings = time_steps();
-  return run_cases(runner, argc, argv);
+  return run_cases(runner_of<Mujoco>("MuJoCo", mj_versionString()), argc, argv);
 }

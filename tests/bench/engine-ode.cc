@@ -14,7 +14,7 @@ constexpr int quick_iterations = 50;  // 20 by default: too few for a stack of t
 
 class Ode : public CaseEngine {
  public:
-  Ode(const CaseTable& c, double step, bool direct);
+  Ode(const CaseTable& c, double step);
   ~Ode() override;
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
@@ -34,8 +34,8 @@ class Ode : public CaseEngine {
   bool direct_;
 };
 
-Ode::Ode(const CaseTable& c, double step, bool direct)
-    : friction_(c.friction), restitution_(c.restitution), step_(step), direct_(direct) {
+Ode::Ode(const CaseTable& c, double step)
+    : friction_(c.friction), restitution_(c.restitution), step_(step), direct_(c.name != "stack") {
   dInitODE2(0);
   dAllocateODEDataForThread(dAllocateMaskAll);
   world_ = dWorldCreate();
@@ -134,12 +134,6 @@ EnginePose Ode::pose(std::size_t index) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "ODE";
-  runner.version = sizeof(dReal) == sizeof(double) ? "double" : "single";
-  runner.make = [](const CaseTable& c, const Setting& setting) {
-    return std::make_unique<Ode>(c, setting.value, c.name != "stack");
-  };
-  runner.settings = time_steps();
-  return run_cases(runner, argc, argv);
+  const bool is_double = sizeof(dReal) == sizeof(double);
+  return run_cases(runner_of<Ode>("ODE", is_double ? "double" : "single"), argc, argv);
 }

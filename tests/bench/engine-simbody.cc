@@ -152,14 +152,11 @@ EnginePose Simbody::pose(std::size_t body) const {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "Simbody";
   int major = 0, minor = 0, build = 0;
   SimTK_version_simbody(&major, &minor, &build);
-  runner.version = std::to_string(major) + "." + std::to_string(minor);
-  runner.make = [](const CaseTable& c, const Setting& setting) {
-    return std::make_unique<Simbody>(c, setting.value);
-  };
+  CaseRunner runner =
+      runner_of<Simbody>("Simbody", std::to_string(major) + "." + std::to_string(minor));
+  runner.settings.clear();
   for (const char* accuracy : {"1e-2", "1e-4", "1e-6", "1e-8", "1e-10", "1e-12"})
     runner.settings.push_back({std::string("accuracy ") + accuracy, std::atof(accuracy)});
   runner.unable = [](const CaseTable& c) {

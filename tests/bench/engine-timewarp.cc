@@ -64,12 +64,7 @@ class Timewarp : public CaseEngine {
 
 int main(int argc, char** argv) {
   using namespace tw::bench;
-  CaseRunner runner;
-  runner.engine = "timewarp";
-  runner.version = PACKAGE_VERSION;
-  runner.make = [](const CaseTable& c, const Setting& setting) {
-    return std::make_unique<Timewarp>(c, setting.value);
-  };
+  CaseRunner runner = runner_of<Timewarp>("timewarp", PACKAGE_VERSION);
   runner.settings = {{"accuracy 1e-4", 1e-4},
                      {"accuracy 1e-6", 1e-6},
                      {"accuracy 1e-8", 1e-8},
