@@ -54,8 +54,8 @@ along a row and y from row to row.  The middle of the grid is at x = y = 0 of th
 fixed or kinematic bodies only.
 
 Cells are cut along the diagonal from their corner of least x and y, but where the four corners lie
-in one plane.  The ground is solid down to a cell's width below the lowest corner of each cell, and
-ends at the edge of the grid.
+in one plane; rectangles of cells in one plane are one part.  The ground is solid at least down to a
+cell's width below the lowest corner of each cell, and ends at the edge of the grid.
 
 #:spacing  m, between neighbours of the grid, or #(dx dy) along x and y; 1
 #:colors   by height, a list ((HEIGHT #(r g b)) ...) with heights in m that grow, between which one colour

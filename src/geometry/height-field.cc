@@ -114,7 +114,7 @@ ConvexPart HeightField::make_part(std::size_t number) const {
   const std::vector<Vec3> corners = top(number);
   const auto count = static_cast<int>(corners.size());
   const Aabb box = this->box(number);
-  // the part's frame is in the middle of the cell: short coordinates, exact ones where the grid's
+  // the part's frame is in the middle of its cells: short coordinates, exact ones where the grid's
   // are
   const Vec3 middle = 0.5 * (corners[0] + corners[2]);
   std::vector<Vec3> vertices;

@@ -337,8 +337,8 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
   for (std::size_t i = 0; i < colors.size(); ++i)
     TW_REQUIRE(is_finite(colors[i]) && colors[i].minCoeff() >= 0 && colors[i].maxCoeff() <= 1,
                "color " + std::to_string(i % columns) + " in row " + std::to_string(i / columns) +
-                   " of a height field is #(" + show(colors[i].x()) + " " + show(colors[i].y()) +
-                   " " + show(colors[i].z()) + "); expected red, green and blue from 0 to 1");
+                   " of a height field is #" + show(colors[i]) +
+                   "; expected red, green and blue from 0 to 1");
 
   auto shape = std::make_shared<Shape>();
   shape->kind_name_ = "height field";

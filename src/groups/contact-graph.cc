@@ -170,8 +170,8 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
 }
 
 // A spring that is born unloaded lets a body slide before it holds: so a new contact is given the
-// stretch that holds what pulls along it, or, where that exceeds the cone, somewhat more than
-// the cone's, which slides at once.
+// stretch that holds what pulls along it, or, where that exceeds the cone, somewhat more than the
+// cone's, which slides at once.
 void preload(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
              const PlacedBody& a, const PlacedBody& b) {
   if (pair.count == 0) return;

@@ -130,19 +130,21 @@ Mesh height_field_mesh(const HeightField& field, bool smooth) {
         mesh.indices.insert(mesh.indices.end(), {a, a + 1, d + 1, a, d + 1, d});
       }
   } else {
-    const auto add_facet = [&](std::initializer_list<std::size_t> points) {
-      const Vec3 a = field.corner(points.begin()[0]), b = field.corner(points.begin()[1]);
-      const Vec3 normal = (b - a).cross(field.corner(points.begin()[2]) - a).normalized();
+    const auto add_facet = [&](std::size_t a, std::size_t b, std::size_t c) {
+      const Vec3 p = field.corner(a), q = field.corner(b), r = field.corner(c);
+      const Vec3 normal = (q - p).cross(r - p).normalized();
       const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (const std::size_t point : points) add(point, field.corner(point), normal);
-      add_fan(mesh, first, static_cast<int>(points.size()));
+      add(a, p, normal);
+      add(b, q, normal);
+      add(c, r, normal);
+      add_fan(mesh, first, 3);
     };
     // cell by cell: parts of many cells would leave cracks beside small ones, and one colour
     for (std::size_t row = 0; row + 1 < rows; ++row)
       for (std::size_t column = 0; column + 1 < columns; ++column) {
         const std::size_t a = row * columns + column, d = a + columns;
-        add_facet({a, a + 1, d + 1});
-        add_facet({a, d + 1, d});
+        add_facet(a, a + 1, d + 1);
+        add_facet(a, d + 1, d);
       }
   }
 

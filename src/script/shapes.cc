@@ -42,52 +42,63 @@ TW_PRIMITIVE(convex, "%convex", (SCM points), "Return the convex hull of points.
   return from_shape(make_hull(to_points(points, "points")));
 }
 
-// The colours of the points of a height field, an array of rank 2, row by row.
+namespace {
+
+// An array of rank 2, by rows.  Elements are taken one by one: those of a typed array are made
+// anew, and nothing but the stack would keep them.
+class Grid {
+ public:
+  Grid(SCM array, const char* name, const char* expected) {
+    if (!scm_is_true(scm_array_p(array, SCM_UNDEFINED)) || scm_c_array_rank(array) != 2)
+      throw BadValue{name, array, expected};
+    scm_array_get_handle(array, &handle_);
+    dims_ = scm_array_handle_dims(&handle_);
+  }
+  ~Grid() { scm_array_handle_release(&handle_); }
+  Grid(const Grid&) = delete;
+  Grid& operator=(const Grid&) = delete;
+
+  std::size_t rows() const { return length(dims_[0]); }
+  std::size_t columns() const { return length(dims_[1]); }
+  // Row by row.
+  template <class Visit>
+  void each(Visit&& visit) {
+    for (std::size_t i = 0; i < rows(); ++i)
+      for (std::size_t j = 0; j < columns(); ++j)
+        visit(scm_array_handle_ref(&handle_, static_cast<ssize_t>(i) * dims_[0].inc +
+                                                 static_cast<ssize_t>(j) * dims_[1].inc));
+  }
+
+ private:
+  static std::size_t length(const scm_t_array_dim& dim) {
+    return static_cast<std::size_t>(dim.ubnd - dim.lbnd + 1);
+  }
+  scm_t_array_handle handle_;
+  const scm_t_array_dim* dims_;
+};
+
+}  // namespace
+
+// The colours of the points of a height field, row by row.
 static std::vector<Vec3> to_colors(SCM array, std::size_t rows, std::size_t columns) {
   constexpr const char* expected = "an array of rank 2 of colors, with rows as the heights have";
-  if (!scm_is_true(scm_array_p(array, SCM_UNDEFINED)) || scm_c_array_rank(array) != 2)
-    throw BadValue{"colors", array, expected};
-  scm_t_array_handle handle;
-  scm_array_get_handle(array, &handle);
-  const scm_t_array_dim* const dims = scm_array_handle_dims(&handle);
-  const auto length = [](const scm_t_array_dim& dim) {
-    return static_cast<std::size_t>(dim.ubnd - dim.lbnd + 1);
-  };
-  const bool fits = length(dims[0]) == rows && length(dims[1]) == columns;
-  // the array keeps them
-  std::vector<SCM> elements;
-  for (std::size_t i = 0; fits && i < rows * columns; ++i)
-    elements.push_back(
-        scm_array_handle_ref(&handle, static_cast<ssize_t>(i / columns) * dims[0].inc +
-                                          static_cast<ssize_t>(i % columns) * dims[1].inc));
-  scm_array_handle_release(&handle);
-  if (!fits) throw BadValue{"colors", array, expected};
+  Grid grid(array, "colors", expected);
+  if (grid.rows() != rows || grid.columns() != columns) throw BadValue{"colors", array, expected};
   std::vector<Vec3> colors;
-  for (const SCM element : elements) colors.push_back(to_vec3(element, "a color of the ground"));
+  grid.each([&](SCM color) { colors.push_back(to_vec3(color, "a color of the ground")); });
   return colors;
 }
 
-// The elements of an array of rank 2, row by row; `columns` in a row.
+// Row by row; `columns` in a row.
 static std::vector<double> to_rows(SCM array, std::size_t& columns) {
   constexpr const char* expected = "an array of rank 2 of numbers, in metres";
-  if (!scm_is_true(scm_array_p(array, SCM_UNDEFINED)) || scm_c_array_rank(array) != 2)
-    throw BadValue{"heights", array, expected};
-  scm_t_array_handle handle;
-  scm_array_get_handle(array, &handle);
-  const scm_t_array_dim* const dims = scm_array_handle_dims(&handle);
-  const ssize_t rows = dims[0].ubnd - dims[0].lbnd + 1;
-  const ssize_t in_row = dims[1].ubnd - dims[1].lbnd + 1;
-  columns = static_cast<std::size_t>(in_row);
+  Grid grid(array, "heights", expected);
+  columns = grid.columns();
   std::vector<double> numbers;
-  SCM wrong = SCM_UNDEFINED;
-  for (ssize_t i = 0; i < rows; ++i)
-    for (ssize_t j = 0; j < in_row; ++j) {
-      const SCM value = scm_array_handle_ref(&handle, i * dims[0].inc + j * dims[1].inc);
-      if (!scm_is_real(value)) wrong = value;
-      numbers.push_back(scm_is_real(value) ? scm_to_double(value) : 0);
-    }
-  scm_array_handle_release(&handle);
-  if (!SCM_UNBNDP(wrong)) throw BadValue{"heights", wrong, expected};
+  grid.each([&](SCM value) {
+    if (!scm_is_real(value)) throw BadValue{"heights", value, expected};
+    numbers.push_back(scm_to_double(value));
+  });
   return numbers;
 }
 

@@ -31,6 +31,7 @@ const MendedSeed mended[] = {
     {"lattice", 1289, "an arc found again under its old key was not looked at from its start"},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
     {"thin", 17, "where rods cross a fixed point missed the gap, and arcs ended for it"},
+    {"shaker", 146, "between the slabs of a shaken room the energy rose by 0.8 %"},
     {"round", 29, "a contact that slid from its birth held 99 times the energy of its cone"},
     {"thin", 773, "a coin came down on a rod on the floor by thousands of impacts"},
 };
