@@ -326,6 +326,10 @@ inline constexpr double clearly_larger = 1.01;
 // a rim that stands flat miss r tilt (1 - cos(pi/8)) < 2.3e-5 r; the nearest point in the place of
 // one of them would make it rock for ever.
 inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_round = 2.5e-5;
+// A corner of a contact's polygon that sticks out by no more than this share of half its width, and
+// is no deeper than the line between its neighbours, is none: where outlines are equal but for a
+// little turn, their sides cross in the middle, or not, as rounding has it.
+inline constexpr double straight = 4e-3;
 // Sine of the angle between axis and normal below which a frustum stands, 20 degrees; and below
 // which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
 inline constexpr double standing = 0.342, standing_flat = 3e-4;

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
+#include "base/never.h"
+
 namespace tw {
 
 namespace {
@@ -45,6 +48,51 @@ void add_point(std::vector<FacePoint>& points, const FacePoint& fresh, double sl
       return;
     }
   points.push_back(fresh);
+}
+
+// Half the width of a polygon, m: its area over half its border.
+double half_width(const std::vector<FacePoint>& polygon) {
+  Vec3 doubled = Vec3::Zero();
+  double border = 0;
+  const Vec3* before = &polygon.back().point;
+  for (const FacePoint& corner : polygon) {
+    doubled += (*before - polygon[0].point).cross(corner.point - polygon[0].point);
+    border += (corner.point - *before).norm();
+    before = &corner.point;
+  }
+  return border > 0 ? doubled.norm() / border : 0;
+}
+
+// How far a corner lies off the line that joins its neighbours; never, if it is deeper than that by
+// more than `below`.
+double sticks_out(const FacePoint& before, const FacePoint& corner, const FacePoint& after,
+                  double below) {
+  const Vec3 line = after.point - before.point, to = corner.point - before.point;
+  const double squared = line.squaredNorm();
+  const double t = squared > 0 ? std::clamp(to.dot(line) / squared, 0.0, 1.0) : 0;
+  if (corner.gap < before.gap + t * (after.gap - before.gap) - below) return never;
+  return (to - t * line).norm();
+}
+
+// Leaves out corners that hardly stick out, the least first.
+void straighten(std::vector<FacePoint>& polygon, double below,
+                std::vector<std::uint64_t>& left_out) {
+  if (polygon.size() <= 3) return;
+  const double aside = patch::straight * half_width(polygon);
+  while (polygon.size() > 3) {
+    double least = aside;
+    std::size_t which = polygon.size();
+    for (std::size_t i = 0, last = polygon.size() - 1; i <= last; ++i) {
+      const double off = sticks_out(polygon[i > 0 ? i - 1 : last], polygon[i],
+                                    polygon[i < last ? i + 1 : 0], below);
+      if (off >= least) continue;
+      least = off;
+      which = i;
+    }
+    if (which == polygon.size()) return;
+    left_out.push_back(polygon[which].key);
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(which));
+  }
 }
 
 // How far a point lies beside the face, by its sides: negative over it.
@@ -101,14 +149,20 @@ void face_contact(const Polyhedron& reference, int face_number, const Polyhedron
   }
   for (int i = 0; i < face.count && !polygon.empty(); ++i)
     clip_by_side(polygon, reference.side(face.first + i), face.first + i, slack);
+  thread_local std::vector<FacePoint> corners;
+  thread_local std::vector<std::uint64_t> left_out;
+  corners.clear();
+  left_out.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    if (polygon[i].height > reach) continue;
     const int before = polygon[i > 0 ? i - 1 : polygon.size() - 1].next;
-    add_point(out,
+    add_point(corners,
               {polygon[i].point, polygon[i].height,
                corner_key(incident, incident_face, before, polygon[i].next)},
               near);
   }
+  straighten(corners, patch::missed_floor * size, left_out);
+  for (const FacePoint& corner : corners)
+    if (corner.gap <= reach) out.push_back(corner);
 
   // vertices that may come down
   const Vec3 up = incident_in_reference.R.transpose() * face.normal;
@@ -120,6 +174,7 @@ void face_contact(const Polyhedron& reference, int face_number, const Polyhedron
     const double height = face.normal.dot(point) - face.offset;
     if (!(height <= reach)) continue;
     if (beside(reference, face, point) > std::max(height, slack)) continue;
+    if (std::find(left_out.begin(), left_out.end(), vertex_key(v)) != left_out.end()) continue;
     add_point(out, {point, height, vertex_key(v)}, near);
   }
   thin_face_points(out, most);
