@@ -77,6 +77,11 @@ bool is_open(const State& state) {
 
 // ---- outcomes ----
 
+// Poses jump at edits alone: how far apart the two were says nothing of after.
+void forget_if_edited(Pair& pair, const Key& key) {
+  if (is_edit(key)) pair.clearance = {};
+}
+
 constexpr PairOutcome waits{PairOutcome::Kind::wait, {}};
 
 PairOutcome check_at(const Pair& pair, double when) {
@@ -132,6 +137,7 @@ void PairChecks::reset(std::uint32_t index, const Key& key) {
   Pair& pair = pairs_[index];
   if (pair.pending && pair.impact < key) return;
   pair.clearance.forget_from(key.time);
+  forget_if_edited(pair, key);
   // (a state that is removed and found again may have the key that it had, and another arc: what
   // was checked of a piece that begins there, its touch included, is no longer so)
   if (pair.pending || key <= pair.from || pair.parked) {
@@ -159,6 +165,7 @@ std::optional<PairOutcome> PairChecks::next_piece(Pair& pair, const Piece& piece
   pair.from = piece.end;
   if (piece.end == last_key || piece.ends_naturally) return waits;
   pair.started = false;
+  forget_if_edited(pair, piece.end);
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include "rollback/kernel-access.h"
 #include "support/counter.h"
 #include "support/heap-scenes.h"
+#include "support/multibody-scenes.h"
 #include "support/schedule.h"
 
 namespace tw::test {
@@ -278,6 +279,27 @@ TEST(GroupErrors, error_of_a_callback_on_a_member_is_raised_at_its_time) {
       }
       EXPECT_EQ(scene.world.time(), 0.3);
     }
+}
+
+// How far apart two links hung says nothing of where they are put: one swings into the other.
+TEST(GroupEdits, links_put_elsewhere_meet_there) {
+  for (const double other : {0.5, 0.6}) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    std::vector<std::uint32_t> arms;
+    for (const double x : {0.0, 0.15}) {
+      MultibodyDef arm = chain(1, 0.5, {x, 0, 0});
+      arm.name += std::to_string(arms.size());
+      arms.push_back(world.add_multibody(arm));
+    }
+    // off hanging, which level is pi/2 away from
+    set_joint(world, arms[0], 0, 0.5 * pi + 0.6);
+    set_joint(world, arms[1], 0, 0.5 * pi + other);
+    set_velocity(world, arms[0], 0, -3);
+    world.advance(0.3);
+    EXPECT_GE(count_of(world.statistics(), "collisions"), 1) << other;
+    EXPECT_LT(world.joints(arms[1]).u[0], -0.1) << other;
+  }
 }
 
 // An error that a callback throws in a future that never comes leaves no trace.
