@@ -166,6 +166,9 @@ inline constexpr double slender = 0.25;
 // interval.
 inline constexpr double travel_unlooked = 0.25, least_arc = 0x1p-11;
 inline constexpr int most_looks = 4096;
+// Where blows follow each other an arc lasts no longer than so many times what the one before did,
+// and after the check that ends it so many times that.
+inline constexpr double patience_growth = 16;
 // Depth that may stay unrepresented to the end of an arc, share of the contact's static depth.
 inline constexpr double unseen_depth = 0.5;
 // A gap below this share of the static depth counts as touch when impulses are passed on: found at

@@ -44,6 +44,11 @@ double finest_check(const Scene& scene, const Body& body) {
                                             std::sqrt(body.least_width / scene.gravity_scale()));
 }
 
+double interval_within(const Scene& scene, double time) {
+  const double rate = scene.options.group_check_rate;
+  return on_lattice(rate > 0 ? 1 / rate : answer::check_unit, time);
+}
+
 double joint_check_interval(const Scene& scene, const Multibody& multibody) {
   double size = 0;
   for (const BodyId link : multibody.links) size += extent_of_link(scene.body(link));

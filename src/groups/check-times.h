@@ -23,6 +23,9 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
 // The shortest time between two checks that a member asks for, s: by its size, or as set.
 double finest_check(const Scene& scene, const Body& body);
 
+// The longest interval of the lattice that is no longer than a time, s.
+double interval_within(const Scene& scene, double time);
+
 // The time between two checks of a multibody that touches nothing, s: its arc is integrated anew
 // and its stops are looked at no oftener than it would fall through its own size.
 double joint_check_interval(const Scene& scene, const Multibody& multibody);

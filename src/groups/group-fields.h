@@ -24,6 +24,7 @@ void for_each_field(const Group& group, Visit&& visit) {
   visit("rest", motion, group.at_rest);
   visit("stillness", motion, group.stillness);
   visit("first step", motion, group.first_step);
+  visit("patience", motion, group.patience);
   visit("range of masses", motion, group.masses);
   visit("outside bodies", motion, group.outside);
   visit("border", motion, group.has_border);

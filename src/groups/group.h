@@ -58,6 +58,7 @@ struct Group : Counted<Group> {
   bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
   bool at_rest = false;
   double first_step = 0;           // of the arc, s; 0: chosen
+  double patience = never;         // how long an arc may be worth making, s (make-groups.cc)
   MassRange masses;                // of all that hung together when it was made
   std::vector<ProcessId> members;  // ascending
   std::vector<BodyId> outside;     // of arc->start().outside: all in contact that are no members

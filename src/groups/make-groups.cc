@@ -216,10 +216,37 @@ double after_next_call(const Regrouping& work, const Group& group) {
   return next_check_time(work.now() + period, call_check_grid(period));
 }
 
+// How long an arc is worth making, s: where blow follows on blow, as when a wave of impacts goes
+// through a lattice, all that is integrated beyond the next one is in vain.  So an arc that begins
+// with a blow on what an impact gave its arc, or that follows one which ended early, lasts a number
+// of times what that did, and the check at its end, where nothing has come, allows that number
+// more.
+double patience_of(const Regrouping& work, const Group& group, double interval) {
+  double patience = never;
+  for (const auto& old : work.old) {
+    if (old->at_rest || std::none_of(old->members.begin(), old->members.end(),
+                                     [&](ProcessId id) { return group.contains(id); }))
+      continue;
+    const double lasted = work.now() - old->key.time;
+    if (finds_contacts(work.cause))
+      patience = std::min(patience, answer::patience_growth * old->patience);
+    if (lasted > 0 && (work.cause == Cause::early_check ||
+                       (work.cause == Cause::impact && old->key.kind == KeyKind::impact)))
+      patience = std::min(patience, answer::patience_growth * lasted);
+  }
+  if (!(patience < interval)) return never;
+  double finest = never;
+  for (const ProcessId member : group.members)
+    finest = std::min(finest, finest_check(work.scene(), work.scene().body_of(member)));
+  return interval_within(work.scene(), std::max(patience, answer::least_arc * finest));
+}
+
 // The check that is due stays due where there is something to look at, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
   const double now = work.now();
-  const double interval = interval_of(work, group);
+  const double whole = interval_of(work, group);
+  group.patience = patience_of(work, group, whole);
+  const double interval = std::min(whole, group.patience);
   group.next_check = std::min(border_end, group.has_border ? next_common_check_time(now, interval)
                                                            : next_check_time(now, interval));
   if (group.pairs.empty())

@@ -117,10 +117,15 @@ TEST(HeightField, hills_are_rolled_over_as_slabs_of_the_same_triangles) {
   }
 }
 
-// Rest on rough ground: nothing sinks in, nothing moves.
+// Rest on rough ground: nothing sinks in, nothing moves.  (Without resistance drums roll on in
+// their hollows.)
 TEST(HeightField, bodies_come_to_rest_on_rough_ground) {
   World world;
-  set_contact_for_all(world, 0.2, 0.6);
+  ContactSettings settings;
+  settings.restitution = 0.2;
+  settings.friction = 0.6;
+  settings.rolling_friction = 2e-3;
+  world.set_contact({}, {}, settings);
   const auto bowl = [](double x, double y) {
     return 0.15 * (x * x + y * y) + 0.05 * std::sin(9 * x) * std::sin(8 * y);
   };
