@@ -373,6 +373,10 @@ inline constexpr double sunk = answer::most_travel;
 // which a normal may turn on the way out of the neighbours, and how many of them that may take.
 inline constexpr double valley = 0.1, same_side = 0.95;
 inline constexpr int most_around = 4;
+// Faces of the ground whose heights differ by no more than this share of the size of what stands on
+// one of them are one plane; an edge or side that a body meets no deeper below it than `low`, along
+// a normal at least 8 degrees off the plane's (cosine), is none.
+inline constexpr double flush = 1e-4, low = 2e-3, sideways = 0.99;
 // How far a round part is scaled down to be apart from what it overlaps: one of these mostly does.
 inline constexpr double shrinking[] = {0.98, 0.9};
 

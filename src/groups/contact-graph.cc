@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "dynamics/impact-law.h"
 #include "geometry/polyhedron.h"
+#include "groups/flush-ground.h"
 #include "groups/followed-contact.h"
 
 namespace tw {
@@ -227,12 +228,21 @@ double reach_of(const PairBefore& old) {
   return reach;
 }
 
+// The planes of the ground on which the one of the two that moves stands; none where both move.
+std::vector<StandingPlane> planes_under(const Regrouping& work, const Body& a, const Body& b) {
+  if (a.dynamic() == b.dynamic()) return {};
+  const Body& mover = a.dynamic() ? a : b;
+  const Successor* successor = work.successor_of(mover.id());
+  if (!successor || !successor->data.group) return {};
+  const Group& group = *successor->data.group;
+  return standing_planes(work.scene(), group, mover, group.contact_time(work.now()));
+}
+
 // Whether the two overlap although nothing that is exposed touches: a buried wall or edge of the
 // ground.  Such a pair is in contact, with no contact that presses, or its collision checks would
 // see an overlap all the time.
-bool is_ghost(const std::vector<ManifoldPoint>& points, const PlacedBody& a, const PlacedBody& b,
-              double distance) {
-  if (distance > 0 || (!a.body->fixed() && !b.body->fixed())) return false;
+bool is_ghost(const std::vector<ManifoldPoint>& points, double distance, bool may_be_buried) {
+  if (distance > 0 || !may_be_buried) return false;
   const auto touches = [](const ManifoldPoint& p) { return p.gap <= 0; };
   return std::none_of(points.begin(), points.end(), touches);
 }
@@ -304,6 +314,8 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
   const double distance = manifold_at_seams(
       *body_a.shape_P, a.frame, near.seam_neighbours(body_a, ground), *body_b.shape_P, b.frame,
       near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
+  const bool buried =
+      drop_low_sides(planes_under(work, body_a, body_b), body_a, a.frame, body_b, b.frame, points);
   for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
   // it stays on the side that it came from
   if (before && is_pushed_through(points, *before, a, scales.law, work.now())) {
@@ -311,7 +323,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
     return;
   }
   if (!must && !comes_into_contact(points, a, b, before, reach, interval, scales) &&
-      !is_ghost(points, a, b, distance))
+      !is_ghost(points, distance, buried || body_a.fixed() || body_b.fixed()))
     return;
 
   look.found = Look::Found::contact;

@@ -11,6 +11,7 @@
 #include "collision/seams/seams.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
+#include "groups/flush-ground.h"
 #include "integrate/joint-record.h"
 #include "math/root.h"
 
@@ -25,6 +26,7 @@ struct EarlyEnd {
 
 // A pair of bodies along the arc.
 struct PairOnArc {
+  const Scene& scene;
   Group& group;
   const ContactPair& pair;
   const Body& a;
@@ -50,6 +52,9 @@ struct PairOnArc {
                         points);
     else
       manifold(*a.shape_P, frame_a, *b.shape_P, frame_b, 0, points);
+    if (at_seams && a.dynamic() != b.dynamic())
+      drop_low_sides(standing_planes(scene, group, a.dynamic() ? a : b, when), a, frame_a, b,
+                     frame_b, points);
     double least = 0;
     for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
     return least;
@@ -119,7 +124,7 @@ double fast_touch(const GroupArc& arc, int contact, double from, double to, doub
 double early_end(const Scene& scene, const Surroundings& surroundings, Group& group,
                  const ContactPair& pair) {
   const Body &a = scene.body(pair.a()), &b = scene.body(pair.b());
-  PairOnArc along{group, pair, a, b, {}, {}};
+  PairOnArc along{scene, group, pair, a, b, {}, {}};
   const ContactScales scales = contact_scales(scene, a, b, pair.masses);
   const double allowed = answer::unseen_depth * scales.law.gap_scale();
   const double travel = along.travel(), size = std::min(a.least_width, b.least_width);

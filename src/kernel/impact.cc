@@ -12,6 +12,7 @@
 #include "collision/separation.h"
 #include "dynamics/contact-scales.h"
 #include "dynamics/impulse-solver.h"
+#include "groups/flush-ground.h"
 #include "groups/joints.h"
 #include "groups/regrouping.h"
 
@@ -82,6 +83,29 @@ void find_impact_points(const Scene& scene, const Successor& a, const Successor&
   if (!points.empty()) return;
   const Separation s = separation(*body_a.shape_P, fa, *body_b.shape_P, fb);
   points.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
+}
+
+// The sides of ground that goes on as the plane on which the other one stands; true if nothing else
+// is left.
+bool drop_low_sides(const Scene& scene, const Key& key, const Successor& a, const Successor& b,
+                    std::vector<ContactPoint>& found) {
+  if (a.body->dynamic() == b.body->dynamic()) return false;
+  const Successor &ground = a.body->dynamic() ? b : a, &mover = a.body->dynamic() ? a : b;
+  if (!mover.data.group || ground.body->unbounded) return false;
+  const Group& group = *mover.data.group;
+  const std::vector<StandingPlane> planes =
+      standing_planes(scene, group, *mover.body, group.contact_time(key.time));
+  if (planes.empty()) return false;
+  const Shape& shape = *ground.body->shape_P;
+  const Frame frame(ground.point.q.toRotationMatrix(), ground.point.x);
+  const auto parts_b = static_cast<int>(b.body->shape_P->part_count());
+  std::erase_if(found, [&](const ContactPoint& c) {
+    const int number = &ground == &a ? c.pair / parts_b : c.pair % parts_b;
+    const Vec3 outward = &ground == &a ? c.normal : Vec3(-c.normal);
+    return is_below_flush_face(planes, shape.part(static_cast<std::size_t>(number)), frame, c.point,
+                               outward, mover.body->least_width);
+  });
+  return found.empty();
 }
 
 // At seams of the ground: points that neighbours of the fixed body bury give way to those that
@@ -191,7 +215,8 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   find_impact_points(scene, a, b, points);
   Impact impact;
   // nothing to hit: the two are followed as a contact while they pass the seam
-  impact.soft = drop_ghosts(scene, surroundings, a, b, points);
+  impact.soft =
+      drop_low_sides(scene, key, a, b, points) || drop_ghosts(scene, surroundings, a, b, points);
   if (impact.soft) return impact;
   const ContactParameters& contact = scene.contacts.between(a.body->id(), b.body->id());
   // what is told once stands on the first state that enters the graph

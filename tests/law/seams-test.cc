@@ -54,6 +54,76 @@ TEST(Seams, of_a_union_are_crossed_as_none) {
   }
 }
 
+// Tiles a pitch of 0.2 m long, but for a slot between any two, which lie still or move.
+void add_slotted(World& world, int count, double slot, double from, double speed) {
+  constexpr double pitch = 0.2;
+  for (int i = 0; i < count; ++i) {
+    BodyDef tile;
+    tile.shape = make_box({pitch - slot, 2, 0.05});
+    tile.position = {from + pitch * i, 0, -0.025};
+    tile.fixed = speed == 0;
+    if (speed != 0)
+      tile.motion = make_keyframes(
+          {{0, tile.position, {}}, {4, tile.position + Vec3(4 * speed, 0, 0), {}}}, true);
+    world.add_body(tile);
+  }
+}
+
+// What slides lies a hair below the edges that it comes to: they are no walls.
+TEST(Seams, slots_are_slid_over) {
+  for (const double slot : {0.0, 1e-5, 1e-3, 1e-2})
+    for (const double speed : {0.1, 1.2, 2.5}) {
+      World world;
+      set_contact_for_all(world, 0, 0);
+      add_slotted(world, 40, slot, -1, 0);
+      const BodyId crate =
+          world.add_body(body_of(make_box({0.2, 0.15, 0.3}), {0.013, 0, 0.15}, {speed, 0, 0}));
+      world.advance(2);
+      const BodyState state = world.state(crate);
+      EXPECT_NEAR(state.velocity.x(), speed, 1e-9) << slot;
+      EXPECT_NEAR(state.position.z(), 0.15, 2e-4) << slot << " " << speed;
+    }
+}
+
+// A belt of slats takes along what a stop holds back by friction alone.
+TEST(Seams, slats_of_a_belt_do_not_catch) {
+  for (const double slot : {0.0, 1e-3}) {
+    World world;
+    constexpr double friction = 0.6, speed = 1.2;
+    set_contact_for_all(world, 0, friction);
+    add_slotted(world, 34, slot, -6, speed);
+    BodyDef stop;
+    stop.shape = make_box({0.1, 2, 0.5});
+    stop.position = {1.2, 0, 0.251};
+    stop.fixed = true;
+    world.add_body(stop);
+    const BodyId crate =
+        world.add_body(body_of(make_box({0.2, 0.15, 0.32}), {0.6, 0, 0.16}, Vec3::Zero()));
+    world.advance(4);
+    EXPECT_GT(world.state(crate).position.z(), 0.15) << slot;
+    const double force = friction * world.body(crate).mass * 9.81;
+    const double work = number_of(world.statistics(), "kinematic_work");
+    EXPECT_LT(work, 4 * force * speed) << slot;
+    EXPECT_GT(work, 0.8 * 4 * force * speed) << slot << ": it slides when it has come to the stop";
+  }
+}
+
+// But a step is one.
+TEST(Seams, a_step_stops_what_slides) {
+  World world;
+  set_contact_for_all(world, 0, 0);
+  for (const double top : {0.0, 1e-3}) {
+    BodyDef half;
+    half.shape = make_box({4, 2, 1});
+    half.position = {top > 0 ? 3.0 : -1.0, 0, top - 0.5};
+    half.fixed = true;
+    world.add_body(half);
+  }
+  const BodyId crate = world.add_body(body_of(make_box({0.2, 0.15, 0.1}), {0, 0, 0.05}, {1, 0, 0}));
+  world.advance(2);
+  EXPECT_LT(world.state(crate).position.x(), 0.91);
+}
+
 // A stone that gravity of (-4, 0, -9.81) m/s^2 pushes across the ground into a wall, which begins
 // at the ground's surface: the deepest overlap, m.
 double depth_at_a_wall(std::uint64_t seed) {

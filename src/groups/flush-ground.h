@@ -1,0 +1,42 @@
+// Ground that goes on as a plane: its pieces may lie a little apart.
+//
+// A body that stands on the face of one piece of the ground lies as deep in that face's plane as
+// its contacts give way.  Where the next piece's face lies in the same plane, the body's leading
+// edge meets that piece's *side*, as far below the edge as it is deep: a wall that the pieces'
+// seams would bury if they touched (collision/seams), and that is none where there is a slot
+// between them, either, nor between the slats of a belt that move.  Such contacts are ghosts.  What
+// stands out of the plane is met as ever.
+//
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "collision/manifold.h"
+#include "dynamics/scene.h"
+#include "groups/group.h"
+
+namespace tw {
+
+// A face of the ground that a body stands on.
+struct StandingPlane {
+  Vec3 normal = Vec3::UnitZ();  // unit, world, out of the ground
+  double height = 0;            // m: normal.x of its points
+};
+
+// Those that a member of the group stands on at `when`, each once.
+std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& group,
+                                           const Body& member, double when);
+
+// Whether a contact at `point` (world) of a part of the ground, with the normal `outward` of that
+// part (unit, world), is at a side of it, no deeper below a face that lies in one of the planes
+// than contacts may be.  `frame`: of the part's body; `size`: of the body that stands, m.
+bool is_below_flush_face(const std::vector<StandingPlane>& planes, const ConvexPart& part,
+                         const Frame& frame, const Vec3& point, const Vec3& outward, double size);
+
+// Leaves such contacts out of a manifold of the two, one of which stands on these planes and the
+// other is no dynamic body; true if there were any.
+bool drop_low_sides(const std::vector<StandingPlane>& planes, const Body& a, const Frame& frame_a,
+                    const Body& b, const Frame& frame_b, std::vector<ManifoldPoint>& points);
+
+}  // namespace tw
