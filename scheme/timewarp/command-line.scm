@@ -103,11 +103,14 @@
     #:poses (option-ref options 'poses)
     #:events (option-ref options 'events)))
 
-(define (report-results world options)
+(define (report-statistics world options)
   (match (option-ref options 'stats)
     (#f #t)
     (#t (show-statistics))
-    (file (%write-statistics world file)))
+    (file (%write-statistics world file))))
+
+(define (report-results world options)
+  (report-statistics world options)
   (when (option-ref options 'hash)
     (format #t "~a\n" (%history-hash world))))
 
@@ -119,7 +122,13 @@
       (parameterize ((current-slice-hooks (cons progress (current-slice-hooks))))
         (dynamic-wind
           (const #t)
-          (lambda () (simulate-scene! scene options))
+          (lambda ()
+            ;; who stops a run may want to know what takes its time
+            (catch 'timewarp-interrupted
+              (lambda () (simulate-scene! scene options))
+              (lambda interrupt
+                (report-statistics (current-world) options)
+                (apply throw interrupt))))
           end-progress))))
   (report-results (current-world) options))
 

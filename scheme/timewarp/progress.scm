@@ -63,11 +63,17 @@
             (format #f "slow: ~a took ~a ~a" (vector-ref most 2) (done most)
                     (if (null? (cdr (vector-ref most 0))) "looks" "steps")))))))
 
+;; With two digits, of a run of less than 10 s as many more as show ten-thousandths of it.
+(define (time-text time until)
+  (let ((digits (if (> until 0) (- 4 (inexact->exact (floor (log10 until)))) 2)))
+    (format #f "~,vf" (min 12 (max 2 digits)) time)))
+
 (define (report world until course)
   (let ((time (%world-time world))
         (left (time-left course until))
         (frames (frames-written world)))
-    (format #f "~,2f of ~,2f s simulated~a~a, ~a rollbacks" time until
+    (format #f "~a of ~a s simulated~a~a, ~a rollbacks" (time-text time until)
+            (time-text until until)
             (if left (string-append ", " (duration-text left) " left") "")
             (if frames (format #f ", ~a frames written" frames) "")
             (assq-ref (%statistics world) 'rollbacks))))

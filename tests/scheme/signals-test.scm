@@ -29,6 +29,11 @@
   (shell (format #f "(rm -f input; mkfifo input; exec 3<>input; echo '~a' >&3; \
 timeout --foreground --preserve-status -k 5 -s ~a 2 ~a -q <&3)" expressions signal timewarp)))
 
+;; What takes the time of a run that was stopped is told.
+(let ((result (ended-by "INT" "endless.scm" "--quiet" "--stats=s.json")))
+  (test-equal "SIGINT: status" 130 (run-status result))
+  (test-assert "SIGINT: statistics" (string-contains (read-file "s.json") "\"callbacks")))
+
 (for-each
  (lambda (signal status)
    (define (claim text) (format #f "SIG~a: ~a" signal text))
