@@ -63,7 +63,7 @@
             (format #f "slow: ~a took ~a ~a" (vector-ref most 2) (done most)
                     (if (null? (cdr (vector-ref most 0))) "looks" "steps")))))))
 
-;; With two digits, of a run of less than 10 s as many more as show ten-thousandths of it.
+;; To ten-thousandths of the run, with two digits at least.
 (define (time-text time until)
   (let ((digits (if (> until 0) (- 4 (inexact->exact (floor (log10 until)))) 2)))
     (format #f "~,vf" (min 12 (max 2 digits)) time)))
