@@ -40,6 +40,8 @@ class Timewarp : public CaseEngine {
   Timewarp(const CaseTable& c, double setting) {
     rolls(c.name) ? stiffness_ = setting : accuracy_ = setting;
     world_.set_accuracy(accuracy_);
+    // what helpers do is not in the time
+    world_.set_threads(1);
     test::Case scene = test::case_of(c);
     for (std::size_t i = 0; i < c.bodies.size(); ++i)
       if (c.bodies[i].driven) drive(scene.bodies[i], c.bodies[i], c.motion);
