@@ -1,9 +1,10 @@
 // The avalanche in MuJoCo: all bodies as convex meshes, each piece of ground a body of its own, so
 // that its broad phase tells them apart.
 //
-// Settings: semi-implicit Euler and Newton's method, its defaults; elliptic cones; contacts are
-// mended within two steps, the fastest that is stable.  It has no coefficient of restitution: rocks
-// do not bounce.
+// Settings: semi-implicit Euler, its default; conjugate gradients, for Newton's method takes five
+// times as long once rocks pile up and is no shallower; elliptic cones; contacts are mended within
+// two steps, the fastest that is stable.  It has no coefficient of restitution: rocks do not
+// bounce.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <iomanip>
@@ -42,7 +43,8 @@ std::string text(const OtherScene& scene, long rate) {
   out << std::setprecision(17)
       << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/>"
          "<size njmax='8000' nconmax='2500' nstack='50000000'/><option gravity='"
-      << scene.gravity << "' timestep='" << step << "' cone='elliptic'/><default><geom condim='3' "
+      << scene.gravity << "' timestep='" << step
+      << "' cone='elliptic' solver='CG'/><default><geom condim='3' "
       << "friction='" << scene.friction << " 0 0' solref='" << 2 * step << " 1'/></default><asset>";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) write_mesh(out, i, scene.bodies[i].hull());
   out << "</asset><worldbody>";

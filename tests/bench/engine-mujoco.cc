@@ -18,7 +18,7 @@
 namespace tw::bench {
 namespace {
 
-// s: contacts of what slides and rests are mended within this, at least
+// s: contacts of what slides and rests are mended within this, at least; heaps' within two steps
 constexpr double slowest = 2e-3;
 // what bounces touches for ten steps at least and, as steps shrink, for sqrt(step * 0.1 s)
 constexpr double bounce_steps = 10, bounce_length = 0.1;
@@ -81,7 +81,8 @@ std::string contact_text(const CaseTable& c, double step) {
   out << std::setprecision(17);
   // in a heap what little bounces does not bounce
   if (c.restitution < 0.5) {
-    out << "solref='" << std::max(2 * step, slowest) << " 1' solimp='0.99 0.99 0.001'";
+    const double mended = is_heap(c.name) ? 2 * step : std::max(2 * step, slowest);
+    out << "solref='" << mended << " 1' solimp='0.99 0.99 0.001'";
   } else {
     const double length = std::max(bounce_steps * step, std::sqrt(bounce_length * step));
     const double rate = pi / length;
@@ -125,7 +126,8 @@ std::string driven_text(const CaseTable& c) {
   return out + "</body>";
 }
 
-// A heap is solved as far as MuJoCo does by default.
+// A heap is solved by conjugate gradients, as far as MuJoCo does by default: Newton's method takes
+// 13 times as long in the shaken box and is no shallower.
 std::string Mujoco::text(const CaseTable& c, double step) {
   std::ostringstream out;
   const bool contacts = c.bodies.size() > 1 && c.hinges.empty();
@@ -136,7 +138,7 @@ std::string Mujoco::text(const CaseTable& c, double step) {
       << text_of(c.gravity) << "' timestep='" << step << "' integrator='"
       << (contacts ? "Euler" : "RK4") << "' cone='"
       << (c.name == "stack" || c.name == "kapla" ? "pyramidal" : "elliptic")
-      << (is_heap(c.name) ? "" : "' impratio='100' tolerance='1e-14")
+      << (is_heap(c.name) ? "' solver='CG" : "' impratio='100' tolerance='1e-14")
       << "'/><default><geom condim='" << (c.friction > 0 ? 3 : 1) << "' friction='" << c.friction
       << " 0 0' " << contact_text(c, step) << "/></default><worldbody>";
   write_hinged(out, c, -1, {});
