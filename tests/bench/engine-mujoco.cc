@@ -132,9 +132,9 @@ std::string Mujoco::text(const CaseTable& c, double step) {
   std::ostringstream out;
   const bool contacts = c.bodies.size() > 1 && c.hinges.empty();
   out << std::setprecision(17)
-      << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/><size "
-         "njmax='8000' nconmax='4000'/><option "
-         "gravity='"
+      << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/>"
+      // else there is room for a few hundred contacts; it costs time to make
+      << (c.bodies.size() > 40 ? "<size njmax='8000' nconmax='4000'/>" : "") << "<option gravity='"
       << text_of(c.gravity) << "' timestep='" << step << "' integrator='"
       << (contacts ? "Euler" : "RK4") << "' cone='"
       << (c.name == "stack" || c.name == "kapla" ? "pyramidal" : "elliptic")
