@@ -11,8 +11,9 @@
 (define-scene-parameter molecules 100 "number of water-like molecules")
 (define-scene-parameter temperature 12.0 "mean square speed of a sphere, (m/s)^2")
 (define-scene-parameter compress-at 30 "time at which the divider begins to move, s; #f: never")
+(define-scene-parameter room 1 "the box's edges over their usual lengths; beyond some 400 atoms more than 1")
 
-(define half-x 8) (define half-y 4) (define half-z 4)
+(define half-x (* 8 room)) (define half-y (* 4 room)) (define half-z (* 4 room))
 (define radius 0.25)
 (define random-state (scene-random-state))
 
@@ -104,4 +105,4 @@
   (for-each (lambda (index spot) (add-atom! index spot (< (vector-ref spot 0) 0)))
             order spots))
 
-(camera #:eye #(7 -19 8.5) #:target #(0.2 0 -0.9) #:fov 0.66)
+(camera #:eye (v* room #(7 -19 8.5)) #:target #(0.2 0 -0.9) #:fov 0.66)

@@ -1,4 +1,4 @@
-// Cases with exact results in any engine: run time against error, as lines of CSV.
+// Cases in any engine: run time against error, as lines of CSV.
 //
 // The columns are engine, version, case, setting, CPU of the first run in a process and of the best
 // of several, s, error, its unit, note.  Only stepping is timed, by the CPU clock of the thread.
@@ -19,9 +19,11 @@ namespace tw::bench {
 using test::CaseBody;
 using test::CaseTable;
 
-struct EnginePose {
+struct EngineState {
   test::Numbers3 position{};
   std::array<double, 4> orientation{};  // w x y z
+  // of a link of a tree they may be left out
+  test::Numbers3 velocity{}, angular_velocity{};
 };
 
 // An engine, filled with a case.
@@ -30,8 +32,8 @@ class CaseEngine {
   virtual ~CaseEngine() = default;
   // By a whole number of steps, if the engine has steps.
   virtual void advance(double duration) = 0;
-  // Of the body's centre of mass and principal axes.
-  virtual EnginePose pose(std::size_t body) const = 0;
+  // Of the body's centre of mass and principal axes, in the world.
+  virtual EngineState state(std::size_t body) const = 0;
 };
 
 // How an engine is run: a time step, s, or an accuracy.
@@ -43,13 +45,16 @@ struct Setting {
 struct CaseRunner {
   std::string engine, version;
   std::function<std::unique_ptr<CaseEngine>(const CaseTable&, const Setting&)> make;
-  std::vector<Setting> settings;  // the cheapest first
+  bool by_steps = true;  // a setting is a time step
+  // The cheapest first, for a case.
+  std::function<std::vector<Setting>(const std::string& name)> settings;
   // Why the engine can't do a case, without commas; empty where it can.
   std::function<std::string(const CaseTable&)> unable = [](const CaseTable&) { return ""; };
 };
 
-// Steps from a 60th of a second down, each a quarter of the one before.
-std::vector<Setting> time_steps();
+// Steps from a 60th of a second down, each a quarter of the one before; of moving heaps from a
+// 240th down, each half of the one before.
+std::vector<Setting> time_steps(const std::string& name);
 
 // Of a program whose engine is made from a case and a setting's value, by default a time step.
 template <class Engine>
@@ -60,7 +65,7 @@ CaseRunner runner_of(const std::string& name, const std::string& version) {
   runner.make = [](const CaseTable& c, const Setting& setting) {
     return std::make_unique<Engine>(c, setting.value);
   };
-  runner.settings = time_steps();
+  runner.settings = time_steps;
   return runner;
 }
 

@@ -1,4 +1,4 @@
-// The cases with exact results in DART.
+// The cases in DART.
 //
 // Compiled as DART's library was, since that decides how Eigen's matrices are laid out: nothing of
 // ours that includes Eigen may be included here.
@@ -12,6 +12,7 @@
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/BoxShape.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
+#include <dart/dynamics/PrismaticJoint.hpp>
 #include <dart/dynamics/RevoluteJoint.hpp>
 #include <dart/dynamics/Skeleton.hpp>
 #include <dart/dynamics/SphereShape.hpp>
@@ -21,6 +22,7 @@
 #include <cmath>
 
 #include "bench/engine-cases.h"
+#include "support/case-motion.h"
 
 namespace tw::bench {
 namespace {
@@ -51,20 +53,28 @@ class Dart : public CaseEngine {
  public:
   Dart(const CaseTable& c, double step);
   void advance(double duration) override {
-    for (long n = std::lround(duration / step_); n > 0; --n) world_->step();
+    for (long n = std::lround(duration / step_); n > 0; --n) {
+      push();
+      world_->step();
+    }
   }
-  EnginePose pose(std::size_t body) const override;
+  EngineState state(std::size_t body) const override;
 
  private:
   void add(const CaseBody& def, const CaseTable& c);
   void add_hinged(const CaseTable& c);
+  void add_driven();
+  void push();
 
   dart::simulation::WorldPtr world_ = dart::simulation::World::create();
   std::vector<dynamics::BodyNode*> bodies_;
+  CaseTable case_;
+  dynamics::Joint* drive_ = nullptr;  // of the driven bodies
   double step_;
+  long steps_ = 0;
 };
 
-Dart::Dart(const CaseTable& c, double step) : step_(step) {
+Dart::Dart(const CaseTable& c, double step) : case_(c), step_(step) {
   world_->setTimeStep(step);
   world_->setGravity(vector_of(c.gravity));
   world_->getConstraintSolver()->setCollisionDetector(
@@ -72,8 +82,59 @@ Dart::Dart(const CaseTable& c, double step) : step_(step) {
   // by default a part in 1e5 of an impact is lost; this is the least that DART takes
   if (c.restitution > 0) dart::constraint::ContactConstraint::setConstraintForceMixing(1e-9);
   add_hinged(c);
+  if (c.bodies[0].driven) add_driven();
   for (const CaseBody& def : c.bodies)
-    if (c.hinges.empty()) add(def, c);
+    if (c.hinges.empty() && !def.driven) add(def, c);
+}
+
+// DART multiplies the restitutions of a pair, and takes the lesser friction.
+void add_shape(dynamics::BodyNode& body, const CaseBody& def, const CaseTable& c,
+               const Eigen::Isometry3d& place) {
+  auto* node = body.createShapeNodeWith<dynamics::VisualAspect, dynamics::CollisionAspect,
+                                        dynamics::DynamicsAspect>(shape_of(def));
+  node->setRelativeTransform(place);
+  node->getDynamicsAspect()->setFrictionCoeff(test::friction_of(c, def, def));
+  node->getDynamicsAspect()->setRestitutionCoeff(std::sqrt(c.restitution));
+}
+
+// All as one body, on a joint whose velocity is given.
+template <class Joint>
+dynamics::BodyNode* body_on(const dynamics::SkeletonPtr& skeleton, const test::Numbers3& axis,
+                            dynamics::Joint*& drive) {
+  const auto made = skeleton->createJointAndBodyNodePair<Joint>();
+  made.first->setAxis(vector_of(axis).normalized());
+  made.first->setActuatorType(dynamics::Joint::VELOCITY);
+  drive = made.first;
+  return made.second;
+}
+
+void Dart::add_driven() {
+  const auto skeleton = dynamics::Skeleton::create("driven");
+  const test::CaseMotion& motion = case_.motion;
+  dynamics::BodyNode* body =
+      motion.rate != 0 ? body_on<dynamics::RevoluteJoint>(skeleton, motion.axis, drive_)
+                       : body_on<dynamics::PrismaticJoint>(skeleton, motion.swing, drive_);
+  for (const CaseBody& def : case_.bodies) {
+    if (!def.driven) continue;
+    add_shape(*body, def, case_, placement(def));
+    bodies_.push_back(body);
+  }
+  world_->addSkeleton(skeleton);
+}
+
+// Forces act for a step; the joint gets the velocity that takes it where it is to be at its end.
+void Dart::push() {
+  const double now = static_cast<double>(steps_++) * step_, next = now + step_;
+  for (std::size_t i = 0; i < case_.bodies.size(); ++i)
+    if (test::is_pushed(case_.bodies[i])) bodies_[i]->addExtForce(vector_of(case_.bodies[i].force));
+  if (!drive_) return;
+  const auto along = [&](double time) {
+    const test::CasePlacement at = test::placement_at(case_.motion, time);
+    return case_.motion.rate != 0
+               ? at.angle
+               : vector_of(at.shift).dot(vector_of(case_.motion.swing).normalized());
+  };
+  drive_->setCommand(0, (along(next) - along(now)) / step_);
 }
 
 dynamics::Inertia inertia_of(const CaseBody& def) {
@@ -124,21 +185,21 @@ void Dart::add(const CaseBody& def, const CaseTable& c) {
     made.first->setLinearVelocity(vector_of(def.velocity));
     made.first->setAngularVelocity(vector_of(def.angular_velocity));
   }
-  // DART multiplies the coefficients of a pair
-  const double own_restitution = std::sqrt(c.restitution);
-  auto* node = body->createShapeNodeWith<dynamics::VisualAspect, dynamics::CollisionAspect,
-                                         dynamics::DynamicsAspect>(shape_of(def));
-  node->getDynamicsAspect()->setFrictionCoeff(c.friction);
-  node->getDynamicsAspect()->setRestitutionCoeff(own_restitution);
+  add_shape(*body, def, c, Eigen::Isometry3d::Identity());
   bodies_.push_back(body);
   world_->addSkeleton(skeleton);
 }
 
-EnginePose Dart::pose(std::size_t index) const {
+EngineState Dart::state(std::size_t index) const {
   const Eigen::Isometry3d& t = bodies_[index]->getWorldTransform();
   const Eigen::Vector3d p = t.translation();
   const Eigen::Quaterniond q(t.linear());
-  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+  const Eigen::Vector3d v = bodies_[index]->getCOMLinearVelocity();
+  const Eigen::Vector3d w = bodies_[index]->getAngularVelocity();
+  return {{p.x(), p.y(), p.z()},
+          {q.w(), q.x(), q.y(), q.z()},
+          {v.x(), v.y(), v.z()},
+          {w.x(), w.y(), w.z()}};
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "support/stability-scenes.h"
+#include "support/stability-features.h"
 
 namespace tw::bench {
 namespace {
@@ -51,6 +51,7 @@ std::vector<StabilityScene> rows(int heaps) {
   all.push_back(spin_scene("ball-on-pole", ball, 0.1, {0, 0, 1000}, false, 5));
   all.push_back(spin_scene("box", box, 0.05, {0, 0, 1000}, true, 60));
   all.push_back(spin_scene("disc", disc, 0.025, {0, 0, 1000}, true, 60));
+  for (const StabilityScene& scene : feature_scenes()) all.push_back(scene);
   for (int seed = 1; seed <= heaps; ++seed)
     all.push_back(heap_scene(30, static_cast<std::uint64_t>(seed), true, 0.2, 15));
   for (int seed = 1; seed <= heaps / 2; ++seed)
@@ -69,7 +70,8 @@ std::string verdict(const StabilityScene& scene, const StabilityOutcome& o) {
   if (!o.error.empty()) return "ERROR " + o.error;
   if (o.stalled) return "STALLED at " + number("%.3g s", o.reached);
   if (o.sunk && scene.name.rfind("slope", 0) != 0) return "THROUGH THE FLOOR";
-  if (o.rise_share() > 1e-3) return "GAINS ENERGY at " + number("%.4g s", o.rise_time);
+  if (!scene.driven && o.rise_share() > 1e-3)
+    return "GAINS ENERGY at " + number("%.4g s", o.rise_time);
   // the softest of the columns is meant to sink in
   if (o.deepest_share > 0.1) return "DEEP: " + o.deepest_pair;
   if (scene.rests && !o.at_rest()) return "NO REST";
@@ -81,9 +83,10 @@ void run_row(const StabilityScene& scene) {
   const StabilityOutcome o = run.run();
   const std::string rest =
       o.at_rest() ? number("%.2f", o.rest_time) : o.fastest_body + number(" %.2g m/s", o.fastest);
-  std::printf("| %s | %s | %g | %.2g | %.2g | %s | %.2g (%.2g %%) | %.1e | %.3g | %lld | %s |\n",
+  const std::string rise = scene.driven ? "driven" : number("%.1e", o.rise_share());
+  std::printf("| %s | %s | %g | %.2g | %.2g | %s | %.2g (%.2g %%) | %s | %.3g | %lld | %s |\n",
               scene.name.c_str(), scene.what.c_str(), scene.duration, o.cpu, o.worst_second,
-              rest.c_str(), 1e3 * o.deepest, 100 * o.deepest_share, o.rise_share(), o.travel,
+              rest.c_str(), 1e3 * o.deepest, 100 * o.deepest_share, rise.c_str(), o.travel,
               static_cast<long long>(o.collisions), verdict(scene, o).c_str());
   std::fflush(stdout);
 }

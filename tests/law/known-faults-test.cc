@@ -1,7 +1,7 @@
 // What is known to gain energy, and by how much (doc/stability.md).
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "support/known-fault.h"
-#include "support/stability-scenes.h"
+#include "support/stability-features.h"
 
 namespace tw::test {
 namespace {
@@ -24,6 +24,12 @@ TEST(KnownFaults, a_heavy_cube_on_a_light_one_gains_no_energy_any_more) {
 
 TEST(KnownFaults, thin_rods_gain_no_energy_any_more) {
   EXPECT_LT(rise_of(rod_scene(1000, 4)), sound);
+}
+
+// Cubes 2 mm apart that are held to each other come together as their beam bends; a check finds 15
+// new contacts at 10.57 s as deep as they are by then, and 69 J in them.
+TEST(KnownFaults, held_bodies_that_come_together_gain_energy) {
+  EXPECT_KNOWN_FAULT(rise_of(held_beam_scene(10, 100, 0.002, 11)), sound, 4.1e-3);
 }
 
 TEST(KnownFaults, that_get_worse_or_better_or_go_are_told) {

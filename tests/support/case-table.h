@@ -47,8 +47,20 @@ struct CaseBody {
   Numbers3 size{};
   double mass = 0;
   Numbers3 inertia{}, position{};
-  std::array<double, 4> orientation{};  // w x y z
+  std::array<double, 4> orientation{1, 0, 0, 0};  // w x y z
   Numbers3 velocity{}, angular_velocity{};
+  double friction = -1;  // a pair has the lesser; negative: the case's
+  Numbers3 force{};      // N, at the centre of mass, all the time
+  bool driven = false;   // moves as CaseTable::motion says, whatever touches it
+};
+
+// How driven bodies move from where they are at the start: turning about an axis through the
+// origin, or there and back from rest, by swing (1 - cos 2 pi f t)/2.
+struct CaseMotion {
+  Numbers3 axis{};  // of length 1
+  double rate = 0;  // rad/s
+  Numbers3 swing{};
+  double frequency = 0;  // Hz
 };
 
 // Between two bodies; in the world, at the start.
@@ -63,7 +75,21 @@ struct CaseTable {
   double friction = 0, restitution = 1, duration = 0;
   std::vector<CaseBody> bodies;
   std::vector<CaseHinge> hinges;  // that of a parent before those of its children
+  CaseMotion motion;
 };
+
+// It is where the case says, whatever touches it.
+inline bool is_held(const CaseBody& body) { return body.fixed || body.driven; }
+
+inline bool is_pushed(const CaseBody& body) { return body.force != Numbers3{}; }
+
+// Of a pair.
+inline double friction_of(const CaseTable& c, const CaseBody& a, const CaseBody& b) {
+  const auto own = [&](const CaseBody& body) {
+    return body.friction < 0 ? c.friction : body.friction;
+  };
+  return own(a) < own(b) ? own(a) : own(b);
+}
 
 template <std::size_t N>
 std::istream& operator>>(std::istream& in, std::array<double, N>& numbers) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "collision/separation.h"
+#include "multibody/multibody.h"
 #include "support/schedule.h"
 
 namespace tw::test {
@@ -22,6 +23,7 @@ struct StabilityScene {
   bool rests = true;    // whether it ought to come to rest in that time
   std::function<void(World&)> fill;
   double sample_rate = 500;  // Hz
+  bool driven = false;       // something does work on it: a rise of the energy says nothing
 };
 
 struct StabilityOutcome {
@@ -65,11 +67,26 @@ inline Frame frame_of(const World& world, BodyId id) {
   return Frame(s.orientation.toRotationMatrix(), s.position);
 }
 
+// By a hold, or by a joint: they do not touch.
+inline bool joined(const World& world, BodyId a, BodyId b) {
+  if (world.attached(a, b)) return true;
+  const auto tree = world.multibody_of(a);
+  if (!tree || tree != world.multibody_of(b)) return false;
+  const Multibody& multibody = world.multibody(*tree);
+  const auto link_of = [&](BodyId id) {
+    return static_cast<int>(std::find(multibody.links.begin(), multibody.links.end(), id) -
+                            multibody.links.begin());
+  };
+  const int i = link_of(a), j = link_of(b);
+  return multibody.tree.link(i).parent == j || multibody.tree.link(j).parent == i;
+}
+
 // The deepest overlaps of all pairs with a dynamic body, now.
 inline void measure_depths(const World& world, StabilityOutcome& outcome) {
   for (BodyId a = 0; a < world.body_count(); ++a)
     for (BodyId b = a + 1; b < world.body_count(); ++b) {
       if (!is_dynamic(world, a) && !is_dynamic(world, b)) continue;
+      if (joined(world, a, b)) continue;
       const Shape& shape_a = *world.body(a).shape;
       const Shape& shape_b = *world.body(b).shape;
       const double distance =
