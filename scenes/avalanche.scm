@@ -101,18 +101,19 @@
     (lerp ground snow (* (ramp 18 22 (+ (z-of p) (uniform -1 1 mountain-state)))
                          (ramp 0.45 0.65 level)))))
 
+(define ground-colors (map-in-order ground-color triangles))
+
 (define slab-depth 3)
-(define (add-slab! index triangle)
+(define (add-slab! index triangle color)
   (define down (vector 0 0 (* -1/2 slab-depth)))
   (define origin (snapped (v+ (middle-of triangle) down)))
-  (define color (ground-color triangle))
-  (when (zero? spacing)
-    (add-body! #:name (format #f "slab-~a" index) #:fixed? #t #:position origin #:color color
-               #:shape (convex (append-map (lambda (p)
-                                             (let ((top (v- p origin)))
-                                               (list top (v+ top down down))))
-                                           triangle)))))
-(for-each add-slab! (iota (length triangles)) triangles)
+  (add-body! #:name (format #f "slab-~a" index) #:fixed? #t #:position origin #:color color
+             #:shape (convex (append-map (lambda (p)
+                                           (let ((top (v- p origin)))
+                                             (list top (v+ top down down))))
+                                         triangle))))
+(when (zero? spacing)
+  (for-each add-slab! (iota (length triangles)) triangles ground-colors))
 
 ;; height above (x, y) of the triangle's plane, lifted by RADIUS along its normal
 (define (plane-height triangle x y radius)
@@ -120,27 +121,34 @@
     (+ (z-of p)
        (/ (- radius (* (x-of n) (- x (x-of p))) (* (y-of n) (- y (y-of p)))) (z-of n)))))
 
-;; height of the ground: of the triangle around (x, y), which lies to the left of all its sides
-(define (ground-height x y)
+;; number of the triangle around (x, y), which lies to the left of all its sides
+(define (triangle-around x y)
   (define (left-of? p q)
     (>= (* (- (x-of q) (x-of p)) (- y (y-of p))) (* (- (y-of q) (y-of p)) (- x (x-of p)))))
-  (plane-height (find (match-lambda
-                        ((a b c) (and (left-of? a b) (left-of? b c) (left-of? c a))))
-                      triangles)
-                x y 0))
+  (list-index (match-lambda
+                ((a b c) (and (left-of? a b) (left-of? b c) (left-of? c a))))
+              triangles))
+
+;; height and colour of the ground
+(define (ground-height x y)
+  (plane-height (list-ref triangles (triangle-around x y)) x y 0))
+(define (color-at x y) (list-ref ground-colors (triangle-around x y)))
 
 ;;; The same ground as one body: its heights over a rectangle, x from -32 to 32 m, y from -66 to 46 m.
 (unless (zero? spacing)
-  (let ((heights (make-typed-array 'f64 0 (1+ (inexact->exact (floor (/ 112 spacing))))
-                                   (1+ (inexact->exact (floor (/ 64 spacing)))))))
-    (array-index-map! heights (lambda (row column)
-                                (ground-height (- (* spacing column) 32) (- (* spacing row) 66))))
-    (match (array-dimensions heights)
-      ((rows columns)
-       (add-body! #:name "mountain" #:fixed? #t #:color #(0.56 0.53 0.42)
-                  #:shape (height-field heights #:spacing spacing)
-                  #:position (vector (- (* 1/2 spacing (1- columns)) 32)
-                                     (- (* 1/2 spacing (1- rows)) 66) 0))))))
+  (let* ((rows (1+ (inexact->exact (floor (/ 112 spacing)))))
+         (columns (1+ (inexact->exact (floor (/ 64 spacing)))))
+         (over-grid (lambda (at)
+                      (let ((grid (make-array #f rows columns)))
+                        (array-index-map! grid (lambda (row column)
+                                                 (at (- (* spacing column) 32)
+                                                     (- (* spacing row) 66))))
+                        grid))))
+    (add-body! #:name "mountain" #:fixed? #t #:color #(0.56 0.53 0.42)
+               #:shape (height-field (over-grid ground-height) #:spacing spacing
+                                     #:colors (over-grid color-at))
+               #:position (vector (- (* 1/2 spacing (1- columns)) 32)
+                                  (- (* 1/2 spacing (1- rows)) 66) 0))))
 
 ;; a height of its centre at which a ball above (x, y) clears all triangles near it
 (define (height-over x y radius)

@@ -103,7 +103,8 @@ behind both; until none is deeper than 1 %."
   (frame-part frame cadr))
 
 (define (frame-views frame)
-  "Return a list of views of all moving bodies in FRAME, which only look."
+  "Return a list of views of all moving bodies in FRAME, which only look: at all that views in callbacks show,
+at the frame's time."
   (frame-part frame caddr))
 
 ;; ---- squeezings ----

@@ -25,10 +25,12 @@
     (raise-error (string-append what " needs drawing, which was left out when timewarp was built; "
                                 "expected a build without --disable-render"))))
 
-;; SIZE as two values; (WIDTH HEIGHT), or #f for the default.
+;; SIZE as two values; (WIDTH HEIGHT), a vector of these, or #f for the default.
 (define (picture-size size)
   (match (or size (override 'size) '(1280 720))
-    (((? exact-integer? width) (? exact-integer? height)) (values width height))
+    ((or ((? exact-integer? width) (? exact-integer? height))
+         #((? exact-integer? width) (? exact-integer? height)))
+     (values width height))
     (other (bad-value "size" other "(WIDTH HEIGHT) in pixels"))))
 
 (define (picture-quality quality)

@@ -22,6 +22,7 @@
             caller-place
             place->string
             describe-error
+            error-places
             print-user-frames
             call-with-bounded-stack
             call-with-run-stack
@@ -42,7 +43,7 @@
   (let ((folder (own-directory)))
     (cons (string-append (dirname folder) "/timewarp.scm")
           (map (lambda (name) (string-append folder "/" name ".scm"))
-               '("errors" "worlds" "parameters" "near-names" "arity" "shapes" "bodies" "contact"
+               '("errors" "guarded-call" "worlds" "parameters" "near-names" "arity" "shapes" "bodies" "contact"
                  "queries" "sensors" "forces" "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
@@ -334,14 +335,17 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
     (('read-error . _) (text-place (plain-text key args)))
     (_ #f)))
 
-(define (describe-error key args)
-  "Return #(MESSAGE PLACE BACKTRACE) of an exception.  Called while the stack still stands."
-  (let* ((places (user-frames 12))
-         (backtrace (match (cons key args)
-                      (('timewarp-error _ _ _ (_ (and text (not "")))) text)
-                      (_ (if (and (pair? places) (pair? (cdr places)))
-                             (backtrace-text places)
-                             "")))))
+(define (error-places)
+  "Return what describe-error needs of the stack, while it still stands."
+  (user-frames 12))
+
+(define* (describe-error key args #:optional (places (error-places)))
+  "Return #(MESSAGE PLACE BACKTRACE) of an exception that was raised at PLACES."
+  (let ((backtrace (match (cons key args)
+                     (('timewarp-error _ _ _ (_ (and text (not "")))) text)
+                     (_ (if (and (pair? places) (pair? (cdr places)))
+                            (backtrace-text places)
+                            "")))))
     (vector (error-text key args)
             (or (own-place key args)
                 (and (pair? places) (caar places))
@@ -420,10 +424,9 @@ alone would go on until the memory is full.)"
     (() #t)
     (places (format port "~a~%" (backtrace-text places)))))
 
-;; what the C++ side calls to raise its errors, and to describe those of callbacks
-(%set-error-hooks!
+;; what the C++ side calls to raise its errors
+(%set-raise-hook!
  (lambda (message name value place backtrace)
    (if name
        (bad-value name value message)
-       (raise-error message place backtrace)))
- describe-error)
+       (raise-error message place backtrace))))

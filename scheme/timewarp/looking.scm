@@ -9,14 +9,23 @@
   #:use-module (srfi srfi-4)
   #:export (camera light sky))
 
+(define (elements-of value)
+  (cond ((vector? value) (vector->list value))
+        ((list? value) value)
+        ((f64vector? value) (f64vector->list value))
+        (else '())))
+
 (define (check-vector name value)
-  (let ((elements (cond ((vector? value) (vector->list value))
-                        ((list? value) value)
-                        ((f64vector? value) (f64vector->list value))
-                        (else '()))))
+  (let ((elements (elements-of value)))
     (unless (and (= (length elements) 3)
                  (and-map (lambda (x) (and (real? x) (not (nan? x)) (not (inf? x)))) elements))
       (bad-value name value "a vector #(x y z) of finite numbers"))))
+
+;; VALUE may be absent, but points somewhere.
+(define (check-direction name value)
+  (when value
+    (check-vector name value)
+    (when (and-map zero? (elements-of value)) (bad-value name value "a vector that is not zero"))))
 
 ;; Keeps the settings that are given (alist of names and values) and the vectors among them right.
 (define (keep! key vectors others)
@@ -52,6 +61,7 @@ what it leaves out is as at the start.
   (when turn
     (unless (and (real? turn) (not (nan? turn)) (not (inf? turn)))
       (bad-value "turn" turn "a rate in radians per second")))
+  (check-direction "up" up)
   (let ((follow-from (and follow (%followed-from (current-world) follow))))
     (keep! 'camera
            `((eye . ,eye) (target . ,target) (up . ,up))
@@ -62,6 +72,7 @@ what it leaves out is as at the start.
 
 #:direction  in which the light shines, of any length; #(-0.75 0.35 -1)
 #:color      #(r g b), sRGB, 0 to 1; #(1 0.97 0.91)"
+  (check-direction "direction" direction)
   (keep! 'light `((direction . ,direction) (color . ,color)) '()))
 
 (define-keyword-procedure (sky #:key zenith horizon ground fog grain)

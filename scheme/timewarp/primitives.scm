@@ -14,5 +14,4 @@
            (file (and here (string-append (dirname here) "/" extension-folder "/" name))))
       (if (and file (file-exists? (string-append file ".so"))) file name)))
 
-  (load-extension (extension-file) "tw_init_guile")
-  (export %interrupt!))
+  (load-extension (extension-file) "tw_init_guile"))

@@ -59,9 +59,10 @@ and observed.  Ctrl-C interrupts; the world stays usable.
     (run-world! world (or until (world-duration world)))))
 
 (define (run-for! seconds)
-  "Run the current world for SECONDS more."
+  "Run the current world for SECONDS more, 0 or a positive number."
   (%require-outside-callbacks "run-for!")
-  (unless (real? seconds) (bad-value "the duration" seconds "a number of seconds"))
+  (unless (and (real? seconds) (>= seconds 0))
+    (bad-value "the duration" seconds "a number of seconds that is not negative"))
   (run-world! (current-world) (+ (world-time) seconds)))
 
 (define (step!)

@@ -3,6 +3,7 @@
 (define-module (timewarp worlds)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
+  #:use-module (timewarp guarded-call)
   #:use-module (timewarp near-names)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)

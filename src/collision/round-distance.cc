@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "collision/round-distance.h"
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -36,6 +38,9 @@ constexpr double push = 1e-6;
 
 // what a plain axis must gain on the polytope's for its own witness points, relative to the size
 constexpr double lost_depth = 1e-9;
+
+// how far witness points may be outside before others are tried, relative to the size
+constexpr double on_surface = 1e-7;
 
 // special axes this near are tried, rad; where an axis may err
 constexpr double special = 1e-3, smooth_special = 0.05;
@@ -184,6 +189,43 @@ Vec3 touch_along(const SupportCore& a, const SupportCore& b, const Vec3& normal)
   return middle + normal.dot(on_a - middle) * normal;
 }
 
+// The signed height of a point over a core, m.
+double height_over(const SupportCore& core, const Vec3& point) {
+  const Vec3 local = core.place.to_local(point);
+  int face = 0;
+  if (core.polyhedron != nullptr) return core.polyhedron->face_separation(local, face);
+  if (core.kind == PartKind::ellipsoid) return nearest_on_ellipsoid(core.semi_axes, local).distance;
+  return nearest_on_frustum(core, local).distance + core.margin;
+}
+
+// From the axis given to the best one near by, and that if it is better than the result.
+void improve(const SupportCore& a, const SupportCore& b, const Vec3& start, RoundDistance& result) {
+  const SmoothAxis near = climb_smooth(a, b, start);
+  const Vec3 axis = refined(a, b, near.normal, near.distance);
+  const double distance = distance_along(a, b, axis);
+  if (distance < result.distance) return;
+  result.normal = axis;
+  result.distance = distance;
+}
+
+// Of several points of A the one that is least outside of both, with the one across it on B.  The
+// polytope's foot, and the middle of two farthest points, may be on neither where a tip or a thin
+// rim touches: the axis has other farthest points then.
+void choose_witness(const SupportCore& a, const SupportCore& b, std::initializer_list<Vec3> others,
+                    RoundDistance& result) {
+  const Vec3 across = result.distance * result.normal;
+  const auto outside = [&](const Vec3& point) {
+    return std::max(height_over(a, point), height_over(b, point + across));
+  };
+  double least = outside(result.point_a);
+  if (least <= on_surface * (a.size() + b.size())) return;
+  for (const Vec3& point : others)
+    if (const double there = outside(point); there < least) {
+      least = there;
+      result.point_a = point;
+    }
+}
+
 RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d) {
   const double size = a.size() + b.size();
   const Vec3 plain = best_plain_axis(a, b, d);
@@ -191,8 +233,9 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
   const auto is_cone = [](const SupportCore& core) {
     return core.kind == PartKind::frustum && narrows(core);
   };
-  const bool parted = !d.overlap && d.simplex.v.norm() > 0 && (is_cone(a) || is_cone(b));
-  const Vec3 parting_point = parted ? apart_at(d).point_a : Vec3::Zero();
+  const bool apart = !d.overlap && d.simplex.v.norm() > 0;
+  const bool parted = apart && (is_cone(a) || is_cone(b));
+  const Vec3 parting_point = apart ? apart_at(d).point_a : a.center();
   // Moved in a little, more where rounding asks for it; a little aside, out of planes of symmetry.
   // Where they touch to rounding GJK's direction is noise and may part them: towards the other's
   // centre whatever touches overlaps, if it is not moved aside and out, as along a wide floor.
@@ -211,10 +254,16 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
       d = descend(a, b, shift);
     }
   RoundDistance result;
+  const auto offer_witnesses = [&] {
+    const Vec3 n = result.normal;
+    choose_witness(a, b, {parting_point, a.support(n), b.support(-n) - result.distance * n},
+                   result);
+  };
   if (!d.overlap) {
     result.normal = plain;
     result.distance = distance_along(a, b, plain);
     result.point_a = touch_along(a, b, plain);
+    offer_witnesses();
     return result;
   }
   double tolerance = depth_accuracy * size;
@@ -228,6 +277,13 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
   result.normal = refined(a, b, found.normal, distance_along(a, b, found.normal));
   result.distance = distance_along(a, b, result.normal);
   result.point_a = found.on_a;
+  // where rounding ended the polytope before it was sure, on from its axis and from the plain one
+  if (found.uncertainty > 2 * tolerance) {
+    const double before = result.distance;
+    for (const Vec3& start : {found.normal, plain}) improve(a, b, start, result);
+    if (result.distance > before + lost_depth * size)
+      result.point_a = touch_along(a, b, result.normal);
+  }
   // any axis along which they overlap less is nearer to the truth; where they touch along a line or
   // end to end the polytope's errs by its accuracy, and nothing that slides there would be apart
   if (const double bound = distance_along(a, b, plain); bound > result.distance) {
@@ -236,6 +292,7 @@ RoundDistance overlapping(const SupportCore& a, const SupportCore& b, Descent d)
     result.normal = plain;
     result.distance = bound;
   }
+  offer_witnesses();
   return result;
 }
 
@@ -247,15 +304,6 @@ Vec3 witness_of_smooth(const SupportCore& a, const SupportCore& b, const Vec3& n
   return b.support(-normal) - distance * normal;
 }
 
-// The signed height of a point over a core, m.
-double height_over(const SupportCore& core, const Vec3& point) {
-  const Vec3 local = core.place.to_local(point);
-  int face = 0;
-  if (core.polyhedron != nullptr) return core.polyhedron->face_separation(local, face);
-  if (core.kind == PartKind::ellipsoid) return nearest_on_ellipsoid(core.semi_axes, local).distance;
-  return nearest_on_frustum(core, local).distance + core.margin;
-}
-
 // Whether the ellipsoid's farthest point and one of the other are no farther apart than the
 // separation along the normal.
 bool is_proved(const SupportCore& a, const SupportCore& b, const Vec3& normal, double distance) {
@@ -264,16 +312,6 @@ bool is_proved(const SupportCore& a, const SupportCore& b, const Vec3& normal, d
   if (a.kind == PartKind::ellipsoid)
     return height_over(b, a.support(normal) + distance * normal) <= allowed;
   return height_over(a, b.support(-normal) - distance * normal) <= allowed;
-}
-
-// From the axis given to the best one near by, and that if it is better than the result.
-void improve(const SupportCore& a, const SupportCore& b, const Vec3& start, RoundDistance& result) {
-  const SmoothAxis near = climb_smooth(a, b, start);
-  const Vec3 axis = refined(a, b, near.normal, near.distance);
-  const double distance = distance_along(a, b, axis);
-  if (distance < result.distance) return;
-  result.normal = axis;
-  result.distance = distance;
 }
 
 // With an ellipsoid.
@@ -289,8 +327,14 @@ RoundDistance smooth_distance(const SupportCore& a, const SupportCore& b) {
       improve(a, b, apart_at(d).normal, result);
     }
   } else {
-    result = overlapping(a, b, d);
-    improve(a, b, result.normal, result);
+    // a thin one in touch: what parts the two may be far from the axis that the polytope ends at
+    const Descent exact = d.overlap ? d : descend(a, b, Vec3::Zero());
+    if (!exact.overlap && exact.simplex.v.norm() > 0) improve(a, b, apart_at(exact).normal, result);
+    if (!is_proved(a, b, result.normal, result.distance)) {
+      RoundDistance deep = overlapping(a, b, d);
+      improve(a, b, deep.normal, deep);
+      if (!(result.distance > deep.distance)) result = deep;
+    }
   }
   result.point_a = witness_of_smooth(a, b, result.normal, result.distance);
   result.point_b = result.point_a + result.distance * result.normal;

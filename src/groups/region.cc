@@ -29,6 +29,20 @@ Vec3 force_on(BodyId body, const Group& owner, const ContactPair& pair, double w
   return sum;
 }
 
+// The same with its torque about the body's centre of mass, N m.
+Wrench load_on(const Body& body, const Vec3& centre, const Group& owner, const ContactPair& pair,
+               double when) {
+  Wrench sum;
+  each_contact(pair, [&](std::uint32_t c) {
+    const ContactForce f = owner.contact_at(c, when);
+    const double sign = owner.tags[c].other == body.id() ? 1 : -1;
+    const Vec3 force = sign * (f.normal_force * f.normal + f.friction);
+    sum.force += force;
+    sum.torque += (f.point - centre).cross(force) + sign * f.torque;
+  });
+  return sum;
+}
+
 // What `group` gives a body at its border and the body's own group does not know of, N s: Simpson's
 // rule over the steps.
 Vec3 missed_impulse(BodyId body, const Group& group, const ContactPair& pair, const Group& theirs) {
@@ -94,8 +108,22 @@ void complete(Region& region, const Before& before, bool whole) {
   });
 }
 
-bool wakes(const Regrouping& work, const Body& body, const Vec3& change) {
-  return change.norm() > answer::wake_share * (work.scene().gravity_scale() * body.mass);
+// The lever at which a torque counts as much as a force does, m: half the body's width, or the
+// length by which the pair resists rolling or spinning, for what balances such a torque is no more
+// than that times the weight.
+double lever_of(const Body& body, const Group& owner, const ContactPair& pair) {
+  double lever = 0.5 * body.least_width;
+  each_contact(pair, [&](std::uint32_t c) {
+    const ContactConstants& law = owner.arc->start().contacts[c].law;
+    if (const double length = std::max(law.rolling, law.spinning); length > 0)
+      lever = std::min(lever, length);
+  });
+  return lever;
+}
+
+bool wakes(const Regrouping& work, const Body& body, const Wrench& change, double lever) {
+  const double least = answer::wake_share * (work.scene().gravity_scale() * body.mass);
+  return change.force.norm() > least || change.torque.norm() > least * lever;
 }
 
 // Whether the body beyond a new group's border notices what it does at their contact.
@@ -105,8 +133,14 @@ bool notices(Regrouping& work, const Group& group, const ContactPair& pair, cons
   if (theirs.at_rest) {
     const double end = group.arc->reached();
     const ContactPair* known = theirs.find(pair.id);
-    const Vec3 before = known ? force_on(body.id(), theirs, *known, end) : Vec3(Vec3::Zero());
-    return wakes(work, body, force_on(body.id(), group, pair, end) - before);
+    const Vec3 centre = work.successor_of(body.process)->point.x;
+    Wrench change = load_on(body, centre, group, pair, end);
+    if (known) {
+      const Wrench before = load_on(body, centre, theirs, *known, end);
+      change.force -= before.force;
+      change.torque -= before.torque;
+    }
+    return wakes(work, body, change, lever_of(body, group, pair));
   }
   // the impulse only where the neighbour's motion could have changed it
   const double tolerance = answer::missed_share * group.arc->start().velocity_tolerance;
@@ -125,7 +159,9 @@ bool misses(const Regrouping& work, const PairBefore& old, const Body& body) {
                                      [&](const ContactPair& p) { return p.id == old.id; });
   const ContactPair* known = theirs->find(old.id);
   if (standing != work.pairs.end() || !known) return false;
-  return wakes(work, body, force_on(body.id(), *theirs, *known, work.now()));
+  const Vec3 centre = work.successor_of(body.process)->point.x;
+  return wakes(work, body, load_on(body, centre, *theirs, *known, work.now()),
+               lever_of(body, *theirs, *known));
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ void widen(Region& region, const Before& before, const std::vector<ProcessId>& m
 //
 // What moves notices an impulse that its arc does not know of, where that changes its velocity by
 // more than a share of what a step of the integrator may be wrong by; what rests a change of the
-// force on it by a share of its weight.  Changes are compared with the arc as it was made: small
-// ones add up.
+// force on it by a share of its weight, or of the torque by as much at a lever that counts.
+// Changes are compared with the arc as it was made: small ones add up.
 std::vector<ProcessId> who_notices(Regrouping& work);
 
 }  // namespace tw

@@ -141,10 +141,9 @@ void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def) {
       a, b, [&](SuccessorView& view_a, SuccessorView& view_b) { view_a.attach(view_b, def); });
 }
 
-bool attached(const Kernel& kernel, BodyId a, BodyId b) {
-  const Simulation& simulation = kernel.simulation;
+bool attached(const Simulation& simulation, BodyId a, BodyId b, double when) {
   const BodyId holder = simulation.body(a).dynamic() ? a : b;
-  return holds(state_at(simulation, holder, simulation.present.time)->forces, a, b);
+  return holds(state_at(simulation, holder, when)->forces, a, b);
 }
 
 void detach(Kernel& kernel, BodyId a, BodyId b) {

@@ -8,12 +8,14 @@
 namespace tw {
 
 class Kernel;
+struct Simulation;
 
 // As of World (world.h); edits at the present time.
 void add_spring(Kernel& kernel, const SpringDef& def);
 void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def);
 void detach(Kernel& kernel, BodyId a, BodyId b);
-bool attached(const Kernel& kernel, BodyId a, BodyId b);
+// `when`: the present, or the time of a frame that is due.
+bool attached(const Simulation& simulation, BodyId a, BodyId b, double when);
 
 // The hold between two successors as they are.
 //

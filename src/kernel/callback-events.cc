@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/callback-events.h"
 
-#include <vector>
-
 #include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/callback-book.h"
 #include "kernel/discontinuities.h"
 #include "kernel/group-events.h"
 #include "kernel/simulation.h"
-#include "kernel/state-view.h"
 
 namespace tw {
 
@@ -37,13 +34,12 @@ Progress CallbackEvents::process(std::uint32_t number) {
 
   // successors that carry the old arcs, and views of them
   const Before before = sim_.before(key);
-  std::vector<Successor> successors;
+  const Scratch::Use use(scratch_);
+  auto& [successors, views, pointers] = scratch_;
   successors.reserve(callback.def.targets.size());
   for (const BodyId id : callback.def.targets)
     successors.push_back(make_successor(before, sim_.process_of(id), false));
   share_joints(successors);
-  std::vector<SuccessorView> views;
-  std::vector<StateView*> pointers;
   views.reserve(successors.size());
   pointers.reserve(successors.size());
   for (Successor& successor : successors) {

@@ -8,9 +8,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "kernel/counters.h"
 #include "kernel/progress.h"
+#include "kernel/state-view.h"
 
 namespace tw {
 
@@ -28,11 +30,31 @@ class CallbackEvents {
   Progress process(std::uint32_t number);
 
  private:
+  // Memory of one call, kept for the next: no call is within another.
+  struct Scratch {
+    std::vector<Successor> successors;
+    std::vector<SuccessorView> views;
+    std::vector<StateView*> pointers;
+
+    struct Use {
+      explicit Use(Scratch& scratch) : of(scratch) {}
+      ~Use() {
+        of.pointers.clear();
+        of.views.clear();
+        of.successors.clear();
+      }
+      Use(const Use&) = delete;
+      Use& operator=(const Use&) = delete;
+      Scratch& of;
+    };
+  };
+
   Simulation& sim_;
   Counters& counters_;
   CallbackBook& book_;
   Discontinuities& discontinuities_;
   GroupEvents& groups_;
+  Scratch scratch_;
 };
 
 }  // namespace tw

@@ -125,11 +125,9 @@ std::optional<std::uint32_t> World::multibody_of(BodyId id) const {
   return multibody->number;
 }
 
-MultibodyState World::joints(std::uint32_t number) const {
-  const Simulation& simulation = kernel_->simulation;
-  const State* state =
-      state_at(simulation, multibody(number).links.front(), simulation.present.time);
-  return *joints_at(*state, simulation.present.time);
+MultibodyState World::joints(std::uint32_t number) const { return joints(number, time()); }
+MultibodyState World::joints(std::uint32_t number, double when) const {
+  return *joints_at(*state_at(kernel_->simulation, multibody(number).links.front(), when), when);
 }
 
 std::size_t World::body_count() const { return kernel_->simulation.scene.bodies.size(); }
@@ -159,7 +157,10 @@ void World::add_drag(BodyId id, double linear, double quadratic) {
 void World::add_spring(const SpringDef& def) { tw::add_spring(*kernel_, def); }
 void World::attach(BodyId a, BodyId b, const HoldDef& def) { tw::attach(*kernel_, a, b, def); }
 void World::detach(BodyId a, BodyId b) { tw::detach(*kernel_, a, b); }
-bool World::attached(BodyId a, BodyId b) const { return tw::attached(*kernel_, a, b); }
+bool World::attached(BodyId a, BodyId b) const { return attached(a, b, time()); }
+bool World::attached(BodyId a, BodyId b, double when) const {
+  return tw::attached(kernel_->simulation, a, b, when);
+}
 void World::add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure) {
   tw::add_force(*kernel_, id, std::move(procedure));
 }
@@ -199,21 +200,24 @@ BodyState World::state(BodyId id) const {
                     point_at(kernel_->simulation, id, kernel_->simulation.present.time));
 }
 
-double World::kinetic_energy(BodyId id) const {
-  return tw::kinetic_energy(*kernel_->simulation.scene.bodies[id],
-                            point_at(kernel_->simulation, id, kernel_->simulation.present.time));
+double World::kinetic_energy(BodyId id) const { return kinetic_energy(id, time()); }
+double World::kinetic_energy(BodyId id, double when) const {
+  const Simulation& simulation = kernel_->simulation;
+  return tw::kinetic_energy(*simulation.scene.bodies[id], point_at(simulation, id, when));
 }
 
-Vec3 World::applied_force(BodyId id) const {
-  return state_at(kernel_->simulation, id, kernel_->simulation.present.time)->force;
+Vec3 World::applied_force(BodyId id) const { return applied_force(id, time()); }
+const Vec3& World::applied_force(BodyId id, double when) const {
+  return state_at(kernel_->simulation, id, when)->force;
 }
-Vec3 World::applied_torque(BodyId id) const {
-  const ForcesPtr& forces =
-      state_at(kernel_->simulation, id, kernel_->simulation.present.time)->forces;
+Vec3 World::applied_torque(BodyId id) const { return applied_torque(id, time()); }
+Vec3 World::applied_torque(BodyId id, double when) const {
+  const ForcesPtr& forces = state_at(kernel_->simulation, id, when)->forces;
   return forces ? forces->torque() : Vec3(Vec3::Zero());
 }
-SlotsPtr World::slots(BodyId id) const {
-  return state_at(kernel_->simulation, id, kernel_->simulation.present.time)->slots;
+SlotsPtr World::slots(BodyId id) const { return slots(id, time()); }
+const SlotsPtr& World::slots(BodyId id, double when) const {
+  return state_at(kernel_->simulation, id, when)->slots;
 }
 
 void World::edit(BodyId id, const std::function<void(StateView&)>& change) {
@@ -255,11 +259,10 @@ Wrench World::pull(BodyId id, BodyId other, PullKind kind, double when) const {
   const Simulation& simulation = kernel_->simulation;
   return sense_pull(simulation.body(id), *state_at(simulation, id, when), other, kind, when);
 }
-Wrench World::joint_load(std::uint32_t multibody, int link) const {
+Wrench World::joint_load(std::uint32_t number, int link, double when) const {
   const Simulation& simulation = kernel_->simulation;
-  const BodyId first = simulation.scene.multibodies[multibody]->links.front();
-  const double now = simulation.present.time;
-  return sense_joint(simulation.body(first), *state_at(simulation, first, now), link, now);
+  const BodyId first = multibody(number).links.front();
+  return sense_joint(simulation.body(first), *state_at(simulation, first, when), link, when);
 }
 Vec3 World::total_momentum() const {
   return tw::total_momentum(kernel_->simulation, kernel_->simulation.present.time);

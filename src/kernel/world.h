@@ -130,10 +130,18 @@ class World {
   // ---- looking and changing between runs ----
   BodyState state(BodyId id) const;  // at time()
   double kinetic_energy(BodyId id) const;
-  MultibodyState joints(std::uint32_t multibody) const;  // at time()
+  MultibodyState joints(std::uint32_t multibody) const;
   Vec3 applied_force(BodyId id) const;
   Vec3 applied_torque(BodyId id) const;
   SlotsPtr slots(BodyId id) const;
+  // The same at `when`: time(), or the time of the frame that a sink is being handed, during the
+  // call.
+  double kinetic_energy(BodyId id, double when) const;
+  MultibodyState joints(std::uint32_t multibody, double when) const;
+  const Vec3& applied_force(BodyId id, double when) const;
+  Vec3 applied_torque(BodyId id, double when) const;
+  const SlotsPtr& slots(BodyId id, double when) const;
+  bool attached(BodyId a, BodyId b, double when) const;
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.
   void edit(BodyId id, const std::function<void(StateView&)>& change);
   // The committed present, to come back to; delivers first what an interrupt or an observer's error
@@ -142,16 +150,15 @@ class World {
   void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;
   double total_energy() const;  // kinetic, gravity, contact springs, J, at time()
-  // Contacts of all groups.  `when`: time(), or the time of the frame that a sink is being handed.
+  // Contacts of all groups.  `when` as above.
   ContactSurvey survey_contacts(double when) const;
   // What sensors on a body read, and its contacts: a dynamic one's as its own motion has them.
-  // `when` as above.
   SensedMotion sensed_motion(BodyId id, double when) const;
   std::vector<ContactReading> contacts_of(BodyId id, double when) const;
   // Of a body that is dynamic: what springs or the hold to another do to it.  Of the joint of a
-  // link: what passes through it, at time() (groups/sensing.h).
+  // link: what passes through it (groups/sensing.h).
   Wrench pull(BodyId id, BodyId other, PullKind kind, double when) const;
-  Wrench joint_load(std::uint32_t multibody, int link) const;
+  Wrench joint_load(std::uint32_t multibody, int link, double when) const;
   Vec3 total_momentum() const;  // linear, kg m/s, dynamic bodies, at time()
   // SHA-256, 64 hexadecimal digits, of the committed history and of every body's state at time().
   // Needs set_hash(true) before the first run.

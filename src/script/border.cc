@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 
 #include "base/cpu-clock.h"
@@ -20,9 +21,11 @@ namespace tw {
 
 namespace {
 
-// Scheme procedures that errors.scm installs
+// Scheme procedures that errors.scm and guarded-call.scm install
 SCM raise_hook = SCM_BOOL_F;     // (message name value place backtrace) -> never returns
-SCM describe_hook = SCM_BOOL_F;  // (key args) -> #(message place backtrace)
+SCM describe_hook = SCM_BOOL_F;  // (key args places) -> #(message place backtrace)
+SCM call_hook = SCM_BOOL_F;      // (procedure argument ...) -> what the procedure returns
+SCM escape_hook = SCM_BOOL_F;    // () -> never returns: raises what stands for an escape
 
 int call_depth = 0;
 // set only while our catch is in place: then an interrupt may throw
@@ -33,11 +36,6 @@ int ending_signal = 0;
 
 SCM key_interrupted() {
   static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-interrupted"));
-  return key;
-}
-
-SCM key_escape() {
-  static const SCM key = scm_gc_protect_object(scm_from_utf8_symbol("timewarp-escape"));
   return key;
 }
 
@@ -53,22 +51,42 @@ SCM key_escape() {
 }
 
 struct CallState : Live<LiveKind::border_call> {
+  CallState* outer = nullptr;
   SCM procedure;
   std::span<SCM> arguments;
   SCM result = SCM_UNDEFINED;
-  SCM description = SCM_BOOL_F;
+  SCM places = SCM_EOL, description = SCM_BOOL_F;
   SCM key = SCM_BOOL_F, key_arguments = SCM_EOL;
   bool finished = false;
   bool saw_exception = false;
-  bool interrupted = false;
+  bool interrupted = false;  // an interrupt was raised, which the procedure may have caught
 };
 
-// runs while something unwinds through us; an escape that is no exception becomes one, which
-// lands in our own catch
+CallState* innermost_call = nullptr;
+
+// Runs while something unwinds through us; an escape that is no exception becomes one, which lands
+// in our own catch, as does the interrupt that came just before guarded-call.scm looks for
+// exceptions, or after.
 void on_unwind(void* data) {
   auto* state = static_cast<CallState*>(data);
   interruptible = false;
-  if (!state->finished && !state->saw_exception) scm_throw(key_escape(), SCM_EOL);
+  if (state->finished || state->saw_exception) return;
+  if (state->interrupted) scm_throw(key_interrupted(), SCM_EOL);
+  scm_call_0(escape_hook);
+}
+
+// The procedure goes before its arguments.
+SCM call_by_hook(const CallState& state) {
+  constexpr std::size_t most = 8;
+  const std::size_t count = state.arguments.size();
+  if (count <= most) {
+    SCM all[1 + most] = {state.procedure};
+    std::copy_n(state.arguments.data(), count, all + 1);
+    return scm_call_n(call_hook, all, count + 1);
+  }
+  SCM list = SCM_EOL;
+  for (std::size_t i = count; i-- > 0;) list = scm_cons(state.arguments[i], list);
+  return scm_apply_1(call_hook, state.procedure, list);
 }
 
 SCM call_body(void* data) {
@@ -76,7 +94,7 @@ SCM call_body(void* data) {
   scm_dynwind_begin(static_cast<scm_t_dynwind_flags>(0));
   scm_dynwind_unwind_handler(on_unwind, data, static_cast<scm_t_wind_flags>(0));
   interruptible = true;
-  state->result = scm_call_n(state->procedure, state->arguments.data(), state->arguments.size());
+  state->result = call_by_hook(*state);
   interruptible = false;
   state->finished = true;
   scm_dynwind_end();
@@ -85,31 +103,34 @@ SCM call_body(void* data) {
 
 SCM describe_body(void* data) {
   auto* state = static_cast<CallState*>(data);
-  state->description = scm_call_2(describe_hook, state->key, state->key_arguments);
+  state->description = scm_call_3(describe_hook, state->key, state->key_arguments, state->places);
   return SCM_UNSPECIFIED;
 }
 
 SCM ignore_handler(void*, SCM, SCM) { return SCM_UNSPECIFIED; }
 
-// the stack still stands here: what the message needs of it is taken now
-SCM on_throw(void* data, SCM key, SCM arguments) {
-  auto* state = static_cast<CallState*>(data);
+// guarded-call.scm tells of an exception while the stack still stands: the places that the message
+// needs.
+SCM call_raised(SCM places) {
   interruptible = false;
-  state->saw_exception = true;
-  state->interrupted = scm_is_eq(key, key_interrupted());
-  if (state->interrupted || scm_is_false(describe_hook)) return SCM_UNSPECIFIED;
-  state->key = key;
-  state->key_arguments = arguments;
-  return scm_c_catch(SCM_BOOL_T, describe_body, data, ignore_handler, nullptr, nullptr, nullptr);
+  innermost_call->saw_exception = true;
+  innermost_call->places = places;
+  return SCM_UNSPECIFIED;
 }
 
-SCM on_caught(void* data, SCM key, SCM) {
-  static_cast<CallState*>(data)->key = key;
+// the stack is unwound: the message is made
+SCM on_caught(void* data, SCM key, SCM arguments) {
+  auto* state = static_cast<CallState*>(data);
+  interruptible = false;
+  state->key = key;
+  state->key_arguments = arguments;
+  if (!scm_is_eq(key, key_interrupted()))
+    scm_c_catch(SCM_BOOL_T, describe_body, data, ignore_handler, nullptr, nullptr, nullptr);
   return SCM_UNSPECIFIED;
 }
 
 void* call_caught(void* data) {
-  scm_c_catch(SCM_BOOL_T, call_body, data, on_caught, data, on_throw, data);
+  scm_c_catch(SCM_BOOL_T, call_body, data, on_caught, data, nullptr, nullptr);
   return data;
 }
 
@@ -173,13 +194,16 @@ SCM call_scheme(SCM procedure, std::span<SCM> arguments) {
   CallState state;
   state.procedure = procedure;
   state.arguments = arguments;
+  state.outer = innermost_call;
+  innermost_call = &state;
   ++call_depth;
   const bool outer_interruptible = interruptible;
   call_barrier<scm_thread>(state);
   interruptible = outer_interruptible;
   --call_depth;
+  innermost_call = state.outer;
   if (state.finished) return state.result;
-  if (state.interrupted) throw Interrupted();
+  if (scm_is_eq(state.key, key_interrupted())) throw Interrupted();
   throw_described(state);
 }
 
@@ -237,9 +261,16 @@ void raise_pending(const PendingError& error) {
 
 TW_PRIMITIVES(define_border)
 
-TW_PRIMITIVE(set_error_hooks, "%set-error-hooks!", (SCM raise, SCM describe),
-             "Install the procedures that raise and describe errors.") {
+TW_PRIMITIVE(set_raise_hook, "%set-raise-hook!", (SCM raise),
+             "Install the procedure that raises errors.") {
   raise_hook = scm_gc_protect_object(raise);
+  return SCM_UNSPECIFIED;
+}
+
+TW_PRIMITIVE(set_call_hooks, "%set-call-hooks!", (SCM call, SCM escape, SCM describe),
+             "Install the procedures that call the user's, stop escapes and describe errors.") {
+  call_hook = scm_gc_protect_object(call);
+  escape_hook = scm_gc_protect_object(escape);
   describe_hook = scm_gc_protect_object(describe);
   return SCM_UNSPECIFIED;
 }
@@ -249,6 +280,7 @@ TW_PRIMITIVE(set_error_hooks, "%set-error-hooks!", (SCM raise, SCM describe),
 static SCM interrupt(SCM signal) {
   const int number = scm_to_int(signal);
   if (number != SIGINT) ending_signal = number;
+  if (call_depth > 0 && interruptible) innermost_call->interrupted = true;
   if (call_depth == 0 || interruptible) throw_interrupted();
   interrupt_requested = true;
   return SCM_UNSPECIFIED;
@@ -298,8 +330,13 @@ TW_PRIMITIVE(count_guile_calls, "%guile-calls", (),
   return scm_from_int64(guile_calls);
 }
 
-void define_interrupt() {
-  scm_c_define_gsubr("%interrupt!", 1, 0, 0, reinterpret_cast<scm_t_subr>(interrupt));
+void define_exits() {
+  const auto define = [](const char* name, SCM (*function)(SCM)) {
+    scm_c_define_gsubr(name, 1, 0, 0, reinterpret_cast<scm_t_subr>(function));
+    scm_c_export(name, nullptr);
+  };
+  define("%interrupt!", interrupt);
+  define("%call-raised!", call_raised);
 }
 
 }  // namespace tw

@@ -3,8 +3,9 @@
 // Guile leaves a procedure by longjmp (errors, escapes, aborts to prompts), which skips C++
 // destructors; C++ leaves by exceptions, which Guile does not know.  So nothing crosses directly:
 //
-//   call_scheme   C++ -> Scheme.  Inside a continuation barrier and a catch; every way out that is
-//                 not a return becomes a C++ exception, raised when no Guile frame is left.
+//   call_scheme   C++ -> Scheme.  Inside a continuation barrier and a catch (guarded-call.scm);
+//                 every way out that is not a return becomes a C++ exception, raised when no Guile
+//                 frame is left.
 //   guard         Scheme -> C++.  A C++ exception is copied to Scheme values, all C++ objects are
 //                 destroyed, and only then the Scheme condition `timewarp-error` is raised.
 //

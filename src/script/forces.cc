@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/definitions.h"
 #include "script/border.h"
-#include "script/frame-view.h"
+#include "script/looking-view.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -27,6 +27,26 @@ Vec3 point_or_origin(SCM value, const char* name) {
   return scm_is_false(value) ? Vec3(Vec3::Zero()) : to_vec3(value, name);
 }
 
+// What a force's procedure is handed: where the body would be, and no more.
+class PlaceView final : public LookingView {
+ public:
+  explicit PlaceView(const BodyPose& pose) : LookingView(pose, "a force's procedure") {}
+  double kinetic_energy() const override { refuse("its energy is not"); }
+  const Vec3& applied_force() const override { refuse("its applied force is not"); }
+  Vec3 applied_torque() const override { refuse("its applied torque is not"); }
+  const SlotsPtr& slots() const override { refuse("its slots are not"); }
+  SensedMotion sensed_motion() const override { refuse("what sensors read is not"); }
+  std::vector<ContactReading> contacts() const override { refuse("its contacts are not"); }
+  Wrench pull(BodyId, PullKind) const override { refuse("what pulls at it is not"); }
+  bool attached(const StateView&) const override { refuse("what holds it is not"); }
+
+ private:
+  [[noreturn]] static void refuse(const char* what) {
+    throw UserError(std::string("what a force is handed holds a pose and velocities only: ") +
+                    what + " in it; expected position, orientation, velocity or angular-velocity");
+  }
+};
+
 class ScmForce final : public ForceProcedure, Live<LiveKind::callback> {
  public:
   ScmForce(WorldBox& box, BodyId body, SCM procedure, Place place, std::uint64_t number)
@@ -36,15 +56,16 @@ class ScmForce final : public ForceProcedure, Live<LiveKind::callback> {
 
   Wrench force(double time, const BodyState& body) override {
     const BodyPose pose{body_, body};
-    FrameView view(pose, "what a force is handed", "a force's procedure");
+    PlaceView view(pose);
     SCM arguments[] = {scm_from_double(time), make_view(view, box_.handle)};
     const Kill kill{arguments[1]};
-    const std::string where =
-        "the force on " + box_.world.body(body_).name + " at " + show(time) + " s";
+    const auto where = [&] {
+      return "the force on " + box_.world.body(body_).name + " at " + show(time) + " s";
+    };
     try {
       return read(call_scheme(procedure_, arguments), where);
     } catch (const SchemeError& error) {
-      throw SchemeError(std::string(error.what()) + "\n  in " + where,
+      throw SchemeError(std::string(error.what()) + "\n  in " + where(),
                         error.place().known() ? error.place() : place_, error.backtrace());
     }
   }
@@ -55,17 +76,19 @@ class ScmForce final : public ForceProcedure, Live<LiveKind::callback> {
     ~Kill() { kill_view(view); }
   };
 
-  Wrench read(SCM result, const std::string& where) const {
+  // `where` tells which force it is, for messages.
+  template <class Where>
+  Wrench read(SCM result, Where where) const {
     Wrench wrench;
     const bool pair = scm_c_nvalues(result) == 2;
     TW_REQUIRE(pair || scm_c_nvalues(result) == 1,
-               where + " returned " + std::to_string(scm_c_nvalues(result)) +
+               where() + " returned " + std::to_string(scm_c_nvalues(result)) +
                    " values; expected a force #(x y z), or two values, force and torque");
     try {
       wrench.force = to_vec3(pair ? scm_c_value_ref(result, 0) : result, "force");
       if (pair) wrench.torque = to_vec3(scm_c_value_ref(result, 1), "torque");
     } catch (const BadValue& bad) {
-      throw UserError(where + " returned a wrong " + bad.name + "; expected #(x y z), finite",
+      throw UserError(where() + " returned a wrong " + bad.name + "; expected #(x y z), finite",
                       place_);
     }
     return wrench;

@@ -1,60 +1,50 @@
-// A view that looks, and refuses to change: of one body in a committed frame, or of one for which a
-// procedure tells a force.
+// The view of one body that an observer of frames is handed: it reads the world at the frame's
+// time.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "kernel/world.h"
+#include "script/looking-view.h"
 
 namespace tw {
 
-class FrameView : public StateView {
+class FrameView : public LookingView {
  public:
-  // `holder` and `caller`: "a frame", "an observer".
-  // Of a frame of the world.
   FrameView(const BodyPose& pose, const World& world, double frame_time)
-      : pose_(&pose), world_(&world), time_(frame_time) {}
-  FrameView(const BodyPose& pose, const char* holder, const char* caller)
-      : pose_(&pose), holder_(holder), caller_(caller) {}
-  BodyId body() const override { return pose_->body; }
-  const BodyState& state() const override { return pose_->state; }
-  double kinetic_energy() const override { refuse("its energy is not"); }
-  const Vec3& applied_force() const override { refuse("its applied force is not"); }
-  Vec3 applied_torque() const override { refuse("its applied torque is not"); }
-  const SlotsPtr& slots() const override { refuse("its slots are not"); }
-  SensedMotion sensed_motion() const override {
-    if (!world_) refuse("what sensors read is not");
-    return world_->sensed_motion(pose_->body, time_);
-  }
+      : LookingView(pose, "an observer"), world_(&world), time_(frame_time) {}
+  double kinetic_energy() const override { return world_->kinetic_energy(body(), time_); }
+  const Vec3& applied_force() const override { return world_->applied_force(body(), time_); }
+  Vec3 applied_torque() const override { return world_->applied_torque(body(), time_); }
+  const SlotsPtr& slots() const override { return world_->slots(body(), time_); }
+  SensedMotion sensed_motion() const override { return world_->sensed_motion(body(), time_); }
   std::vector<ContactReading> contacts() const override {
-    if (!world_) refuse("its contacts are not");
-    return world_->contacts_of(pose_->body, time_);
+    return world_->contacts_of(body(), time_);
   }
   Wrench pull(BodyId other, PullKind kind) const override {
-    if (!world_) refuse("what pulls at it is not");
-    return world_->pull(pose_->body, other, kind, time_);
+    return world_->pull(body(), other, kind, time_);
   }
-  void set_velocity(const Vec3&) override { refuse_change(); }
-  void set_angular_velocity(const Vec3&) override { refuse_change(); }
-  void set_applied_force(const Vec3&) override { refuse_change(); }
-  void set_applied_torque(const Vec3&) override { refuse_change(); }
-  void add_force(ForceLawPtr) override { refuse_change(); }
-  void set_slots(SlotsPtr) override { refuse_change(); }
-  void set_pose(const Vec3&, const Quat&) override { refuse_change(); }
-  double draw_random() override { refuse_change(); }
+  Wrench joint_load(int link) const override {
+    return world_->joint_load(multibody()->number, link, time_);
+  }
+  const Multibody* multibody() const override {
+    const std::optional<std::uint32_t> number = world_->multibody_of(body());
+    return number ? &world_->multibody(*number) : nullptr;
+  }
+  const MultibodyState* joints() const override {
+    if (!joints_ && multibody()) joints_ = world_->joints(multibody()->number, time_);
+    return joints_ ? &*joints_ : nullptr;
+  }
+  double joints_time() const override { return time_; }
+  bool attached(const StateView& other) const override {
+    return world_->attached(body(), other.body(), time_);
+  }
 
  private:
-  [[noreturn]] void refuse(const char* what) const {
-    throw UserError(std::string(holder_) + " holds poses and velocities only: " + what +
-                    " in it; expected position, orientation, velocity or angular-velocity");
-  }
-  [[noreturn]] void refuse_change() const {
-    throw UserError(std::string("a body was changed in ") + caller_ +
-                    "; expected it to look only, and callbacks to change");
-  }
-  const BodyPose* pose_;
-  const World* world_ = nullptr;
-  double time_ = 0;
-  const char *holder_ = "a frame", *caller_ = "an observer";
+  const World* world_;
+  double time_;
+  mutable std::optional<MultibodyState> joints_;  // once asked for
 };
 
 }  // namespace tw

@@ -11,7 +11,7 @@ namespace tw {
 
 void define_border();
 void define_compiled_code();
-void define_interrupt();
+void define_exits();
 void define_shapes();
 void define_bodies();
 void define_states();
@@ -40,7 +40,7 @@ extern "C" void tw_init_guile() {
   tw::define_types();
   tw::define_border();
   tw::define_compiled_code();
-  tw::define_interrupt();
+  tw::define_exits();
   tw::define_shapes();
   tw::define_bodies();
   tw::define_states();

@@ -28,7 +28,7 @@ Wrench read_joint_load(SCM object, SCM name, const char* what) {
   const int link = to_link(of.multibody, name);
   if (is_view(object)) return to_view(object).joint_load(link);
   require_outside_callbacks(what);
-  return of.world.joint_load(of.multibody.number, link);
+  return of.world.joint_load(of.multibody.number, link, of.world.time());
 }
 
 // One of the two, and its number.

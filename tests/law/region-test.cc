@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "kernel/world.h"
+#include "support/counter.h"
+#include "support/schedule.h"
 
 namespace tw::test {
 namespace {
@@ -62,6 +63,77 @@ TEST(Region, the_momentum_of_a_row_is_kept_at_any_accuracy) {
     world.advance(1);
     EXPECT_NEAR(world.total_momentum().x(), 1, 1e-3) << accuracy;
   }
+}
+
+// A tower on smooth ground, a disc on it, and on the disc a ball.  All rest; then the ball is spun
+// about the vertical, and spinning friction between the two turns the disc, by no force.  What they
+// have of angular momentum stays: I w = (I + I') w' when they turn as one.
+TEST(Region, what_rests_wakes_where_the_torque_on_it_changes) {
+  constexpr int height = 10;
+  constexpr double edge = 0.2;
+  const Vec3 spin(0, 0, 5);
+  World world;
+  ContactSettings smooth;
+  smooth.restitution = 0;
+  smooth.friction = 0;
+  world.set_contact({}, {}, smooth);
+  add_wall(world, Vec3::UnitZ(), 0);
+  for (int i = 0; i < height; ++i)
+    world.add_body(body_of(make_box({edge, edge, edge}), {0, 0, (i + 0.5) * edge}, Vec3::Zero()));
+  BodyDef def = body_of(make_cylinder(0.1, 0.05), {0, 0, height * edge + 0.025}, Vec3::Zero());
+  const BodyId disc = world.add_body(def);
+  def = body_of(make_sphere(0.05), {0, 0, height * edge + 0.1}, Vec3::Zero());
+  def.mass = world.body(disc).mass;
+  const BodyId ball = world.add_body(def);
+  ContactSettings spinning;
+  spinning.spinning_friction = 5e-3;
+  using Side = ContactSide;
+  world.set_contact(Side{Side::Kind::body, "", disc}, Side{Side::Kind::body, "", ball}, spinning);
+  add_callback(world, {ball}, 2, std::nullopt, [spin](double, std::span<StateView* const> targets) {
+    targets[0]->set_angular_velocity(spin);
+    return std::optional<double>();
+  });
+  world.advance(1.9);
+  EXPECT_EQ(world.survey_contacts(1.9).bodies_at_rest, static_cast<std::size_t>(height + 2));
+  world.advance(2.1);
+  EXPECT_EQ(world.survey_contacts(2.1).bodies_at_rest, static_cast<std::size_t>(height))
+      << "the tower was woken, too, or the disc was not";
+  world.advance(4);
+  const double of_ball = 0.4 * 0.05 * 0.05, of_disc = 0.5 * 0.1 * 0.1;
+  const double together = of_ball / (of_ball + of_disc) * spin.z();
+  EXPECT_NEAR(world.state(disc).angular_velocity.z(), together, 1e-3 * together);
+  EXPECT_NEAR(world.state(ball).angular_velocity.z(), together, 1e-3 * together);
+}
+
+// A plank lies on a tower, a ball on its middle.  All rest; then the ball rolls along the plank,
+// which feels the same force all the time, but tips when the ball, as heavy, is as far beyond the
+// tower's edge as the plank's middle is before it.
+TEST(Region, what_rests_wakes_where_a_force_on_it_moves) {
+  constexpr int height = 10;
+  const double edge = 0.2, speed = 0.5;
+  World world;
+  set_contact_for_all(world, 0, 0.5);
+  add_wall(world, Vec3::UnitZ(), 0);
+  for (int i = 0; i < height; ++i)
+    world.add_body(body_of(make_box({edge, edge, edge}), {0, 0, (i + 0.5) * edge}, Vec3::Zero()));
+  BodyDef def = body_of(make_box({2, edge, 0.05}), {0, 0, height * edge + 0.025}, Vec3::Zero());
+  const BodyId plank = world.add_body(def);
+  def = body_of(make_sphere(0.05), {0, 0, height * edge + 0.1}, Vec3::Zero());
+  def.mass = world.body(plank).mass;
+  const BodyId ball = world.add_body(def);
+  add_callback(world, {ball}, 2, std::nullopt,
+               [speed](double, std::span<StateView* const> targets) {
+                 targets[0]->set_velocity({speed, 0, 0});
+                 targets[0]->set_angular_velocity({0, speed / 0.05, 0});
+                 return std::optional<double>();
+               });
+  world.advance(1.9);
+  EXPECT_EQ(world.survey_contacts(1.9).bodies_at_rest, static_cast<std::size_t>(height + 2));
+  const double balanced = 2 + 0.2 / speed;
+  world.advance(balanced - 0.02);
+  EXPECT_LT(2 * world.state(plank).orientation.vec().norm(), 5e-3) << "it tips too early";
+  world.advance(balanced + 0.5);
+  EXPECT_GT(2 * world.state(plank).orientation.vec().norm(), 0.1) << "it rests on nothing";
 }
 
 }  // namespace

@@ -31,6 +31,10 @@
   (test-message "whom to follow" "follow is \"ball\"; expected a body" (camera #:follow "ball"))
   (test-message "turning" "turn is \"left\"; expected a rate" (camera #:turn "left"))
   (test-message "light" "direction is .*; expected a vector" (light #:direction #(0 1)))
+  (test-message "light from nowhere" "direction is .*; expected a vector that is not zero"
+    (light #:direction #(0 0 0)))
+  (test-message "a camera that has no up" "up is .*; expected a vector that is not zero"
+    (camera #:up '(0 0 0)))
   (test-message "grain" "grain is 2; expected a number from 0 to 1" (sky #:grain 2))
   (test-message "sky" "unknown keyword #:colour; expected one of #:zenith" (sky #:colour #(1 1 1))))
 

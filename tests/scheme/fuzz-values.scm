@@ -55,7 +55,12 @@
 (define-syntax-rule (doing (call ...) result)
   (let ((bodies (list (lambda () call) ...)))
     (lambda arguments
-      (for-each keep! arguments)
+      ;; a frame is a list with its views in a list
+      (for-each (lambda (argument)
+                  (if (list? argument)
+                      (for-each keep! (append-map (lambda (part) (if (list? part) part '())) argument))
+                      (keep! argument)))
+                arguments)
       (for-each (lambda (body) (keep! (body))) bodies)
       result)))
 
@@ -197,7 +202,7 @@
     ((contact) `(a-kept 'contact ,(draw 20)))
     ((checkpoint) `(a-kept 'struct ,(draw 20)))
     ((procedure) (a-procedure depth))
-    ((kind) (one-of '('collision 'fusion 'fission 'frame)))
+    ((kind) (one-of '('collision 'fusion 'fission 'frame 'frame 'squeezed)))
     ((density mass) (if (chance 0.7) (short (uniform 1 2000)) (one-of numbers)))
     ((inertia) (one-of '(#(1 1 1) #(1 2 3) #(1 1 3) #(1e-300 1e-300 1e-300) #(1e300 1e300 1e300))))
     ((fixed? smooth? visible? contacts?) (one-of '(#t #f)))

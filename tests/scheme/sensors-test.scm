@@ -289,6 +289,43 @@
     (close? (vector 0 0 (+ (* 2 g) (* 2 w w))) (joint-force swings "bob") 1e-4)))
 (test-assert "the other one still hangs" (close? (vector 0 0 (* 2 g)) (joint-force still "bob") 1e-6))
 
+;; observers of frames read the same, at the frame's time
+(reset!)
+(scene #:fps 20)
+(define watched (bob-on-a-string "watched" 0))
+(set! (joint-position watched "bob") (/ (acos -1) 2))
+(define in-frames '())
+(add-callback! (link-body watched "bob")
+  (lambda (time bob) (set! (slot bob 'pull) time))
+  #:period 1/5)
+(observe! 'frame
+  (lambda (frame)
+    (match (frame-views frame)
+      ((bob)
+       (set! in-frames
+             (cons (list (frame-time frame) (joint-position bob "bob") (joint-velocity bob "bob")
+                         (joint-force bob "bob") (joint-moment bob "bob") (kinetic-energy bob)
+                         (slot bob 'pull) (jacobian bob "bob"))
+                   in-frames))))))
+(run! #:until 0.5)
+(test-equal "a frame every 1/20 s" 11 (length in-frames))
+(for-each
+ (match-lambda
+   ((time q w force moment energy told jacobian)
+    (let ((a (/ (* -1 g (sin q)) I/m))
+          (inwards (vector (sin q) 0 (cos q))) (along (vector (- (cos q)) 0 (sin q))))
+      (test-assert (format #f "frame at ~a s: what its joint carries" time)
+        (close? (v* 2 (v+ (v* (+ (* g (cos q)) (* w w)) inwards) (v* (+ a (* g (sin q))) along)))
+                force 1e-7))
+      (test-assert "its bearing lets it turn" (close? #(0 0 0) moment 1e-7))
+      (test-assert "its energy is what it fell" (close? (* 2 g (cos q)) energy 1e-5))
+      (test-assert "its slot is that of the last call" (close? (/ (floor (* 5 (+ time 1e-9))) 5) told 1e-9))
+      (test-assert "its Jacobian is the joint's axis"
+        (close? 1 (array-ref jacobian 4 0) 1e-12)))))
+ in-frames)
+(test-assert "in the last frame as at the prompt"
+  (close? (joint-force watched "bob") (list-ref (first in-frames) 3) 1e-12))
+
 ;; an arm held level by a servo, a crate welded on; a piston; loads come through
 (reset!)
 (define arm

@@ -67,4 +67,10 @@
 (refused-inside "simulate!" (simulate! #:until 1 #:events "/proc/none"))
 (refused-inside "make-world" (make-world))
 
+(in-world ()
+  (test-message "time does not go back" "the duration is -1; expected .* not negative" (run-for! -1))
+  (test-message "nor is it no number" "the duration is \\+nan.0; expected" (run-for! +nan.0))
+  (run-for! 0)
+  (test-equal "no time" 0.0 (world-time)))
+
 (test-end "worlds")

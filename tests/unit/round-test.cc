@@ -307,6 +307,43 @@ TEST(Round, depth_is_the_least_of_many_axes_and_that_of_its_own) {
   EXPECT_GT(overlaps, 700);
 }
 
+// Thin discs, cones and ellipsoids, tips and rims, moved into exact touch with each other and with
+// boxes: the witness points are on both.  Some were half the size away.
+TEST(Round, witnesses_of_thin_ones_in_touch_are_on_both) {
+  Random random(16);
+  const auto thin_one = [&]() -> ShapePtr {
+    const double thin = std::pow(10, -uniform(random, 0, 3));
+    const bool flat = random() % 2 == 0;
+    const double radius = 0.5 * (flat ? 1 : thin), length = flat ? thin : 1;
+    switch (random() % 4) {
+      case 0: return make_box({2 * radius, 1.4 * radius, length});
+      case 1: return make_cylinder(radius, length);
+      case 2: return make_cone(radius, length);
+      default: return make_ellipsoid({radius, 0.7 * radius, 0.5 * length});
+    }
+  };
+  for (int i = 0; i < 4000; ++i) {
+    const ShapePtr a = thin_one(), b = thin_one();
+    if (a->parts()[0].core && b->parts()[0].core) continue;
+    const bool square = i % 2 == 0;
+    const Frame frame_a = square ? Frame() : random_frame(random, 1);
+    Frame frame_b = frame_a;
+    if (square)
+      frame_b.R =
+          rotation_by(0.5 * pi * Vec3::Unit(static_cast<int>(random() % 3))).toRotationMatrix();
+    else
+      frame_b.R = random_rotation(random).toRotationMatrix();
+    frame_b.p +=
+        2 * (square ? Vec3::Unit(static_cast<int>(random() % 3)) : random_direction(random));
+    const Separation far = parts(a, frame_a, b, frame_b);
+    frame_b.p -= far.distance * far.normal;
+    const Separation near = parts(a, frame_a, b, frame_b);
+    EXPECT_LT(std::abs(near.distance), 2e-8) << i;
+    EXPECT_LT(outside(a, frame_a, near.point_a), 1e-6) << i;
+    EXPECT_LT(outside(b, frame_b, near.point_b), 1e-6) << i;
+  }
+}
+
 TEST(Cylinder, normals_of_faces_caps_and_sides_are_exact) {
   Random random(4);
   const ShapePtr box = make_box({2, 2, 1});
