@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "base/constants.h"
+#include "base/never.h"
+#include "collision/support-core.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -13,9 +15,9 @@ namespace {
 bool is_parallel(const Vec3& a, const Vec3& b) { return a.dot(b) > seam::same_normal; }
 
 // Whether a face of the part lies in the plane.
-bool has_face_in(const StandingPlane& plane, const ConvexPart& part, const Frame& frame,
-                 double size) {
-  const Frame world = frame * part.placement;
+bool has_face_in(const StandingPlane& plane, const PlacedPart& ground, double size) {
+  const ConvexPart& part = ground.part;
+  const Frame world = ground.frame * part.placement;
   const Vec3 normal = world.R.transpose() * plane.normal;
   const double height = plane.height - plane.normal.dot(world.p);
   const auto& faces = part.core->faces();
@@ -24,7 +26,23 @@ bool has_face_in(const StandingPlane& plane, const ConvexPart& part, const Frame
   });
 }
 
+// The least of direction.x over the part, m.
+double lowest_along(const Vec3& direction, const PlacedPart& p) {
+  if (p.part.kind == PartKind::half_space) return -never;
+  const Frame world = p.frame * p.part.placement;
+  if (p.part.kind == PartKind::sphere) return direction.dot(world.p) - p.part.radius;
+  const SupportCore core(p.part, world);
+  return direction.dot(core.support(-direction)) - core.margin;
+}
+
 }  // namespace
+
+const ConvexPart& first_part(const Body& a, const Body& b, int pair) {
+  return a.shape_P->part(static_cast<std::size_t>(pair) / b.shape_P->part_count());
+}
+const ConvexPart& second_part(const Body& b, int pair) {
+  return b.shape_P->part(static_cast<std::size_t>(pair) % b.shape_P->part_count());
+}
 
 std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& group,
                                            const Body& member, double when) {
@@ -54,14 +72,17 @@ std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& grou
   return planes;
 }
 
-bool is_below_flush_face(const std::vector<StandingPlane>& planes, const ConvexPart& part,
-                         const Frame& frame, const Vec3& point, const Vec3& outward, double size) {
-  if (part.kind != PartKind::polyhedron) return false;
+bool is_below_flush_face(const std::vector<StandingPlane>& planes, const PlacedPart& ground,
+                         const PlacedPart& standing, const Vec3& point, const Vec3& outward,
+                         double size) {
+  if (ground.part.kind != PartKind::polyhedron) return false;
   return std::any_of(planes.begin(), planes.end(), [&](const StandingPlane& plane) {
     const double below = plane.height - plane.normal.dot(point);
     const double cosine = plane.normal.dot(outward);
     return std::abs(below) < seam::low * size && cosine < seam::sideways &&
-           cosine > -seam::along_edge && has_face_in(plane, part, frame, size);
+           cosine > -seam::along_edge &&
+           lowest_along(plane.normal, standing) > plane.height - seam::low * size &&
+           has_face_in(plane, ground, size);
   });
 }
 
@@ -69,14 +90,13 @@ bool drop_low_sides(const std::vector<StandingPlane>& planes, const Body& a, con
                     const Body& b, const Frame& frame_b, std::vector<ManifoldPoint>& points) {
   if (planes.empty()) return false;
   const bool ground_is_a = !a.dynamic();
-  const Body &ground = ground_is_a ? a : b, &mover = ground_is_a ? b : a;
-  const auto parts_b = static_cast<int>(b.shape_P->part_count());
   const auto is_low = [&](const ManifoldPoint& p) {
-    const int number = ground_is_a ? p.pair / parts_b : p.pair % parts_b;
-    return is_below_flush_face(planes, ground.shape_P->part(static_cast<std::size_t>(number)),
-                               ground_is_a ? frame_a : frame_b, p.core_point - p.radius * p.normal,
+    const PlacedPart part_a{first_part(a, b, p.pair), frame_a},
+        part_b{second_part(b, p.pair), frame_b};
+    return is_below_flush_face(planes, ground_is_a ? part_a : part_b, ground_is_a ? part_b : part_a,
+                               p.core_point - p.radius * p.normal,
                                p.reference_is_a == ground_is_a ? p.normal : Vec3(-p.normal),
-                               mover.least_width);
+                               (ground_is_a ? b : a).least_width);
   };
   return std::erase_if(points, is_low) > 0;
 }

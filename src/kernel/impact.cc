@@ -96,14 +96,15 @@ bool drop_low_sides(const Scene& scene, const Key& key, const Successor& a, cons
   const std::vector<StandingPlane> planes =
       standing_planes(scene, group, *mover.body, group.contact_time(key.time));
   if (planes.empty()) return false;
-  const Shape& shape = *ground.body->shape_P;
-  const Frame frame(ground.point.q.toRotationMatrix(), ground.point.x);
-  const auto parts_b = static_cast<int>(b.body->shape_P->part_count());
+  const Frame frame_a(a.point.q.toRotationMatrix(), a.point.x);
+  const Frame frame_b(b.point.q.toRotationMatrix(), b.point.x);
+  const bool ground_is_a = &ground == &a;
   std::erase_if(found, [&](const ContactPoint& c) {
-    const int number = &ground == &a ? c.pair / parts_b : c.pair % parts_b;
-    const Vec3 outward = &ground == &a ? c.normal : Vec3(-c.normal);
-    return is_below_flush_face(planes, shape.part(static_cast<std::size_t>(number)), frame, c.point,
-                               outward, mover.body->least_width);
+    const PlacedPart part_a{first_part(*a.body, *b.body, c.pair), frame_a};
+    const PlacedPart part_b{second_part(*b.body, c.pair), frame_b};
+    return is_below_flush_face(planes, ground_is_a ? part_a : part_b, ground_is_a ? part_b : part_a,
+                               c.point, ground_is_a ? c.normal : Vec3(-c.normal),
+                               mover.body->least_width);
   });
   return found.empty();
 }
