@@ -26,8 +26,8 @@ TEST(KnownFaults, thin_rods_gain_no_energy_any_more) {
   EXPECT_LT(rise_of(rod_scene(1000, 4)), sound);
 }
 
-// Cubes 2 mm apart that are held to each other come together as their beam bends.  (A check found 15
-// new contacts in the middles of edges, and 4.1e-3 of the energy in them.)
+// Cubes 2 mm apart that are held to each other come together as their beam bends.  (A check found
+// 15 new contacts in the middles of edges, and 4.1e-3 of the energy in them.)
 TEST(KnownFaults, held_bodies_that_come_together_gain_no_energy_any_more) {
   EXPECT_LT(rise_of(held_beam_scene(10, 100, 0.002, 11)), sound);
 }
