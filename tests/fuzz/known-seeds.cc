@@ -33,6 +33,7 @@ const MendedSeed mended[] = {
     {"thin", 17, "where rods cross a fixed point missed the gap, and arcs ended for it"},
     {"shaker", 146, "between the slabs of a shaken room the energy rose by 0.8 %"},
     {"round", 29, "a contact that slid from its birth held 99 times the energy of its cone"},
+    {"seam", 5424, "a union leaned over its tiles' edge, and that was taken for a slot's"},
     {"thin", 773, "a coin came down on a rod on the floor by thousands of impacts"},
 };
 
