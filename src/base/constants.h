@@ -84,9 +84,9 @@ inline constexpr double depth_slack = 1e-12;
 inline constexpr double stepped_slack = 1e-10;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
-// What is placed touching starts loaded in groups of at most so many members: forces are found anew
-// with each that joins.
-inline constexpr std::size_t most_placed = 256;
+// What is placed touching starts loaded in groups of at most so many members: to find the forces
+// takes about as long as a hundred steps of theirs.
+inline constexpr std::size_t most_placed = 4096;
 // A body is squeezed from this overlap on either side on, over its least width: heaps stay below a
 // tenth of it.
 inline constexpr double squeezed_share = 0.02;

@@ -280,9 +280,16 @@ struct Look {
   std::uint64_t manifolds = 0;
 };
 
-// Finds the contacts of a pair that touches or may touch before the next check; `must`: of any
-// pair.
-void look(const Regrouping& work, Look& look, double interval, bool must) {
+// Which pairs are to be in contact.
+enum class Wanted : std::uint8_t {
+  always,     // it comes to touch now
+  new_touch,  // where it touches or may touch before the next check; what holds it does so at once
+  touching,   // the same of one that may have been in contact before
+};
+
+// Finds the contacts of a pair.
+void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
+  const bool must = wants == Wanted::always;
   const PlacedBody &a = *look.a, &b = *look.b;
   const Ground& ground = *look.ground;
   const Body& body_a = *a.body;
@@ -336,7 +343,7 @@ void look(const Regrouping& work, Look& look, double interval, bool must) {
     fresh.masses = before->pair->masses;
     match_old(work, look.contacts, fresh, *before);
   }
-  if (must) preload(work, look.contacts, fresh, a, b);
+  if (wants != Wanted::touching) preload(work, look.contacts, fresh, a, b);
 }
 
 // Adds what was found.
@@ -397,6 +404,24 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
   return candidates;
 }
 
+// What observers hear of a pair that came to touch together with others.
+Collision fusion_of(const Regrouping& work, const ContactPair& pair) {
+  Collision row;
+  row.kind = CollisionKind::fusion;
+  row.key = work.key();
+  row.time = work.now();
+  row.body1 = pair.a();
+  row.body2 = pair.b();
+  if (pair.count == 0) return row;
+  const NewContact& first = work.contacts[pair.first];
+  row.point = first.point;
+  row.normal = first.tag.reference == row.body1 ? first.normal : Vec3(-first.normal);
+  const Vec3 closing = work.placed(row.body1).velocity_at(first.point) -
+                       work.placed(row.body2).velocity_at(first.point);
+  row.speed = std::max(0.0, closing.dot(row.normal));
+  return row;
+}
+
 }  // namespace
 
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
@@ -422,13 +447,13 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
         looks.push_back(std::move(pair));
         continue;
       }
-      look(work, pair, interval, false);
+      look(work, pair, interval, Wanted::touching);
       take(work, pair);
     }
   }
   constexpr std::size_t grain = 8;
   each_in_parallel(looks.size(), grain,
-                   [&](std::size_t i) { look(work, looks[i], interval, false); });
+                   [&](std::size_t i) { look(work, looks[i], interval, Wanted::touching); });
   for (Look& look : looks) take(work, look);
   const auto was_looked_at = [&](BodyId id) {
     return holds(looked_at, work.scene().process_of(id));
@@ -438,13 +463,30 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
 }
 
 void fuse(Regrouping& work, double interval) {
-  const PlacedBody a = placed(work.successors[0]), b = placed(work.successors[1]);
-  const PlacedBody& mover = a.body->dynamic() ? a : b;
-  const Ground ground = work.surroundings.ground_around(*mover.body, {mover.frame});
-  Look first{&a, &b, &ground, {}, {}, {}, 0};
-  look(work, first, interval, true);
-  take(work, first);
-  work.tally.fusions = 1;
+  const auto meet = [&](const PlacedBody& a, const PlacedBody& b, Wanted wanted) {
+    const PlacedBody& mover = a.body->dynamic() ? a : b;
+    const Ground ground = work.surroundings.ground_around(*mover.body, {mover.frame});
+    Look pair{&a, &b, &ground, {}, {}, {}, 0};
+    look(work, pair, interval, wanted);
+    if (pair.found == Look::Found::contact) ++work.tally.fusions;
+    take(work, pair);
+  };
+  const PlacedBody first = placed(work.successors[0]), second = placed(work.successors[1]);
+  meet(first, second, Wanted::always);
+  if (!work.together) return;
+
+  const std::uint64_t struck = pair_id(first.body->id(), second.body->id());
+  for (const BodyId id : work.placed_bodies) {
+    work.together->visit_touching(id, [&](BodyId other) {
+      const Body& partner = work.scene().body(other);
+      const std::uint64_t pair = pair_id(std::min(id, other), std::max(id, other));
+      if ((partner.dynamic() && other < id) || pair == struck || work.pair_before(pair)) return;
+      const std::size_t count = work.pairs.size();
+      meet(work.placed(std::min(id, other)), work.placed(std::max(id, other)), Wanted::new_touch);
+      if (work.pairs.size() > count && work.reports_fusions)
+        work.report.push_back(fusion_of(work, work.pairs.back()));
+    });
+  }
 }
 
 void carry(Regrouping& work, const PairBefore& old) {

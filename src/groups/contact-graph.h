@@ -23,7 +23,8 @@ void carry(Regrouping& work, const PairBefore& old);
 // stand. `interval`: until the next check, s.  `looked_at`: ascending.
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval);
 
-// The first two successors come to touch: they are in contact whatever their manifold says.
+// The first two successors come to touch: they are in contact whatever their manifold says.  So are
+// all pairs placed together with them that do touch, and hardly part or close.
 void fuse(Regrouping& work, double interval);
 
 }  // namespace tw

@@ -151,10 +151,10 @@ void start_arc(Regrouping& work, Group& group) {
   for (const ContactPair& pair : group.pairs)
     for (const BodyId id : {pair.a(), pair.b()}) index_of(id);
   members.set_tolerances();
-  const auto has_struck = [&](std::size_t i) {
-    return group.contains(work.successors[i].process());
-  };
-  if (work.starts_loaded && (has_struck(0) || has_struck(1))) load_placed(work, start, contacts);
+  const auto holds_it = [&](BodyId id) { return group.contains(work.scene().process_of(id)); };
+  if (work.starts_loaded &&
+      std::any_of(work.placed_bodies.begin(), work.placed_bodies.end(), holds_it))
+    load_placed(work, start, contacts);
   group.arc = std::make_shared<GroupArc>(std::move(start));
 }
 

@@ -365,19 +365,16 @@ bool is_just_placed(const Scene& scene, const Body& body, const State& state, do
 
 bool are_placed(const Before& before, const std::vector<ProcessId>& struck) {
   const Scene& scene = before.scene();
-  const double now = before.key().time;
-  std::size_t members = 0;
-  const Group* counted = nullptr;
-  bool placed = false;
-  for (const ProcessId process : struck) {
-    const State& state = before.state(process);
-    const Body& body = scene.body_of(process);
-    placed = placed || is_just_placed(scene, body, state, now);
-    if (!state.group || state.group.get() != counted)
-      members += state.group ? state.group->members.size() : 1;
-    counted = state.group.get();
-  }
-  return placed && members <= answer::most_placed;
+  return std::any_of(struck.begin(), struck.end(), [&](ProcessId process) {
+    return is_just_placed(scene, scene.body_of(process), before.state(process), before.key().time);
+  });
+}
+
+std::vector<BodyId> placed_with(const Before& before, const std::vector<ProcessId>& struck,
+                                const PlacedTogether* together) {
+  std::vector<BodyId> bodies;
+  for (const ProcessId process : struck) bodies.push_back(before.scene().body_of(process).id());
+  return together ? together->hanging_together(before.scene(), std::move(bodies)) : bodies;
 }
 
 void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewContact>& contacts) {

@@ -33,10 +33,13 @@ double placed_at(const State& state);
 // they come into the world.
 bool is_just_placed(const Scene& scene, const Body& body, const State& state, double now);
 
-// Whether the fusion of the first two of `struck` is one of bodies that were placed touching: what
-// falls farther than bodies may overlap when they come into the world was not.  Groups of too many
-// members begin without loads.
+// Whether the fusion of these is one of bodies that were placed touching: what falls farther than
+// bodies may overlap when they come into the world was not.
 bool are_placed(const Before& before, const std::vector<ProcessId>& struck);
+
+// These bodies and all that were placed together with them, ascending.
+std::vector<BodyId> placed_with(const Before& before, const std::vector<ProcessId>& struck,
+                                const PlacedTogether* together);
 
 // Gives the contacts of a group at its start their loads, if all that touch there hardly
 // part or close.  `contacts`: those of the start, as they look now.

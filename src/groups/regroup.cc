@@ -120,14 +120,21 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     if (successor.starts_arc()) insert(struck, successor.process());
 
   // the work list: the region grows until nobody beyond it would notice
-  const bool placed = request.cause == Cause::fusion && are_placed(before, struck);
-  Region region = region_of(before, struck, request.cause == Cause::edit || placed);
+  std::vector<BodyId> placed;
+  if (request.cause == Cause::fusion && are_placed(before, struck)) {
+    placed = placed_with(before, struck, request.together);
+    for (const BodyId id : placed) insert(struck, before.scene().process_of(id));
+  }
+  Region region = region_of(before, struck, request.cause == Cause::edit || !placed.empty());
   for (;;) {
     if (!all_known(region, known)) return Waits{region};
     std::vector<Successor> successors = successors_of(region, before, given);
     Regrouping work(before, surroundings, request.cause, successors);
     work.reports_fissions = request.reports_fissions;
-    work.starts_loaded = placed;
+    work.reports_fusions = request.reports_fusions;
+    work.placed_bodies = placed;
+    work.together = request.together;
+    work.starts_loaded = !placed.empty() && region.inside.size() <= answer::most_placed;
     work.struck_at = request.struck_at;
     find_contacts(work, struck);
 

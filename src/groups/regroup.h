@@ -36,6 +36,8 @@ struct RegroupRequest {
   // Where the first two have struck each other, normals from the first to the second; none where
   // they should not strike again.
   std::span<const ContactPoint> struck_at = {};
+  bool reports_fusions = false;              // of others than the first two
+  const PlacedTogether* together = nullptr;  // null: nobody was
 };
 
 // `struck`: those that the discontinuity changed, with new arcs where it changed their motion, and

@@ -18,6 +18,7 @@
 #include "groups/before.h"
 #include "groups/group-counters.h"
 #include "groups/group.h"
+#include "groups/placed-together.h"
 #include "groups/surroundings.h"
 #include "timeline/successor.h"
 
@@ -62,8 +63,12 @@ struct Regrouping {
   const Before& before;
   const Surroundings& surroundings;
   Cause cause;
-  bool reports_fissions = false;                 // somebody wants to hear of them
-  bool starts_loaded = false;                    // a fusion of what was placed touching
+  bool reports_fissions = false;  // somebody wants to hear of them
+  bool reports_fusions = false;
+  // Of a fusion of what was placed touching: all that were placed together with it, ascending.
+  std::vector<BodyId> placed_bodies;
+  const PlacedTogether* together = nullptr;
+  bool starts_loaded = false;                    // its groups do
   std::span<const ContactPoint> struck_at = {};  // where the first two struck each other
   std::vector<Successor>& successors;            // of all that take part
 

@@ -188,6 +188,8 @@ void Bodies::require_no_overlap(const Body& a, const Body& b) const {
   };
   const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
   const double allowed = answer::start_depth * std::min(a.least_width, b.least_width);
+  if (std::abs(s.distance) <= allowed)
+    sim_.present.together.note(a.id(), b.id(), sim_.present.time);
   if (s.distance >= -allowed) return;
   throw UserError(a.info.name + " and " + b.info.name + " overlap by " + show(-s.distance) +
                       " m at " + show(sim_.present.time) +
@@ -203,7 +205,8 @@ void Bodies::check_overlaps(const Body& body) {
   if (!body.unbounded) {
     Aabb box = swept_bounds(body, state_at(sim_, body.id(), sim_.present.time)->trajectory(),
                             sim_.present.time, sim_.present.time);
-    box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
+    box.grow(1e-9 * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()) +
+             answer::start_depth * body.least_width);
     sim_.grid.place(body.id(), box, body.fixed());
     sim_.grid.overlapping(body.id(),
                           [&](BodyId other) { require_no_overlap(sim_.body(other), body); });
@@ -243,6 +246,7 @@ void Bodies::remove(BodyId id) {
   std::erase(sim_.unbounded, id);
   std::erase(sim_.kinematic, id);
   std::erase(sim_.present.newborn, id);
+  sim_.present.together.forget(id);
   names_.erase(body.info.name);
   bury(body, last);
   ++sim_.present.removals;

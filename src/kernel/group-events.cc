@@ -86,7 +86,8 @@ GroupEvents::Decided GroupEvents::regrouped(const Before& before, const Known& i
                                             const std::vector<Successor>& successors,
                                             GroupCounters& counters) const {
   return tw::regroup(before, sim_.surroundings, is_known,
-                     {struck.cause, delivery_.observed(CollisionKind::fission), struck.at},
+                     {struck.cause, delivery_.observed(CollisionKind::fission), struck.at,
+                      delivery_.observed(CollisionKind::fusion), &sim_.present.together},
                      successors, counters);
 }
 

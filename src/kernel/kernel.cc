@@ -52,7 +52,10 @@ void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
 
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
   for (const BodyId placed : editing.edit(id, change))
-    if (simulation.present.begun) bodies.check_overlaps(simulation.body(placed));
+    if (simulation.present.begun) {
+      simulation.present.together.forget(placed);
+      bodies.check_overlaps(simulation.body(placed));
+    }
 }
 
 // ---- the loop ----
@@ -99,6 +102,7 @@ void Kernel::begin_run() {
     bodies.claim_newborn();
   }
   present.begun = true;
+  present.together.settle();
   if (!present.counters.energy_known) {
     present.counters.energy_start = total_energy(simulation, present.time);
     present.counters.energy_known = true;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dynamics/scene.h"
+#include "groups/placed-together.h"
 #include "kernel/counters.h"
 #include "kernel/due.h"
 #include "timeline/key.h"
@@ -30,6 +31,7 @@ struct Present {
   Due due;                                // what is final at `time`, and so may be delivered
   bool begun = false;                     // the first run has begun
   std::vector<BodyId> newborn;            // came since the last run: nobody has met them yet
+  PlacedTogether together;                // who touched whom where they were put last
   SceneOptions settings;                  // gravity changes, the others only before the first run
   std::uint64_t edits = 0, removals = 0;  // number the edits; bodies taken out
   HistorySum history;

@@ -219,6 +219,64 @@ TEST(PlacedTouching, what_falls_starts_without_a_load) {
   EXPECT_EQ(number_of(world.statistics(), "placed_energy"), 0);
 }
 
+// All that touch come together at their first touch, and are loaded once: before, each of the
+// stones found new loads for those that hung together so far (94 s of CPU for two seconds).
+TEST(PlacedTouching, an_arch_of_301_stones_stands_at_once) {
+  World world;
+  add_arch(world, 301);
+  const Drift drift = drift_of(world, 0.5);
+  EXPECT_LT(drift.way, 1e-4);
+  EXPECT_LT(count_of(world.statistics(), "implicit_steps"), 1000);
+  EXPECT_GT(number_of(world.statistics(), "placed_energy"), 0);
+}
+
+TEST(PlacedTouching, observers_hear_of_every_pair_that_comes_to_touch) {
+  World world;
+  add_floor_at(world, 0, 0.5);
+  for (int i = 0; i < 4; ++i) world.add_body(light(make_box({1, 1, 1}), {0, 0, i + 0.5}));
+  std::vector<Collision> heard;
+  world.add_collision_observer([&](const Collision& c) { heard.push_back(c); },
+                               CollisionKind::fusion);
+  world.advance(0.5);
+  EXPECT_EQ(count_of(world.statistics(), "fusions"), 4);
+  ASSERT_EQ(heard.size(), 4u);
+  for (const Collision& c : heard) {
+    EXPECT_EQ(c.body2, c.body1 + 1);
+    EXPECT_NEAR(c.normal.z(), 1, 1e-12);
+    EXPECT_NEAR(c.point.z(), c.body1, 1e-9);
+    EXPECT_EQ(c.speed, 0);
+  }
+}
+
+// A pair that touches where it was put and closes fast is left to its impact.
+TEST(PlacedTouching, what_touches_and_closes_fast_strikes) {
+  World world;
+  set_contact_for_all(world, 1, 0);
+  add_wall(world, Vec3::UnitZ(), 0);
+  const BodyId low = world.add_body(light(make_box({1, 1, 1}), {0, 0, 0.5}));
+  BodyDef fast = light(make_box({1, 1, 1}), {1, 0, 0.5});
+  fast.velocity = {-3, 0, 0};
+  const BodyId beside = world.add_body(fast);
+  world.advance(0.01);
+  EXPECT_NEAR(world.state(low).velocity.x(), -3, 1e-6);
+  EXPECT_NEAR(world.state(beside).velocity.x(), 0, 1e-6);
+}
+
+// What was put somewhere else since does not hang together with what it touched before.
+TEST(PlacedTouching, what_is_put_elsewhere_leaves_those_it_touched) {
+  World world;
+  add_floor_at(world, 0, 0.5);
+  const BodyId low = world.add_body(light(make_box({1, 1, 1}), {0, 0, 0.5}));
+  const BodyId high = world.add_body(light(make_box({1, 1, 1}), {0, 0, 1.5}));
+  world.edit(high, [](StateView& view) { view.set_pose({5, 0, 0.5}, Quat::Identity()); });
+  world.advance(1);
+  EXPECT_LT((world.state(low).position - Vec3(0, 0, 0.5)).norm(), 1e-9);
+  world.edit(high, [](StateView& view) { view.set_pose({0, 0, 1.5}, Quat::Identity()); });
+  world.advance(2);
+  EXPECT_LT((world.state(high).position - Vec3(0, 0, 1.5)).norm(), 1e-9);
+  EXPECT_LT((world.state(low).position - Vec3(0, 0, 0.5)).norm(), 1e-9);
+}
+
 TEST(PlacedTouching, has_one_history) {
   std::vector<Schedule> schedules;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
@@ -231,6 +289,13 @@ TEST(PlacedTouching, has_one_history) {
     add_ball(world, 0.4, {-2, 0.1, 1.4}, {8, 0, 1});
   };
   expect_one_history({"a pyramid hit by a ball", 0.4, struck}, schedules, 1);
+  // struck at the very first instant, when some have come together and others have not
+  const auto struck_at_once = [](World& world) {
+    add_pyramid(world, 3);
+    add_ball(world, 0.5, {-0.95, 0.1, 1.5}, {40, 0, 0});
+    add_ball(world, 0.5, {3.4501, 0, 0.5}, {-40, 0, 0});
+  };
+  expect_one_history({"a pyramid hit where it was put", 0.1, struck_at_once}, schedules, 1);
 }
 
 }  // namespace
