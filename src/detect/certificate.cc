@@ -10,6 +10,7 @@
 
 #include "base/constants.h"
 #include "collision/near-parts.h"
+#include "detect/round-reach.h"
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"
 
@@ -49,32 +50,6 @@ double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec
     least =
         std::min(least, reach(side, n, c, u, alpha, side.frame.R * (part.placement * vertex), 0));
   return least;
-}
-
-// How high the core of a round part reaches along a direction in its frame, above its middle.
-double round_top(const ConvexPart& part, const Vec3& along) {
-  if (part.kind == PartKind::ellipsoid) return part.semi_axes.cwiseProduct(along).norm();
-  const double across = std::hypot(along.x(), along.y()), up = part.half_length * along.z();
-  return std::max(up + part.top_radius * across, part.radius * across - up);
-}
-
-// When a round part `gap` > 0 below the plane may reach it, but for its turning at the rate `rate`
-// and the pull `pull`.  Its top is at h(s) = round_top(n + s m), which is convex: over [0, S] it
-// rises by no more than the chord's slope, at most round_top(m).  Long chords count what goes
-// up at one end only once it is the top: what stands on the plane along a line or on a face, and
-// turns off it, is not there at once.
-double round_reach(const ConvexPart& part, double gap, double rate, double pull, const Vec3& n,
-                   const Vec3& m) {
-  constexpr double longer = 4;
-  const double top = round_top(part, n);
-  double reached = first_zero(gap, rate - round_top(part, m), pull);
-  while (reached < cost::soon) {
-    const double to = longer * reached, slope = (round_top(part, n + to * m) - top) / to;
-    const double least = std::min(to, first_zero(gap, rate - slope, pull));
-    if (!(least > reached)) break;
-    reached = least;
-  }
-  return reached;
 }
 
 // The least over the core points of a part; `sign` +1: the part lies below the plane, -1 above.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "base/constants.h"
+#include "detect/round-reach.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -14,13 +15,39 @@ namespace {
 // size.
 constexpr double near_distances = 3, near_share = 1e-9;
 
-// The vertices of one body that face the other: none, one, an edge (two of them), or a face.
+// What of one body faces the other: a vertex or a point of what is round, an edge (counted as two),
+// or a face.
 struct Facing {
   int count = 0;
   Vec3 edge = Vec3::Zero();
 };
 
+// Of a frustum: a face is its end, an edge what of its side runs along the plane.
+Facing facing_round(const Frame& frame, const ConvexPart& part, const Vec3& n, double depth) {
+  Facing result;
+  result.count = 1;
+  if (part.kind != PartKind::frustum) return result;
+  const Vec3 axis = frame.R.col(2);
+  const double along = axis.dot(n);
+  const Vec3 across = n - along * axis;
+  const double sine = across.norm();
+  // heights of the highest points of both ends, and of the lowest of the upper one
+  const double upper = part.half_length * along, rise_of_upper = part.top_radius * sine,
+               rise_of_lower = part.radius * sine;
+  const bool on_upper = upper + rise_of_upper >= rise_of_lower - upper;
+  const double drop_to_other = std::abs(2 * upper + rise_of_upper - rise_of_lower);
+  const double radius = on_upper ? part.top_radius : part.radius;
+  if (radius > 0 && 2 * radius * sine <= depth) {
+    result.count = 3;
+  } else if (part.half_length > 0 && drop_to_other <= depth && sine > 0) {
+    result.count = 2;
+    result.edge = 2 * part.half_length * axis + (part.top_radius - part.radius) / sine * across;
+  }
+  return result;
+}
+
 Facing facing(const Frame& frame, const ConvexPart& part, const Vec3& n, double top, double depth) {
+  if (part.kind != PartKind::polyhedron) return facing_round(frame, part, n, depth);
   Facing result;
   // heights in the part's frame
   const Vec3 n_P = frame.R.transpose() * n;
@@ -78,6 +105,13 @@ double time_to_reach(const MovingBody& side, const Frame& frame, const ConvexPar
       n.dot(plane.u - side.point.v) + m.dot(side.point.x) + rate.dot(plane.c) + slope.dot(frame.p);
   const Vec3 n_P = frame.R.transpose() * n, slope_P = frame.R.transpose() * slope;
   double least = plane.until;
+  if (part.kind != PartKind::polyhedron) {
+    const bool ball = part.kind == PartKind::sphere;
+    const double gap = gap0 - (ball ? part.radius : round_top(part, n_P) + part.margin);
+    if (!(gap > 0)) return 0;
+    return std::min(least, ball ? first_zero(gap, speed0, pull)
+                                : round_reach(part, gap, speed0, pull, n_P, -slope_P));
+  }
   for (const Vec3& vertex : part.core->vertices()) {
     const double gap = gap0 - n_P.dot(vertex);
     if (!(gap > 0)) return 0;
@@ -91,7 +125,7 @@ double time_to_reach(const MovingBody& side, const Frame& frame, const ConvexPar
 }  // namespace
 
 bool can_turn(const MovingBody& side, const ConvexPart& part) {
-  return part.kind == PartKind::polyhedron && !side.by_speed;
+  return part.kind != PartKind::half_space && !side.by_speed;
 }
 
 double turning_time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
@@ -102,6 +136,8 @@ double turning_time_apart(const MovingBody& a, const ConvexPart& part_a, const M
       near_distances * s.distance + near_share * (part_a.bound_radius + part_b.bound_radius);
   const Facing on_a = facing(frame_a, part_a, s.normal, s.normal.dot(s.point_a), depth);
   const Facing on_b = facing(frame_b, part_b, -s.normal, -s.normal.dot(s.point_b), depth);
+
+  if (on_a.count < 2 && on_b.count < 2) return 0;  // it does not turn
 
   TurningPlane plane;
   plane.n = s.normal;

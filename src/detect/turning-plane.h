@@ -1,4 +1,4 @@
-// A plane that turns with the features that face each other, between two polyhedra.
+// A plane that turns with the features that face each other.
 //
 // Two edges that pass each other, or a face and what stands before it, keep a plane between them
 // only if it turns with them: a plane at rest is crossed at once by the far end of an edge, however
@@ -16,7 +16,7 @@
 
 namespace tw {
 
-// Whether the plane is for this body and part: a polyhedron that stands or moves by an arc.
+// Whether the plane is for this body and part: what is bounded, and stands or moves by an arc.
 bool can_turn(const MovingBody& side, const ConvexPart& part);
 
 // Seconds until the two parts may meet; `s`: their separation, world.  Overlaps up to `allowance`
