@@ -255,10 +255,10 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   const double cosine = across.dot(v.normal) / sine;
   if (std::abs(cosine) < patch::aligned_round) return false;
   p.normal = (cosine < 0 ? -1 : 1) / sine * across;
-  // outside the frustum's side, and not almost flat on it: then the point on the rim that a small
-  // turn makes the nearest is far off
-  if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -patch::crossing)
-    return false;
+  // neither on the frustum's side nor flat on its end: there an edge is better seen as it stands,
+  // while a side, whose normal turns as it rolls, is so almost to the last
+  const double flat = radius > 0 ? patch::level : patch::crossing;
+  if (std::abs(p.normal.dot(c.axis)) < patch::level || p.normal.dot(radial) > -flat) return false;
   p.direction = line;
   p.reference_radius = radius;
   p.core_point = p.rim_center + p.rim * radial;

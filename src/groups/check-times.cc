@@ -17,6 +17,14 @@ double on_lattice(double unit, double interval) {
   return std::ldexp(unit, std::ilogb(interval / unit));
 }
 
+// The size by which a body asks for checks, m: its least width, and of what is thin half the mean
+// of that and of the edge of a cube as far across.  What a check finds anew lies along the wide
+// sides, as edges that are passed do; what comes down through the thin one is for the end test.
+double check_size(const Body& body) {
+  const double wide = 2 / std::sqrt(3.0) * body.radius;
+  return std::max(body.least_width, answer::thin_check_share * std::sqrt(body.least_width * wide));
+}
+
 }  // namespace
 
 double check_interval(const Regrouping& work, const std::vector<ProcessId>& members) {
@@ -27,7 +35,7 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
   for (const ProcessId member : members) {
     // the time to move that far: v s + g s^2/2 = distance
     const PlacedBody body = placed(*work.successor_of(member));
-    const double distance = answer::most_travel * body.body->least_width;
+    const double distance = answer::most_travel * check_size(*body.body);
     const double speed = body.surface_speed();
     const double root = std::sqrt(speed * speed + 2 * gravity * distance);
     const double finest = finest_check(work.scene(), *body.body);
@@ -41,7 +49,7 @@ double finest_check(const Scene& scene, const Body& body) {
   const double rate = scene.options.group_check_rate;
   if (rate > 0) return 1 / rate;
   return on_lattice(answer::check_unit, answer::finest_check_times *
-                                            std::sqrt(body.least_width / scene.gravity_scale()));
+                                            std::sqrt(check_size(body) / scene.gravity_scale()));
 }
 
 double interval_within(const Scene& scene, double time) {

@@ -81,8 +81,9 @@ TW_LANES LaneVec set_crossing(const ContactPack& pack, const LaneVec& D, const L
 
 // D to the centre of a circle with the axis k: the point in the direction e, square to k, is the
 // nearest where the one of its tangent t = k x e is.  Newton's method on the angle psi: the height
-// of that point along m_a changes by F = R S - H n.e/S a radian.  It starts from the normal before,
-// which is square to t but for its own turning.  Then
+// of that point along m_a changes by F = R S - H n.e/S a radian.  It starts where the line's own
+// point p_a is seen, which is where the two were nearest first: the normal says little of where on
+// the circle that is when the line lies almost flat on its plane.  Then
 //   dpsi = (H m_b.dom/S - m_a.dp)/F,  the point runs by R t dpsi, and n by
 //   m_a (m_b.dom + n.e dpsi)/S.
 TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMat& Rb,
@@ -94,7 +95,7 @@ TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMa
     const Lanes inverse = length > lanes(0) ? lanes(1) / length : lanes(0);
     return inverse * v;
   };
-  LaneVec e = -unit(side - dot(k, side) * k), t;
+  LaneVec e = -unit(D - dot(k, D) * k), t;
   Crossing c;
   Lanes inverse_rate, by_edge;
   for (int i = 0;; ++i) {
