@@ -109,6 +109,29 @@ double released(double offset, double gap) {
                     : std::max(offset, std::min(gap, 0.0));
 }
 
+// Where a contact was before, and whether a new one is that.
+struct OldPoint {
+  Vec3 point, normal;
+  bool taken = false;
+};
+
+// A point that comes to a face which bears a load already presses as those beside it do: their
+// stiffness is shared with it, and so is the depth that they count from.
+void take_offset(const Group& before, const ContactPair& old, const std::vector<OldPoint>& there,
+                 NewContact& fresh) {
+  double nearest = never;
+  for (std::uint32_t o = 0; o < old.count; ++o) {
+    if (before.tags[old.first + o].parts != fresh.tag.parts) continue;
+    if (std::abs(there[o].normal.dot(fresh.normal)) < answer::same_normal) continue;
+    const double distance = (there[o].point - fresh.point).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    const GroupContact& was = before.arc->start().contacts[old.first + o];
+    fresh.law_before = was.law;
+    fresh.contact.offset = released(was.offset, fresh.gap);
+  }
+}
+
 // Each new contact takes the stretch and the offset of the nearest old one; equal features count as
 // half as far.
 void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
@@ -120,12 +143,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
   const Body& body_a = work.scene().body(pair.a());
   const Body& body_b = work.scene().body(pair.b());
   const double size = std::min(body_a.least_width, body_b.least_width);
-  // where the old ones are, but those that were taken
-  struct Old {
-    Vec3 point, normal;
-    bool taken = false;
-  };
-  thread_local std::vector<Old> there;
+  thread_local std::vector<OldPoint> there;
   there.clear();
   if (pair.count > 0)
     each_contact(*old, [&](std::uint32_t c) {
@@ -145,7 +163,10 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
       nearest = distance;
       best = o;
     }
-    if (best == old->count) continue;
+    if (best == old->count) {
+      take_offset(before, *old, there, fresh);
+      continue;
+    }
     there[best].taken = true;
     const ContactTag& tag = before.tags[old->first + best];
     const GroupContact& was = arc.start().contacts[old->first + best];
