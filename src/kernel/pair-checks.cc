@@ -185,7 +185,9 @@ std::optional<PairOutcome> PairChecks::follow_exact(Pair& pair, const Piece& pie
 
 // ---- pairs on the grid ----
 
-// Overlapping and approaching at the common start is an impact now.  True if one was found.
+// Overlapping and approaching at the common start is an impact now; so is touch without either where
+// something presses the two together, or one is in a group, whose next check would find them in
+// contact: until then they would be looked at without end.  True if one was found.
 bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const {
   const double start = piece.start_time();
   ++counts.checks;
@@ -196,7 +198,9 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& 
   const Separation s = separation_at(piece, start);
   if (s.distance > 0) return false;
   const double closing = closing_at(piece, start, s);
-  if (closing < 0 || (closing == 0 && !pressed_at(piece, start, s.normal))) return false;
+  const bool held = pressed_at(piece, start, s.normal) || moves_in_group(*piece.a) ||
+                    moves_in_group(*piece.b);
+  if (closing < 0 || (closing == 0 && !held)) return false;
   pair.impact = pieces_.impact_key(piece, start);
   return true;
 }
