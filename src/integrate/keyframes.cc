@@ -16,9 +16,10 @@ namespace {
 double smooth_share(double u) { return u * u * u * (10 + u * (6 * u - 15)); }
 double smooth_slope(double u) { return 30 * u * u * (1 - u) * (1 - u); }
 double smooth_change(double u) { return 60 * u * (1 - u) * (1 - 2 * u); }
-constexpr double smooth_peak_slope = 1.875;               // s'(1/2)
-constexpr double smooth_peak_change = 5.773502691896258;  // s'' at (1 - 1/sqrt 3)/2
-constexpr double smooth_peak_third = 60;                  // s'''(0)
+constexpr double smooth_peak_slope = 1.875;                  // s'(1/2)
+constexpr double smooth_peak_change = 5.773502691896258;     // s'' at (1 - 1/sqrt 3)/2
+constexpr double smooth_least_change = 0.21132486540518713;  // and the other side of 1/2: s''' = 0
+constexpr double smooth_peak_third = 60;                     // s'''(0)
 
 // Straight line and constant axis from one keyframe to the next.
 struct Segment {
@@ -89,9 +90,8 @@ class Keyframes final : public Trajectory {
     MotionBounds bounds;
     bounds.path = path(from, to);
     bounds.speed = most(from, to, [](const Segment& s) { return (s.p1 - s.p0).norm(); });
-    bounds.acceleration = Aabb::everywhere();
     bounds.turn = most(from, to, [](const Segment& s) { return s.turn.norm(); });
-    bounds.valid_until = to;
+    add_changes(from, to, bounds);
     return bounds;
   }
 
@@ -122,6 +122,27 @@ class Keyframes final : public Trajectory {
         if (s.end < to) box.add(s.p1);
       }
     return box;
+  }
+  // As far as the velocity does not jump.
+  void add_changes(double from, double to, MotionBounds& bounds) const {
+    const auto next = std::upper_bound(segments_.begin(), segments_.end(), from,
+                                       [](double t, const Segment& s) { return t < s.end; });
+    bounds.acceleration.add(Vec3(Vec3::Zero()));
+    if (next == segments_.end() || from < next->start) {
+      bounds.valid_until = next == segments_.end() ? to : std::min(to, next->start);
+      return;
+    }
+    const Segment& s = *next;
+    bounds.valid_until = std::min(to, s.end);
+    if (!smooth_) return;
+    const double rate = 1 / s.length(), square = rate * rate * (1 + 1e-12);
+    const double first = (from - s.start) * rate, last = (bounds.valid_until - s.start) * rate;
+    for (const double u : {first, last, smooth_least_change, 1 - smooth_least_change}) {
+      if (u < first || u > last) continue;
+      const double change = square * smooth_change(u);
+      bounds.acceleration.add(Vec3(change * (s.p1 - s.p0)));
+      bounds.turn_change = std::max(bounds.turn_change, std::abs(change) * s.turn.norm());
+    }
   }
   template <class Length>
   double most(double from, double to, Length length) const {

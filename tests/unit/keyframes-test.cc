@@ -76,7 +76,10 @@ TEST(Keyframes, bounds_hold_over_any_interval) {
       const double to = from + random.real(0, 2);
       const MotionBounds bounds = motion->bounds(from, to);
       const double speed = bounds.speed, turn = bounds.turn;
-      EXPECT_TRUE(bounds.velocity_may_jump());
+      EXPECT_FALSE(bounds.velocity_may_jump());
+      EXPECT_GT(bounds.valid_until, from);
+      EXPECT_LE(bounds.valid_until, to);
+      const Twist start = motion->twist(from);
       Aabb path = bounds.path;
       path.grow(1e-14);
       for (int k = 0; k <= 100; ++k) {
@@ -85,6 +88,15 @@ TEST(Keyframes, bounds_hold_over_any_interval) {
         EXPECT_LE(v.norm(), speed * (1 + 1e-14));
         EXPECT_LE(w.norm(), turn * (1 + 1e-14));
         EXPECT_TRUE(path.contains(motion->pose(now).p));
+        if (now >= bounds.valid_until) continue;
+        // as long as the velocity does not jump
+        Aabb change = bounds.acceleration;
+        const double since = now - from;
+        change.lo *= since;
+        change.hi *= since;
+        change.grow(1e-12 * (1 + speed));
+        EXPECT_TRUE(change.contains(v - start.v));
+        EXPECT_LE((w - start.w).norm(), bounds.turn_change * since + 1e-12 * (1 + turn));
       }
     }
 }

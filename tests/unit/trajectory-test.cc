@@ -92,11 +92,16 @@ TEST(Trajectories, what_rests_is_carried_and_what_is_fixed_falls_nowhere) {
   EXPECT_FALSE(make_resting(pose)->ballistic());
 }
 
-TEST(Trajectories, given_motion_is_bounded_by_its_speeds_alone) {
+TEST(Trajectories, given_motion_is_bounded_as_far_as_its_velocity_does_not_jump) {
   const TrajectoryPtr motion =
       make_keyframes({{0, {0, 0, 0}, {}}, {1, {1, 0, 2}, rotation_by(Vec3(0, 1, 0))}}, false);
-  expect_bounds_hold(*motion, -0.5, 0.7);
-  EXPECT_TRUE(motion->bounds(0, 1).velocity_may_jump());
+  expect_bounds_hold(*motion, -0.5, -0.1);
+  expect_bounds_hold(*motion, 0.1, 0.7);
+  EXPECT_EQ(motion->bounds(-0.5, 0.7).valid_until, 0);
+  const MotionBounds bounds = motion->bounds(0.2, 3);
+  EXPECT_EQ(bounds.valid_until, 1);
+  EXPECT_EQ(bounds.acceleration.size(), Vec3(0, 0, 0));
+  EXPECT_EQ(bounds.turn_change, 0);
   EXPECT_FALSE(motion->ballistic());
 }
 
