@@ -16,7 +16,11 @@ void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateDa
                             d.v, d.L, body.mass * d.acceleration, Vec3::Zero(),
                             d.forces && d.forces->act_alone() ? d.forces : nullptr});
   if (body.multibody) add_link(body, d, joints);
-  if (body.shape_P) size_ = std::min(size_, body.least_width);
+  if (body.shape_P) {
+    size_ = std::min(size_, body.least_width);
+    const double wide = 2 / std::sqrt(3.0) * body.radius;
+    slimness_ = std::min(slimness_, std::sqrt(body.least_width / wide) / answer::thin_check_share);
+  }
   reach_ += extent;
   speed_ = std::max(speed_, PlacedBody(body, point).surface_speed());
 }
@@ -58,7 +62,8 @@ void StartOfMembers::set_tolerances() {
   }
   const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
-  start_.velocity_tolerance = closeness * group_velocity_tolerance(accuracy, size_, gravity);
+  start_.velocity_tolerance =
+      closeness * slimness_ * group_velocity_tolerance(accuracy, size_, gravity);
 }
 
 }  // namespace tw

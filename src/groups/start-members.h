@@ -24,6 +24,7 @@ class StartOfMembers {
   const Scene& scene_;
   GroupStart& start_;
   double size_ = never, speed_ = 0, reach_ = 0;
+  double slimness_ = 1;  // of the thinnest member
 };
 
 }  // namespace tw

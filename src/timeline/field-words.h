@@ -69,8 +69,9 @@ void each_word(const ImpactRun& run, Put&& put) {
 }
 template <class Put>
 void each_word(const Tally& tally, Put&& put) {
-  for (const std::uint16_t count : {tally.fusions, tally.fissions, tally.contact_changes})
-    put(std::uint64_t{count});
+  put(std::uint64_t{tally.fusions});
+  put(std::uint64_t{tally.fissions});
+  put(std::uint64_t{tally.contact_changes});
   put(std::uint64_t{tally.impulses_given_up});
   put(std::uint64_t{tally.declared_soft});
   put(tally.kinematic_work);

@@ -9,7 +9,8 @@ namespace tw {
 
 // Stands on one state of the discontinuity's ring.
 struct Tally {
-  std::uint16_t fusions = 0, fissions = 0, contact_changes = 0;
+  std::uint32_t fusions = 0;
+  std::uint16_t fissions = 0, contact_changes = 0;
   // what could hide a failure: contacts that still approached after the most impulses, and an
   // impact taken for a soft one because there were too many at its instant
   std::uint8_t impulses_given_up = 0, declared_soft = 0;
@@ -27,7 +28,7 @@ struct Tally {
     squeezed_share = std::max(squeezed_share, share);
   }
   void add(const Tally& other) {
-    fusions = static_cast<std::uint16_t>(fusions + other.fusions);
+    fusions += other.fusions;
     fissions = static_cast<std::uint16_t>(fissions + other.fissions);
     contact_changes = static_cast<std::uint16_t>(contact_changes + other.contact_changes);
     impulses_given_up = static_cast<std::uint8_t>(impulses_given_up + other.impulses_given_up);
