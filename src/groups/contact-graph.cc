@@ -501,7 +501,9 @@ void fuse(Regrouping& work, double interval) {
     work.together->visit_touching(id, [&](BodyId other) {
       const Body& partner = work.scene().body(other);
       const std::uint64_t pair = pair_id(std::min(id, other), std::max(id, other));
-      if ((partner.dynamic() && other < id) || pair == struck || work.pair_before(pair)) return;
+      if ((partner.dynamic() && other < id) || pair == struck || work.pair_before(pair) ||
+          std::binary_search(work.left_out.begin(), work.left_out.end(), pair))
+        return;
       const std::size_t count = work.pairs.size();
       meet(work.placed(std::min(id, other)), work.placed(std::max(id, other)), Wanted::new_touch);
       if (work.pairs.size() > count && work.reports_fusions)

@@ -289,6 +289,38 @@ bool touches(const NewContact& c, double size) {
   return c.gap <= c.reach() + answer::start_depth * size;
 }
 
+// Of the lighter one's weight: a pair that carries less in the balance carries nothing.
+constexpr double carried_share = 1e-6;
+
+// Notes the pairs of two moving bodies that came to touch now and carry nothing.
+void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
+                   const std::vector<NewContact>& contacts) {
+  if (!work.together) return;
+  const Scene& scene = work.scene();
+  const std::uint64_t struck =
+      pair_id(std::min(work.successors[0].body->id(), work.successors[1].body->id()),
+              std::max(work.successors[0].body->id(), work.successors[1].body->id()));
+  std::vector<std::uint64_t> carrying;
+  const auto pair_of = [&](const NewContact& c) {
+    return pair_id(std::min(c.tag.reference, c.tag.other), std::max(c.tag.reference, c.tag.other));
+  };
+  for (const Spring& s : springs) {
+    const NewContact& c = contacts[s.number];
+    const double weight = scene.gravity_scale() *
+                          std::min(scene.body(c.tag.reference).mass, scene.body(c.tag.other).mass);
+    if (s.load > carried_share * weight) carrying.push_back(pair_of(c));
+  }
+  std::sort(carrying.begin(), carrying.end());
+  for (const NewContact& c : contacts) {
+    const std::uint64_t pair = pair_of(c);
+    if (!scene.body(c.tag.reference).dynamic() || !scene.body(c.tag.other).dynamic()) continue;
+    if (pair == struck || work.pair_before(pair)) continue;
+    if (!std::binary_search(carrying.begin(), carrying.end(), pair)) work.unloaded.push_back(pair);
+  }
+  std::sort(work.unloaded.begin(), work.unloaded.end());
+  work.unloaded.erase(std::unique(work.unloaded.begin(), work.unloaded.end()), work.unloaded.end());
+}
+
 double smaller_size(const Scene& scene, const ContactTag& tag) {
   return std::min(scene.body(tag.reference).least_width, scene.body(tag.other).least_width);
 }
@@ -397,6 +429,8 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
   if (springs.empty()) return;
   Balance balance(start, std::move(springs), depth, scene.gravity_scale());
   if (!balance.solve()) return;
+  note_unloaded(work, balance.springs(), contacts);
+  if (!work.unloaded.empty()) return;
 
   for (const Spring& s : balance.springs()) {
     GroupContact& c = start.contacts[s.number];

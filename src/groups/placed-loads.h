@@ -1,5 +1,8 @@
 // Loads at the start: what is placed touching begins with its contacts loaded.
 //
+// What touches beside others and carries nothing in that balance is not in contact yet: balls in a
+// row take a blow as impacts, one by one.
+//
 // A spring that is born without a load lets the weight fall on it: a stack sinks and trembles, a
 // box on a slope slips a little before its friction holds.  So where a body touches others from the
 // place that it was put at, and they hardly part or close, the group's contacts begin with the

@@ -126,6 +126,7 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     for (const BodyId id : placed) insert(struck, before.scene().process_of(id));
   }
   Region region = region_of(before, struck, request.cause == Cause::edit || !placed.empty());
+  std::vector<std::uint64_t> left_out;
   for (;;) {
     if (!all_known(region, known)) return Waits{region};
     std::vector<Successor> successors = successors_of(region, before, given);
@@ -136,6 +137,7 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     work.together = request.together;
     work.starts_loaded = !placed.empty() && region.inside.size() <= answer::most_placed;
     work.struck_at = request.struck_at;
+    work.left_out = left_out;
     find_contacts(work, struck);
 
     // impulses that reach the border come first: then nothing is as it should be
@@ -144,6 +146,12 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     if (more.empty()) {
       settle_joints(work);
       make_groups(work);
+      if (!work.unloaded.empty()) {
+        left_out.insert(left_out.end(), work.unloaded.begin(), work.unloaded.end());
+        std::sort(left_out.begin(), left_out.end());
+        counters.manifolds += work.counters.manifolds;
+        continue;
+      }
       more = who_notices(work);
     }
     counters.manifolds += work.counters.manifolds;

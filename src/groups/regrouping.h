@@ -68,6 +68,9 @@ struct Regrouping {
   // Of a fusion of what was placed touching: all that were placed together with it, ascending.
   std::vector<BodyId> placed_bodies;
   const PlacedTogether* together = nullptr;
+  // Pairs that carry nothing in the balance of what was placed: found with the loads, and those
+  // that were found before and are left to themselves.  Ascending.
+  std::vector<std::uint64_t> unloaded, left_out;
   bool starts_loaded = false;                    // its groups do
   std::span<const ContactPoint> struck_at = {};  // where the first two struck each other
   std::vector<Successor>& successors;            // of all that take part

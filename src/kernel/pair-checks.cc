@@ -185,9 +185,10 @@ std::optional<PairOutcome> PairChecks::follow_exact(Pair& pair, const Piece& pie
 
 // ---- pairs on the grid ----
 
-// Overlapping and approaching at the common start is an impact now; so is touch without either where
-// something presses the two together, or one is in a group, whose next check would find them in
-// contact: until then they would be looked at without end.  True if one was found.
+// Overlapping and approaching at the common start is an impact now; so is touch without either
+// where something presses the two together, or one is in a group and the other moves by itself or
+// not at all: the group's next check would find them in contact, and until then they would be
+// looked at without end.  True if one was found.
 bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const {
   const double start = piece.start_time();
   ++counts.checks;
@@ -198,8 +199,11 @@ bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& 
   const Separation s = separation_at(piece, start);
   if (s.distance > 0) return false;
   const double closing = closing_at(piece, start, s);
-  const bool held = pressed_at(piece, start, s.normal) || moves_in_group(*piece.a) ||
-                    moves_in_group(*piece.b);
+  const auto is_found = [](const State& state, const Body& other) {
+    return moves_in_group(state) && !other.dynamic();
+  };
+  const bool held = pressed_at(piece, start, s.normal) || is_found(*piece.a, *piece.body_b) ||
+                    is_found(*piece.b, *piece.body_a);
   if (closing < 0 || (closing == 0 && !held)) return false;
   pair.impact = pieces_.impact_key(piece, start);
   return true;
