@@ -87,6 +87,9 @@ inline constexpr double start_depth = 1e-6;
 // What is placed touching starts loaded in groups of at most so many members: to find the forces
 // takes about as long as a hundred steps of theirs.
 inline constexpr std::size_t most_placed = 4096;
+// A pair that carries less in their balance than this share of the lighter one's weight carries
+// nothing.
+inline constexpr double carried_share = 1e-6;
 // A body is squeezed from this overlap on either side on, over its least width: heaps stay below a
 // tenth of it.
 inline constexpr double squeezed_share = 0.02;

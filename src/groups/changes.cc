@@ -37,12 +37,7 @@ std::size_t count_pieces(const Regrouping& work, const Pairs& pairs, ForcesOf&& 
 
 Collision fission_of(const Regrouping& work, const PairBefore& old) {
   const ContactPair& pair = *old.pair;
-  Collision row;
-  row.kind = CollisionKind::fission;
-  row.key = work.key();
-  row.time = work.now();
-  row.body1 = pair.a();
-  row.body2 = pair.b();
+  Collision row = work.told_of(CollisionKind::fission, pair);
   if (pair.count > 0) {
     const ContactForce f = old.owner->contact_at(pair.first, work.now());
     const bool straight = old.owner->tags[pair.first].reference == row.body1;

@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "base/error.h"
+#include "groups/step-tolerances.h"
 #include "multibody/multibody.h"
 
 namespace tw {
@@ -21,8 +22,8 @@ double on_lattice(double unit, double interval) {
 // of that and of the edge of a cube as far across.  What a check finds anew lies along the wide
 // sides, as edges that are passed do; what comes down through the thin one is for the end test.
 double check_size(const Body& body) {
-  const double wide = 2 / std::sqrt(3.0) * body.radius;
-  return std::max(body.least_width, answer::thin_check_share * std::sqrt(body.least_width * wide));
+  return std::max(body.least_width,
+                  answer::thin_check_share * std::sqrt(body.least_width * cube_width(body)));
 }
 
 }  // namespace

@@ -427,12 +427,7 @@ std::vector<BodyId> candidates_of(const Regrouping& work, const Body& body,
 
 // What observers hear of a pair that came to touch together with others.
 Collision fusion_of(const Regrouping& work, const ContactPair& pair) {
-  Collision row;
-  row.kind = CollisionKind::fusion;
-  row.key = work.key();
-  row.time = work.now();
-  row.body1 = pair.a();
-  row.body2 = pair.b();
+  Collision row = work.told_of(CollisionKind::fusion, pair);
   if (pair.count == 0) return row;
   const NewContact& first = work.contacts[pair.first];
   row.point = first.point;
@@ -500,7 +495,7 @@ void fuse(Regrouping& work, double interval) {
   for (const BodyId id : work.placed_bodies) {
     work.together->visit_touching(id, [&](BodyId other) {
       const Body& partner = work.scene().body(other);
-      const std::uint64_t pair = pair_id(std::min(id, other), std::max(id, other));
+      const std::uint64_t pair = pair_id(id, other);
       if ((partner.dynamic() && other < id) || pair == struck || work.pair_before(pair) ||
           std::binary_search(work.left_out.begin(), work.left_out.end(), pair))
         return;

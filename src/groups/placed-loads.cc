@@ -289,26 +289,20 @@ bool touches(const NewContact& c, double size) {
   return c.gap <= c.reach() + answer::start_depth * size;
 }
 
-// Of the lighter one's weight: a pair that carries less in the balance carries nothing.
-constexpr double carried_share = 1e-6;
-
 // Notes the pairs of two moving bodies that came to touch now and carry nothing.
 void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
                    const std::vector<NewContact>& contacts) {
   if (!work.together) return;
   const Scene& scene = work.scene();
   const std::uint64_t struck =
-      pair_id(std::min(work.successors[0].body->id(), work.successors[1].body->id()),
-              std::max(work.successors[0].body->id(), work.successors[1].body->id()));
+      pair_id(work.successors[0].body->id(), work.successors[1].body->id());
   std::vector<std::uint64_t> carrying;
-  const auto pair_of = [&](const NewContact& c) {
-    return pair_id(std::min(c.tag.reference, c.tag.other), std::max(c.tag.reference, c.tag.other));
-  };
+  const auto pair_of = [](const NewContact& c) { return pair_id(c.tag.reference, c.tag.other); };
   for (const Spring& s : springs) {
     const NewContact& c = contacts[s.number];
     const double weight = scene.gravity_scale() *
                           std::min(scene.body(c.tag.reference).mass, scene.body(c.tag.other).mass);
-    if (s.load > carried_share * weight) carrying.push_back(pair_of(c));
+    if (s.load > answer::carried_share * weight) carrying.push_back(pair_of(c));
   }
   std::sort(carrying.begin(), carrying.end());
   for (const NewContact& c : contacts) {

@@ -36,4 +36,14 @@ Quat Regrouping::attitude(BodyId body) const {
   return successor ? successor->point.q : scene().body(body).motion->pose(now()).q;
 }
 
+Collision Regrouping::told_of(CollisionKind kind, const ContactPair& pair) const {
+  Collision row;
+  row.kind = kind;
+  row.key = key();
+  row.time = now();
+  row.body1 = pair.a();
+  row.body2 = pair.b();
+  return row;
+}
+
 }  // namespace tw

@@ -46,7 +46,7 @@ struct NewContact {
   double gap = 0;               // m
   Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
   Vec3 point = Vec3::Zero();
-  std::optional<ContactConstants> law_before;  // none: the contact is new
+  std::optional<ContactConstants> law_before;  // none: nothing of it was there
 
   // The gap up to which it presses, but for the law's own depth, m.
   double reach() const { return std::max(contact.offset, 0.0); }
@@ -119,6 +119,8 @@ struct Regrouping {
   // Where a body is now: by its successor, or, of one without, on its motion.
   PlacedBody placed(BodyId body) const;
   Quat attitude(BodyId body) const;
+  // What observers hear of a pair, but for where and how fast.
+  Collision told_of(CollisionKind kind, const ContactPair& pair) const;
 
  private:
   std::vector<std::pair<ProcessId, std::size_t>> index_;

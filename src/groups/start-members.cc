@@ -18,8 +18,8 @@ void StartOfMembers::add(const Body& body, const PoseTwist& point, const StateDa
   if (body.multibody) add_link(body, d, joints);
   if (body.shape_P) {
     size_ = std::min(size_, body.least_width);
-    const double wide = 2 / std::sqrt(3.0) * body.radius;
-    slimness_ = std::min(slimness_, std::sqrt(body.least_width / wide) / answer::thin_check_share);
+    slimness_ = std::min(slimness_,
+                         std::sqrt(body.least_width / cube_width(body)) / answer::thin_check_share);
   }
   reach_ += extent;
   speed_ = std::max(speed_, PlacedBody(body, point).surface_speed());

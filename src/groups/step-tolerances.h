@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "dynamics/body.h"
 
 namespace tw {
 
@@ -36,5 +37,8 @@ inline double group_closeness(double accuracy, double share_of_speed) {
 inline double group_velocity_tolerance(double accuracy, double size, double gravity) {
   return 100 * accuracy_of_steps(accuracy) * std::sqrt(gravity * size);
 }
+
+// The edge of a cube as far across as the body, m: what it would be if it were not thin.
+inline double cube_width(const Body& body) { return 2 / std::sqrt(3.0) * body.radius; }
 
 }  // namespace tw

@@ -22,23 +22,8 @@ void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
   simulation.require_between_runs("contact parameters were set");
   simulation.scene.contacts.add(a, b, settings);
   if (!simulation.present.begun) return;
-  if (settings.collide && *settings.collide) require_apart(a, b);
   discontinuities.restart_future();
   editing.renew_groups();
-}
-
-// What has passed into another body may not come to collide with it there: then it goes on passing.
-void Kernel::require_apart(const ContactSide& a, const ContactSide& b) {
-  try {
-    for (const auto& body : simulation.scene.bodies)
-      if (side_matches(a, body->contact) || side_matches(b, body->contact))
-        bodies.check_overlaps(*body);
-  } catch (...) {
-    ContactSettings off;
-    off.collide = false;
-    simulation.scene.contacts.add(a, b, off);
-    throw;
-  }
 }
 
 std::uint64_t Kernel::add_callback(const CallbackDef& def) {

@@ -78,7 +78,6 @@ class Kernel {
 
  private:
   Progress process(const Event& event);
-  void require_apart(const ContactSide& a, const ContactSide& b);
 
   WorkCount before_ = work_count;  // of other worlds in this thread
 };

@@ -186,8 +186,8 @@ std::optional<PairOutcome> PairChecks::follow_exact(Pair& pair, const Piece& pie
 // ---- pairs on the grid ----
 
 // Overlapping and approaching at the common start is an impact now; so is touch without either
-// where something presses the two together, or one is in a group and the other moves by itself or
-// not at all: the group's next check would find them in contact, and until then they would be
+// where something presses the two together, or one is in a group and the other is fixed or moves
+// as it is told: the group's next check would find them in contact, and until then they would be
 // looked at without end.  True if one was found.
 bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const {
   const double start = piece.start_time();

@@ -278,28 +278,6 @@ TEST(PlacedTouching, what_is_put_elsewhere_leaves_those_it_touched) {
   EXPECT_LT((world.state(low).position - Vec3(0, 0, 0.5)).norm(), 1e-9);
 }
 
-// What passed into the ground while the two did not collide may not come to: it would be thrown
-// out.
-TEST(PlacedTouching, what_overlaps_cannot_come_to_collide) {
-  World world;
-  add_floor_at(world, 0, 0.5);
-  const BodyId block = world.add_body(light(make_box({1, 1, 1}), {0, 0, 0.5}));
-  ContactSettings pass, collide;
-  pass.collide = false;
-  collide.collide = true;
-  world.set_contact({}, {}, pass);
-  world.advance(0.1);
-  const double fallen = world.state(block).position.z();
-  EXPECT_THROW(world.set_contact({}, {}, collide), UserError);
-  world.advance(0.2);
-  EXPECT_NEAR(world.state(block).position.z(), 0.5 - 0.5 * g * 0.04, 1e-12) << "it goes on falling";
-  world.edit(block, [](StateView& view) { view.set_pose({0, 0, 1}, Quat::Identity()); });
-  world.set_contact({}, {}, collide);
-  world.advance(3);
-  EXPECT_LT(fallen, 0.46);
-  EXPECT_GT(world.state(block).position.z(), 0.49);
-}
-
 TEST(PlacedTouching, has_one_history) {
   std::vector<Schedule> schedules;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
