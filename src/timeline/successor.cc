@@ -58,6 +58,7 @@ void take_velocities(Successor& successor, const ImpulseSlot& after) {
   successor.data.v = successor.point.v = after.v;
   successor.point.w = after.w;
   successor.data.L = angular_momentum(*successor.body, successor.point.q, after.w);
+  if (successor.joints) successor.joints_changed = true;
 }
 
 }  // namespace tw

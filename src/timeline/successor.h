@@ -26,7 +26,8 @@ struct Successor {
   // Of a link: its multibody's joints then, shared by all successors that are its links; becomes
   // data.joints where new arcs start.
   std::shared_ptr<MultibodyState> joints;
-  bool joints_changed = false;  // where they are or how fast: by an edit or a callback
+  // Where they are or how fast, by an edit, a callback or impulses: its fellows don't know yet.
+  bool joints_changed = false;
 
   ProcessId process() const { return body->process; }
   bool enters() const { return role != Role::no_state; }

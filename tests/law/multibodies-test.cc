@@ -197,6 +197,46 @@ TEST(Multibodies, links_that_are_welded_take_impulses_as_one_body) {
   EXPECT_LT((after(true) - after(false)).norm(), 1e-9);
 }
 
+// Links that rest feel at once what strikes a fellow.  A cylinder on a block with two balls welded
+// to it swings down and strikes the floor with both, at one instant but for rounding; without
+// losses at impacts, what the blows leave in excess (8 % here, if the second finds the cylinder as
+// the first had not touched it) would show.
+TEST(Multibodies, strikes_at_one_instant_on_a_link_beside_resting_ones_give_no_energy) {
+  World world;
+  set_contact_for_all(world, 1, 0);
+  add_floor(world);
+  BodyDef block;
+  block.name = "block";
+  block.shape = make_box(Vec3(0.4, 1, 0.1));
+  block.position = Vec3(0, 0, 0.05);
+  block.fixed = true;
+  world.add_body(block);
+  MultibodyDef def;
+  def.name = "three";
+  def.free = true;
+  def.position = Vec3(0, 0, 0.2);
+  LinkDef rear;
+  rear.name = "rear";
+  const Quat sideways(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitX()));
+  rear.body.shape = place_shape(make_cylinder(0.1, 0.4), Pose{Vec3::Zero(), sideways});
+  def.links.push_back(rear);
+  for (const double side : {0.2, -0.2}) {
+    LinkDef ball;
+    ball.name = side > 0 ? "left" : "right";
+    ball.parent = "rear";
+    ball.joint.kind = multibody::JointKind::weld;
+    ball.joint.placement.p = Vec3(0.5, side, 0);
+    ball.body.shape = make_sphere(0.1);
+    def.links.push_back(ball);
+  }
+  world.add_multibody(def);
+  world.advance(0.14);
+  const double before = world.total_energy();
+  world.advance(0.16);
+  EXPECT_GE(count_of(world.statistics(), "collisions"), 2);
+  EXPECT_LT(world.total_energy(), before + 1e-5);
+}
+
 // The schedule never changes the answer.
 TEST(Multibodies, one_history_whatever_the_schedule) {
   const auto scene = [](World& world) {
