@@ -76,18 +76,21 @@ double deviation(const Before& before, const Group& group, const Body& body) {
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }
 
-// Those that touch the region and move; what rests wakes where it notices.
-void add_neighbours(Region& region, const Before& before) {
-  std::vector<ProcessId> next;
-  before.visit_contacts(region.inside,
-                        [&](const Group& owner, const ContactPair& pair, BodyId other) {
-                          const State& theirs = before.state_of(other);
-                          const bool rests = theirs.group && theirs.group->at_rest;
-                          if (rests || holds(region.inside, theirs.process)) return;
-                          if (carries(owner, pair, before.key().time))
-                            next.push_back(theirs.process);
-                        });
-  for (const ProcessId process : next) insert(region.inside, process);
+// Those that touch `outmost` and move, then those that touch these, until `enough` are inside; what
+// rests wakes where it notices.
+void add_neighbours(Region& region, const Before& before, std::vector<ProcessId> outmost,
+                    std::size_t enough) {
+  do {
+    std::vector<ProcessId> next;
+    before.visit_contacts(outmost, [&](const Group& owner, const ContactPair& pair, BodyId other) {
+      const State& theirs = before.state_of(other);
+      const bool rests = theirs.group && theirs.group->at_rest;
+      if (rests || holds(region.inside, theirs.process)) return;
+      if (carries(owner, pair, before.key().time)) insert(next, theirs.process);
+    });
+    for (const ProcessId process : next) insert(region.inside, process);
+    outmost = std::move(next);
+  } while (!outmost.empty() && region.inside.size() < enough);
 }
 
 // Small groups whole, and the border.  What this depends on stands in states of the region and its
@@ -169,14 +172,15 @@ bool misses(const Regrouping& work, const PairBefore& old, const Body& body) {
 Region region_of(const Before& before, const std::vector<ProcessId>& struck, bool whole) {
   Region region;
   region.inside = struck;
-  if (!whole) add_neighbours(region, before);
+  if (!whole) add_neighbours(region, before, struck, 0);
   complete(region, before, whole);
   return region;
 }
 
 void widen(Region& region, const Before& before, const std::vector<ProcessId>& more) {
+  const std::size_t enough = answer::region_growth * region.inside.size();
   for (const ProcessId process : more) insert(region.inside, process);
-  add_neighbours(region, before);
+  add_neighbours(region, before, more, enough);
   complete(region, before, false);
 }
 

@@ -30,7 +30,9 @@ struct Region {
 // Of a discontinuity that concerns the dynamic processes `struck`.  `whole`: with all their groups.
 Region region_of(const Before& before, const std::vector<ProcessId>& struck, bool whole);
 
-// The region with these taken in, and those that touch it then.
+// The region with these taken in, and those that touch them: in a chain each step would find two
+// more at its ends and throw all arcs away, so it is at least twice as large then, if so many
+// touch.
 void widen(Region& region, const Before& before, const std::vector<ProcessId>& more);
 
 // Who at the border would notice, once the groups are made; integrates those with a border to their
