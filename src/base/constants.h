@@ -177,6 +177,11 @@ inline constexpr int most_looks = 4096;
 inline constexpr double patience_growth = 16;
 // Depth that may stay unrepresented to the end of an arc, share of the contact's static depth.
 inline constexpr double unseen_depth = 0.5;
+// An arc ends where a contact is deeper than this many times what there is, and by so many static
+// depths.
+inline constexpr double phantom_share = 2, phantom_depth = 4;
+// And after so many steps: where they are small, contacts are soon other ones.
+inline constexpr int most_arc_steps = 64;
 // A gap below this share of the static depth counts as touch when impulses are passed on: found at
 // the touch, up to rounding.
 inline constexpr double touching = 1e-3;

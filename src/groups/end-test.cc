@@ -110,6 +110,18 @@ double unseen_touch(const PairOnArc& pair, double from, double to, double allowe
   return never;
 }
 
+// When the contacts of the pair came to claim a depth that is not there, which went on to `to`. The
+// point of a rim, or of two lines that cross, runs away where they come to be parallel, and a ball
+// that stands for a rim knows nothing of where the face under it ends.
+double phantom_touch(const PairOnArc& pair, double from, double to, double allowed) {
+  const auto excess = [&](double t) {
+    return answer::phantom_share * pair.deepest(t, false) - pair.represented(t) - allowed;
+  };
+  const double first = excess(from), last = excess(to);
+  if (first >= 0 || last <= 0) return never;
+  return find_root(excess, from, to, first, last).left;
+}
+
 // When a contact whose gap goes from `first` > 0 to `last` < 0 closes, if faster than `slow`; else
 // `never`.
 double fast_touch(const GroupArc& arc, int contact, double from, double to, double first,
@@ -127,6 +139,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   PairOnArc along{scene, group, pair, a, b, {}, {}};
   const ContactScales scales = contact_scales(scene, a, b, pair.masses);
   const double allowed = answer::unseen_depth * scales.law.gap_scale();
+  const double phantom = answer::phantom_depth * scales.law.gap_scale();
   const double travel = along.travel(), size = std::min(a.least_width, b.least_width);
   if (travel <= allowed) return group.next_check;
 
@@ -149,7 +162,10 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
         end = std::min(end,
                        fast_touch(*group.arc, contact, from, to, first, last, scales.borne_speed));
     });
-    if (known - along.deepest(to, false) > allowed) {
+    const double deepest = along.deepest(to, false);
+    if (answer::phantom_share * deepest - known > phantom)
+      end = std::min(end, phantom_touch(along, from, to, phantom));
+    if (known - deepest > allowed) {
       if (a.fixed() || b.fixed()) {
         const Body& mover = a.dynamic() ? a : b;
         const Trajectory& path = along.trajectory(mover);
@@ -215,6 +231,7 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
               GroupCounters& counters) {
   if (group.end_tested || group.at_rest) return;
   group.arc->extend_patiently(group.next_check);
+  group.next_check = std::min(group.next_check, group.arc->last());
   group.end_tested = true;
   const GroupCounts effort = group.arc->counts();
   if (effort.steps + effort.rejected > counters.dearest_arc.tried())

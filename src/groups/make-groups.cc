@@ -46,6 +46,15 @@ void index_pairs(const Scene& scene, Group& group) {
       [&](std::size_t member, std::uint32_t i) { group.pairs_by_member[next[member]++] = i; });
 }
 
+// Until when one at a border knows where it goes, s.
+double known_until(const Regrouping& work, const Successor& successor) {
+  const Group& theirs = *successor.data.group;
+  const double end = theirs.next_check_at(work.now());
+  if (theirs.at_rest) return end;
+  theirs.arc->extend_patiently(end);
+  return std::min(end, theirs.arc->last());
+}
+
 // The motion of a body that a group meets.
 TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
   const Body& body = work.scene().body(id);
@@ -57,9 +66,8 @@ TrajectoryPtr outside_motion(const Regrouping& work, BodyId id) {
   if (theirs.at_rest) return successor.data.follows;
   // a copy of what the new group will see of it: a group that kept those at its border, and these
   // theirs, would keep all there ever were
-  const double end = theirs.next_check_at(work.now());
-  theirs.arc->extend_patiently(end);
-  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(), end);
+  return theirs.arc->excerpt(static_cast<int>(successor.data.member), work.now(),
+                             known_until(work, successor));
 }
 
 void start_members(const Regrouping& work, const Group& group, StartOfMembers& members) {
@@ -103,6 +111,8 @@ void start_arc(Regrouping& work, Group& group) {
   GroupStart start;
   start.time = work.now();
   start.first_step = group.first_step;
+  // joints alone see everything
+  if (!group.pairs.empty()) start.most_steps = answer::most_arc_steps;
   StartOfMembers members(work.scene(), start);
   start_members(work, group, members);
   // where a base jumps the joints go on with other velocities
@@ -171,8 +181,7 @@ double take_pairs(const Regrouping& work, Group& group) {
     const Successor* successor = work.successor_of(other);
     if (!successor) continue;
     group.has_border = true;
-    if (!work.changes(successor))
-      border_end = std::min(border_end, successor->data.group->next_check_at(work.now()));
+    if (!work.changes(successor)) border_end = std::min(border_end, known_until(work, *successor));
   }
   index_pairs(work.scene(), group);
   for (const ProcessId member : group.members)

@@ -68,10 +68,13 @@ Vec3 missed_impulse(BodyId body, const Group& group, const ContactPair& pair, co
 double deviation(const Before& before, const Group& group, const Body& body) {
   const State& old = before.state(body.process);
   if (!old.group) return never;
-  const double end = group.arc->reached();
-  const GroupSample now = group.arc->evaluate(group.member_of(body.process), end);
+  double end = group.arc->reached();
   // an arc that began at this very instant need not be complete
-  if (!old.group->at_rest) old.group->arc->extend_patiently(end);
+  if (!old.group->at_rest) {
+    old.group->arc->extend_patiently(end);
+    end = std::min(end, old.group->arc->last());
+  }
+  const GroupSample now = group.arc->evaluate(group.member_of(body.process), end);
   const PoseTwist was = old.trajectory().at(end);
   return (now.v - was.v).norm() + (now.w - was.w).norm() * body.radius;
 }

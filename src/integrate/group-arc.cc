@@ -38,7 +38,9 @@ struct GroupArc::Data {
         record(stepper.record()) {}
 
   // Whether all that there will ever be is there.
-  bool complete() const { return record.reached() >= start.end || !failure.empty(); }
+  bool complete() const { return record.reached() >= last() || !failure.empty(); }
+  bool stops() const { return record.steps() >= start.most_steps; }
+  double last() const { return stops() ? record.reached() : start.end; }
   // A time on the arc.
   double at(double time) const {
     TW_ASSERT(time <= record.reached() || complete(),
@@ -68,11 +70,11 @@ struct GroupArc::Data {
     Vec3 center_b[lane_count];
   };
   const KeptPack& pack_at(int number, double at) const;
-  // What a contact does to a member; where the work counts, how fast the outside body's material
-  // moves there, and the power of the torque at its turning.
+  // What a contact does to a member, where from its centre of mass; where the work counts, how fast
+  // the outside body's material moves there, and its turning.
   struct MemberForce {
-    Vec3 force, other_velocity;
-    double normal = 0, turning_power = 0;
+    Vec3 force, torque, arm, other_velocity, other_turn;  // torque: beside that of the force
+    double normal = 0;
   };
   MemberForce force_on(int member, const WorkingContact& contact, double at) const;
   int strongest_contact() const;
@@ -135,6 +137,7 @@ GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(st
 GroupArc::~GroupArc() = default;
 
 const GroupStart& GroupArc::start() const { return data_->start; }
+double GroupArc::last() const { return data_->last(); }
 double GroupArc::reached() const { return data_->record.reached(); }
 bool GroupArc::complete() const { return data_->complete(); }
 const std::string& GroupArc::failure() const { return data_->failure; }
@@ -147,7 +150,7 @@ void GroupArc::lower_ends(std::vector<double> ends) {
 }
 
 double GroupArc::end(int member) const {
-  return data_->ends.empty() ? data_->start.end : data_->ends[static_cast<std::size_t>(member)];
+  return data_->ends.empty() ? data_->last() : data_->ends[static_cast<std::size_t>(member)];
 }
 
 const Trajectory& GroupArc::trajectory(int member) const {
@@ -159,7 +162,7 @@ GroupCounts GroupArc::counts() const { return data_->stepper.counts(); }
 bool GroupArc::extend(double time) {
   Data& d = *data_;
   const double to = std::min(time, d.start.end);
-  while (d.record.reached() < to && d.failure.empty())
+  while (d.record.reached() < to && !d.complete())
     if (!d.stepper.step()) d.fail();
   return d.record.reached() >= to;
 }
@@ -167,8 +170,7 @@ bool GroupArc::extend(double time) {
 bool GroupArc::extend_patiently(double time) {
   Data& d = *data_;
   constexpr int between_looks = 16;
-  for (int step = 1; d.record.reached() < std::min(time, d.start.end) && d.failure.empty();
-       ++step) {
+  for (int step = 1; d.record.reached() < time && !d.complete(); ++step) {
     if (step % between_looks == 0) raise_if_interrupted();
     if (!d.stepper.step()) d.fail();
   }
@@ -344,25 +346,30 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   const Vec3 on_b = lane(kept.state.f);
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
   const bool is_b = pack.b[i] == member;
-  MemberForce result{is_b ? on_b : Vec3(-on_b), Vec3::Zero(), kept.state.N[i]};
+  const Vec3 point = kept.center_b[i] + lane(kept.state.sb);
+  MemberForce result{is_b ? on_b : Vec3(-on_b),
+                     Vec3::Zero(),
+                     point - record.position(member, at),
+                     Vec3::Zero(),
+                     Vec3::Zero(),
+                     kept.state.N[i]};
+  if (kept.state.turns) result.torque = (is_b ? 1 : -1) * lane(kept.state.torque);
   if (!c.counts) return result;
   const int other = is_b ? pack.a[i] : pack.b[i];
   GroupScratch& s = stepper.scratch();
   system.set_outside_slot(other, at, s.bodies);
   const BodyKinematics& body = s.bodies[static_cast<std::size_t>(other)];
   const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
-  const Vec3 arm = kept.center_b[i] + lane(kept.state.sb) - vec(body.x);
-  result.other_velocity = vec(body.v) + vec(body.w).cross(arm);
-  if (kept.state.turns)
-    result.turning_power = (is_b ? 1 : -1) * lane(kept.state.torque).dot(vec(body.w));
+  result.other_turn = vec(body.w);
+  result.other_velocity = vec(body.v) + result.other_turn.cross(point - vec(body.x));
   return result;
 }
 
 // Gauss's rule with two points a step.  The force of the dense output is not what the step was made
 // of: damping turns the small error of velocities between the steps' ends into one of forces,
 // always to the same side (2.6 % of the work of a lift at accuracy 1e-4, 0.1 % at 1e-6).  What the
-// step was made of is known as a whole, m dv - F h; the difference is shared out by the normal
-// forces.
+// step was made of is known as a whole, m dv - F h and dL; the difference is shared out by the
+// normal forces, and what it lacks of the torque likewise.
 double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, double from,
                          double to) const {
   const Data& d = *data_;
@@ -375,21 +382,28 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
   const double end = d.at(to);
   for (double start = d.at(from); start < end;) {
     const double stop = std::min(end, step_end(start)), h = stop - start;
-    Vec3 v0, v1, L, impulse = Vec3::Zero(), carrying = Vec3::Zero();
+    Vec3 v0, v1, L0, L1;
     if (is_free) {
-      d.record.velocities(member, start, v0, L);
-      d.record.velocities(member, stop, v1, L);
+      d.record.velocities(member, start, v0, L0);
+      d.record.velocities(member, stop, v1, L1);
     }
+    // of all contacts, and by normal forces: where they act, how those that count move there and
+    // turn
+    Vec3 impulse = Vec3::Zero(), angular = Vec3::Zero();
+    Vec3 arm = Vec3::Zero(), carrying = Vec3::Zero(), turning = Vec3::Zero();
     double normal = 0;
     for (const double side : {-1.0, 1.0}) {
       const double when = start + 0.5 * h + side * 0.5 / std::sqrt(3.0) * h;
       for (const WorkingContact& c : contacts) {
         const Data::MemberForce f = d.force_on(member, c, when);
         impulse += 0.5 * h * f.force;
+        angular += 0.5 * h * (f.arm.cross(f.force) + f.torque);
         normal += 0.5 * h * f.normal;
+        arm += 0.5 * h * f.normal * f.arm;
         if (!c.counts) continue;
-        work += 0.5 * h * (f.force.dot(f.other_velocity) + f.turning_power);
+        work += 0.5 * h * (f.force.dot(f.other_velocity) + f.torque.dot(f.other_turn));
         carrying += 0.5 * h * f.normal * f.other_velocity;
+        turning += 0.5 * h * f.normal * f.other_turn;
       }
     }
     if (!is_free) {
@@ -397,7 +411,10 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
       continue;
     }
     const Vec3 missed = body.mass * (v1 - v0) - h * body.force - impulse;
-    if (normal > 0) work += missed.dot(carrying) / normal;
+    if (normal > 0) {
+      const Vec3 twist = L1 - L0 - angular - arm.cross(missed) / normal;
+      work += (missed.dot(carrying) + twist.dot(turning)) / normal;
+    }
     start = stop;
   }
   return work;

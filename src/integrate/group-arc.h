@@ -29,6 +29,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -121,9 +122,10 @@ struct GroupStart {
   std::vector<TrajectoryPtr> outside;  // of bodies that the arc meets and does not move
   std::vector<GroupContact> contacts;
   std::vector<GroupBond> bonds;
-  double first_step = 0;             // to be tried first, s; 0: chosen
-  double position_tolerance = 1e-6;  // m, of one step (RMS over members)
-  double velocity_tolerance = 1e-5;  // m/s
+  double first_step = 0;                             // to be tried first, s; 0: chosen
+  int most_steps = std::numeric_limits<int>::max();  // the arc goes no further then
+  double position_tolerance = 1e-6;                  // m, of one step (RMS over members)
+  double velocity_tolerance = 1e-5;                  // m/s
   // Of a multibody that touches nothing: the error of its joints in one step, rad; 0: it is
   // integrated as groups are.
   double joint_tolerance = 0;
@@ -168,12 +170,15 @@ class GroupArc : public Counted<GroupArc> {
   GroupArc& operator=(const GroupArc&) = delete;
 
   const GroupStart& start() const;
-  // Integrates as far as `time` (at most to the end).  False: it stopped before; see failure().
+  // Integrates as far as `time`.  False: it stopped before; see last() and failure().
   bool extend(double time);
   // The same; may be given up between two steps (base/interruption.h): for those who have changed
   // nothing yet.
   bool extend_patiently(double time);
   double reached() const;  // how far it is integrated, s
+  // How far it goes, s: to the end that its start tells or, found out on the way, to where it has
+  // taken its most steps.
+  double last() const;
   // Whether all that there will ever be of it is there: to look at it changes nothing any more.
   bool complete() const;
   // Where the members' trajectories end: at the arc's end, or earlier where somebody found out that

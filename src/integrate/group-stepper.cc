@@ -163,15 +163,23 @@ bool GroupStepper::try_step(double h, GroupScratch& s, double& error) {
   return std::isfinite(error + sum);
 }
 
-// RMS over members and over the four parts, of the changes that the last stage left
+// RMS over members and over the four parts, of the changes that the last stage left.  A turn about
+// a principal axis counts at twice the radius of gyration, the body's radius at most: what is
+// slender moves little by its roll.
 double GroupStepper::error_norm(const GroupScratch& s) const {
   double positions = 0, velocities = 0;
   for (int i = 0; i < system_.members(); ++i) {
     const BodyChange& e = s.changes[static_cast<std::size_t>(i)];
-    const double r = start_.members[static_cast<std::size_t>(i)].radius, squared = r * r;
+    const GroupMember& m = start_.members[static_cast<std::size_t>(i)];
+    const double* R = s.bodies[static_cast<std::size_t>(i)].R;
     for (int j = 0; j < 3; ++j) {
-      positions += e.x[j] * e.x[j] + squared * e.th[j] * e.th[j];
-      velocities += e.v[j] * e.v[j] + squared * e.w[j] * e.w[j];
+      const double lever = std::min(4 * m.moments[j] / m.mass, m.radius * m.radius);  // squared
+      const auto along = [&](const double* v) {
+        return R[j] * v[0] + R[3 + j] * v[1] + R[6 + j] * v[2];
+      };
+      const double th = along(e.th), w = along(e.w);
+      positions += e.x[j] * e.x[j] + lever * th * th;
+      velocities += e.v[j] * e.v[j] + lever * w * w;
     }
   }
   const double p = start_.position_tolerance, v = start_.velocity_tolerance;

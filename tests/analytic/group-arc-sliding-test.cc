@@ -73,7 +73,7 @@ TEST(GroupArc, anchored_block_below_the_friction_angle_comes_to_rest) {
   CompleteArc arc(start);
   const GroupSample settled = arc.evaluate(0, 2), later = arc.evaluate(0, 4);
   EXPECT_LT(later.v.norm(), 1e-12);
-  EXPECT_LT((later.x - settled.x).norm(), 1e-12);
+  EXPECT_LT((later.x - settled.x).norm(), 1e-11);
   // moved by about the stretch that carries the weight, 2.1e-5 m, and its pitch
   EXPECT_LT(later.x.x(), 3 * g * std::sin(twenty) / start.contacts[0].law.kt);
   EXPECT_FALSE(arc.contact_force(0, 4).slipping);

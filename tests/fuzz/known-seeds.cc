@@ -11,6 +11,7 @@ const KnownFault table[] = {
     // beyond what make check-long runs; the causes were not looked into
     {"heap", 330, Fault::energy, 0.0039, "bodies of 1 cm without friction, at accuracy 1e-4"},
     {"drum", 560, Fault::energy, 0.0021, "four bodies in a drum"},
+    {"thin", 199, Fault::energy, 0.0023, "a rim of a coin on another one comes into contact deep"},
 };
 
 const MendedSeed mended[] = {
@@ -36,13 +37,14 @@ const MendedSeed mended[] = {
     {"seam", 5424, "a union leaned over its tiles' edge, and that was taken for a slot's"},
     {"stack", 7967,
      "a point that came to a face which bore a load pressed ten times as hard as the others"},
-    {"thin", 199, "the same between coins of 1:100 at 90 m/s: 1.8 % of the energy"},
     {"thin", 451, "steps of coins of 1:100 at accuracy 1e-4 gained energy as they rolled"},
     {"shaker", 20, "boxes between slabs: certificates knew nothing of the slabs but their speed"},
     {"thin", 7833, "a coin over a plate that turned was looked at a million times a second"},
     {"lattice", 6811,
      "drums that slid over a wall without gravity were looked at every microsecond"},
     {"shaker", 5436, "of a room that flew at 13 m/s certificates knew its speed alone"},
+    {"shaker", 5496, "a rim's point on a rod ran away, and the contact thought itself 2.5 cm deep"},
+    {"thin", 5193, "a turn of a rod about its own axis counted as if it were as thick as long"},
     {"thin", 773, "a coin came down on a rod on the floor by thousands of impacts"},
 };
 

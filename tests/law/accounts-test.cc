@@ -74,6 +74,26 @@ TEST(KinematicWork, of_a_turntable_is_twice_the_energy_it_gives) {
   EXPECT_NEAR(work, 2 * energy, 2e-3 * 2 * energy);
 }
 
+// A box that sticks to a tray which is lifted and rocked about a slanting axis: all comes back but
+// what the springs' dampers take, 0.013 J of 56 J at an accuracy of 1e-9.  Here its error is that
+// of the steps; without the torque that they know of it was 0.08 J.
+TEST(KinematicWork, of_a_rocked_tray_is_given_back) {
+  World world;
+  set_contact_for_all(world, 0, 1);
+  const Quat tilted = rotation_by(0.4 * Vec3(0.6, 0.8, 0));
+  add_platform(world,
+               {{0.5, {0, 0, -0.1}, {}}, {1.5, {0.1, 0, 0.1}, tilted}, {2.5, {0, 0, -0.1}, {}}},
+               true);
+  add_box(world, {0.4, 0.4, 0.4}, {1, 0.2, 0.2});
+  double most = 0;
+  for (const double time : {1.0, 1.5, 2.0, 3.0}) {
+    world.advance(time);
+    most = std::max(most, std::abs(number_of(world.statistics(), "kinematic_work")));
+    EXPECT_NEAR(gain_beyond_work(world), -0.007, 0.01) << time;
+  }
+  EXPECT_GT(most, 50);
+}
+
 // A shaken tray with boxes, balls and rocks: whatever they have was given to them.
 TEST(KinematicWork, balances_on_a_shaken_platform_at_every_time) {
   World world;

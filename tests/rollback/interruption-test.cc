@@ -68,7 +68,7 @@ int given_up_in(void (*fill)(World&), double until, int threads) {
   return given_up;
 }
 
-TEST(Interruption, within_an_arc_changes_nothing) { EXPECT_GT(given_up_in(fill_stack, 1, 1), 10); }
+TEST(Interruption, within_an_arc_changes_nothing) { EXPECT_GT(given_up_in(fill_stack, 1, 1), 5); }
 
 TEST(Interruption, between_grid_points_changes_nothing) {
   for (const int threads : {1, 2}) EXPECT_GT(given_up_in(fill_mower, 0.02, threads), 10);
