@@ -83,6 +83,24 @@ TEST(GroupArc, step_end_lies_after_the_time) {
   EXPECT_EQ(arc.step_end(start.end), start.end);
 }
 
+// An arc may be told how many steps it may take: it is complete then, and its steps are those of
+// the one that goes on.
+TEST(GroupArc, goes_no_further_than_its_most_steps) {
+  GroupStart start = falling_stack(3);
+  const CompleteArc whole(start);
+  start.most_steps = 5;
+  GroupArc arc(start);
+  EXPECT_EQ(arc.last(), start.end);
+  EXPECT_FALSE(arc.extend(start.end));
+  EXPECT_TRUE(arc.complete());
+  EXPECT_TRUE(arc.failure().empty());
+  EXPECT_EQ(arc.counts().steps, 5u);
+  EXPECT_EQ(arc.last(), arc.reached());
+  EXPECT_EQ(arc.end(0), arc.reached());
+  EXPECT_LT(arc.reached(), start.end);
+  EXPECT_EQ(arc.evaluate(0, arc.reached()).x, whole.evaluate(0, arc.reached()).x);
+}
+
 // Completing and looking are two things.
 TEST(GroupArcDeathTest, nobody_looks_past_what_is_completed) {
   const GroupStart start = falling_stack(3);
