@@ -39,8 +39,7 @@ struct GroupArc::Data {
 
   // Whether all that there will ever be is there.
   bool complete() const { return record.reached() >= last() || !failure.empty(); }
-  bool stops() const { return record.steps() >= start.most_steps; }
-  double last() const { return stops() ? record.reached() : start.end; }
+  double last() const { return record.steps() >= start.most_steps ? record.reached() : start.end; }
   // A time on the arc.
   double at(double time) const {
     TW_ASSERT(time <= record.reached() || complete(),
@@ -70,11 +69,13 @@ struct GroupArc::Data {
     Vec3 center_b[lane_count];
   };
   const KeptPack& pack_at(int number, double at) const;
-  // What a contact does to a member, where from its centre of mass; where the work counts, how fast
-  // the outside body's material moves there, and its turning.
+  // What a contact does to a member, and where; where the work counts, how fast the outside body's
+  // material moves there, and its turning.
   struct MemberForce {
-    Vec3 force, torque, arm, other_velocity, other_turn;  // torque: beside that of the force
+    Vec3 point, force;
     double normal = 0;
+    Vec3 torque = Vec3::Zero();  // beside that of the force
+    Vec3 other_velocity = Vec3::Zero(), other_turn = Vec3::Zero();
   };
   MemberForce force_on(int member, const WorkingContact& contact, double at) const;
   int strongest_contact() const;
@@ -346,12 +347,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   const Vec3 on_b = lane(kept.state.f);
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
   const bool is_b = pack.b[i] == member;
-  const Vec3 point = kept.center_b[i] + lane(kept.state.sb);
-  MemberForce result{is_b ? on_b : Vec3(-on_b),
-                     Vec3::Zero(),
-                     point - record.position(member, at),
-                     Vec3::Zero(),
-                     Vec3::Zero(),
+  MemberForce result{kept.center_b[i] + lane(kept.state.sb), is_b ? on_b : Vec3(-on_b),
                      kept.state.N[i]};
   if (kept.state.turns) result.torque = (is_b ? 1 : -1) * lane(kept.state.torque);
   if (!c.counts) return result;
@@ -361,7 +357,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   const BodyKinematics& body = s.bodies[static_cast<std::size_t>(other)];
   const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
   result.other_turn = vec(body.w);
-  result.other_velocity = vec(body.v) + result.other_turn.cross(point - vec(body.x));
+  result.other_velocity = vec(body.v) + result.other_turn.cross(result.point - vec(body.x));
   return result;
 }
 
@@ -394,12 +390,13 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
     double normal = 0;
     for (const double side : {-1.0, 1.0}) {
       const double when = start + 0.5 * h + side * 0.5 / std::sqrt(3.0) * h;
+      const Vec3 centre = is_free ? d.record.position(member, when) : Vec3(Vec3::Zero());
       for (const WorkingContact& c : contacts) {
         const Data::MemberForce f = d.force_on(member, c, when);
         impulse += 0.5 * h * f.force;
-        angular += 0.5 * h * (f.arm.cross(f.force) + f.torque);
+        angular += 0.5 * h * ((f.point - centre).cross(f.force) + f.torque);
         normal += 0.5 * h * f.normal;
-        arm += 0.5 * h * f.normal * f.arm;
+        arm += 0.5 * h * f.normal * (f.point - centre);
         if (!c.counts) continue;
         work += 0.5 * h * (f.force.dot(f.other_velocity) + f.torque.dot(f.other_turn));
         carrying += 0.5 * h * f.normal * f.other_velocity;

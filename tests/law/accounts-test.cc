@@ -75,7 +75,7 @@ TEST(KinematicWork, of_a_turntable_is_twice_the_energy_it_gives) {
 }
 
 // A box that sticks to a tray which is lifted and rocked about a slanting axis: all comes back but
-// what the springs' dampers take, 0.013 J of 56 J at an accuracy of 1e-9.  Here its error is that
+// what the springs' dampers take, 0.007 J of 56 J at an accuracy of 1e-9.  Here its error is that
 // of the steps; without the torque that they know of it was 0.08 J.
 TEST(KinematicWork, of_a_rocked_tray_is_given_back) {
   World world;
