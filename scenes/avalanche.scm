@@ -5,7 +5,7 @@
 ;;; gully: each triangle is a slab of its own, and neighbours share their corners.
 (use-modules (timewarp) (timewarp vectors) (srfi srfi-1) (srfi srfi-43) (ice-9 match))
 
-(scene #:title "Avalanche" #:accuracy 1e-4 #:duration 45)
+(scene #:title "Avalanche" #:accuracy 1e-3 #:duration 45)
 
 (define-scene-parameter rocks 300 "number of rocks")
 (define-scene-parameter friction 0.5 "coefficient of friction of all contacts")

@@ -16,7 +16,8 @@
 namespace tw {
 
 inline double accuracy_of_steps(double accuracy) {
-  return std::min(accuracy, answer::loosest_steps);
+  if (accuracy <= answer::true_steps) return accuracy;
+  return std::clamp(0.1 * accuracy, answer::true_steps, answer::loosest_steps);
 }
 
 // Of one step of a contact group, m: `size` is the least width of its smallest member.  At the
