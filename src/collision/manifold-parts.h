@@ -31,7 +31,8 @@ enum class FeatureMode : std::uint64_t {
   lying,
   standing,
   exposed_of_a,
-  exposed_of_b
+  exposed_of_b,
+  along_edges
 };
 
 // The name of a point by the numbers of what meets there.

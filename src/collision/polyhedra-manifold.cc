@@ -55,6 +55,91 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
   out.push_back(p);
 }
 
+// An edge at a nearest feature that lies across the axis.
+struct LevelEdge {
+  int number = -1;
+  Vec3 tail, along;  // along: a unit; both in the frame of A
+  double length = 0;
+};
+
+// The edge that is the feature, or those that end in it.
+void level_edges(const Polyhedron& p, const CoreFeature& feature, const Frame& in_a,
+                 const Vec3& axis, std::vector<LevelEdge>& out) {
+  out.clear();
+  if (feature.count < 1 || feature.count > 2) return;
+  for (const Polyhedron::Link& link : p.links(feature.vertex[0])) {
+    if (feature.count == 2 && link.vertex != feature.vertex[1]) continue;
+    const Polyhedron::Edge& edge = p.edges()[static_cast<std::size_t>(link.edge)];
+    const Vec3 tail = in_a * p.vertex(edge.tail), ends = in_a * p.vertex(edge.head) - tail;
+    const double length = ends.norm();
+    if (std::abs(ends.dot(axis)) > patch::aligned_sine * length) continue;
+    out.push_back({link.edge, tail, ends / length, length});
+  }
+}
+
+// How far, along the unit axis, a point lies over the two faces of an edge.
+double height_over(const Polyhedron& p, int edge, const Vec3& point, const Vec3& axis) {
+  const Polyhedron::Edge& e = p.edges()[static_cast<std::size_t>(edge)];
+  double height = -1e300;
+  for (const int f : {e.left, e.right}) {
+    const Polyhedron::Face& face = p.face(f);
+    const double cosine = face.normal.dot(axis);
+    if (cosine > 0) height = std::max(height, (face.normal.dot(point) - face.offset) / cosine);
+  }
+  return height;
+}
+
+// Edges that lie along each other, as those at the top of two cards that lean on each other: a
+// point at either end of what they share, or they would turn about a single one.
+bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach, int pair,
+               std::vector<ManifoldPoint>& out) {
+  thread_local std::vector<LevelEdge> edges_a, edges_b;
+  level_edges(cores.a, near.a, Frame(), near.normal, edges_a);
+  if (edges_a.empty()) return false;
+  level_edges(cores.b, near.b, cores.b_in_a, near.normal, edges_b);
+  const LevelEdge *a = nullptr, *b = nullptr;
+  double least = patch::aligned_sine;
+  for (const LevelEdge& of_a : edges_a)
+    for (const LevelEdge& of_b : edges_b) {
+      const double sine = of_a.along.cross(of_b.along).norm();
+      if (sine >= least) continue;
+      least = sine;
+      a = &of_a;
+      b = &of_b;
+    }
+  if (!a) return false;
+
+  const double turn = a->along.dot(b->along) < 0 ? -1 : 1;
+  const double start = (b->tail - a->tail).dot(a->along), end = start + turn * b->length;
+  const double from = std::max(0.0, std::min(start, end));
+  const double to = std::min(a->length, std::max(start, end));
+  const double size = cores.a.radius() + cores.b.radius();
+  const double near_at = (near.point_a - a->tail).dot(a->along), slack = coincident_ratio * size;
+  if (!(to - from > slack) || near_at < from - slack || near_at > to + slack) return false;
+  const Frame a_in_b = cores.a_in_b();
+  const Vec3 down = -(a_in_b.R * near.normal);
+  double deepest = 1e300;
+  for (const double at : {from, to}) {
+    const Vec3 on_a = a->tail + at * a->along;
+    const Vec3 on_b = b->tail + turn * (at - start) * b->along;
+    ManifoldPoint p;
+    p.gap = std::min(height_over(cores.a, a->number, on_b, near.normal),
+                     height_over(cores.b, b->number, a_in_b * on_a, down));
+    deepest = std::min(deepest, p.gap);
+    if (p.gap > reach) continue;
+    p.normal = cores.world_a.R * near.normal;
+    p.core_point = cores.world_a * on_b;
+    p.reference_point = p.core_point - p.gap * p.normal;
+    p.pair = pair;
+    p.feature = feature_name(pair, FeatureMode::along_edges,
+                             {static_cast<std::uint64_t>(a->number),
+                              static_cast<std::uint64_t>(b->number), at == from ? 0U : 1U});
+    out.push_back(p);
+  }
+  return deepest <=
+         near.distance + patch::missed_ratio * std::abs(near.distance) + patch::missed_floor * size;
+}
+
 // The direction of the incident edge that the name of a crossing holds.
 Vec3 incident_edge(const Polyhedron& incident, const Frame& placed, std::uint64_t key) {
   const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
@@ -152,7 +237,10 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
   const AlignedFace face_b = aligned_face(cores.b, near.b, down);
   const bool of_a = face_a.cosine >= patch::aligned;
   const bool of_b = face_b.cosine >= patch::aligned;
-  if (!of_a && !of_b) return add_corners(cores, near, pair, out);
+  if (!of_a && !of_b) {
+    if (!add_edges(cores, near, reach, pair, out)) add_corners(cores, near, pair, out);
+    return;
+  }
   const bool reference_is_a = of_a && !(of_b && prefers_b(cores.a.face(face_a.number),
                                                           cores.b.face(face_b.number), choice));
   const bool edges_stay =

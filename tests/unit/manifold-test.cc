@@ -259,6 +259,33 @@ TEST(Manifold, a_box_over_an_edge_is_not_carried_beyond_it) {
   }
 }
 
+// Two cards lean on each other: their upper edges share a stretch, and touch at both its ends.
+TEST(Manifold, edges_along_each_other_touch_at_both_ends) {
+  const ShapePtr card = make_box({0.1, 1, 2});
+  const double lean = 0.3, aside = std::sin(lean) + 0.05 * std::cos(lean);
+  for (const double gap : {1e-3, -1e-3})
+    for (const double shift : {0.0, 0.25}) {
+      const Frame left = turned({0, lean, 0}, {-aside - 0.5 * gap, 0, 1});
+      const Frame right = turned({0, -lean, 0}, {aside + 0.5 * gap, shift, 1});
+      const Points points = manifold_of(card, left, card, right, 0.01);
+      ASSERT_EQ(points.size(), 2u) << gap << ' ' << shift;
+      double from = 1, to = -1;
+      for (const ManifoldPoint& p : points) {
+        from = std::min(from, p.core_point.y());
+        to = std::max(to, p.core_point.y());
+        // what overlaps is pushed out along a face
+        EXPECT_NEAR(p.gap, gap > 0 ? gap : std::cos(lean) * gap, 1e-12);
+      }
+      EXPECT_NEAR(from, shift - 0.5, 1e-12);
+      EXPECT_NEAR(to, 0.5, 1e-12);
+    }
+  // a hair apart from parallel, and no more than one point where they cross
+  const Frame left = turned({0, lean, 0}, {-aside, 0, 1});
+  const Frame skew = turned({0, -lean, 0}, {aside - 1e-3, 0, 1});
+  const Frame crossing(rotation_by({0.3, 0, 0}).toRotationMatrix() * skew.R, skew.p);
+  EXPECT_EQ(manifold_of(card, left, card, crossing, 0).size(), 1u);
+}
+
 TEST(Manifold, a_ball_meets_faces_edges_and_vertices_as_planes_lines_and_points) {
   const ShapePtr ball = make_sphere(0.2);
   const auto meets = [&ball](const Vec3& center) {
