@@ -91,12 +91,15 @@ struct PairOnArc {
   }
 };
 
-// When the pair came to be deeper than its contacts know; `never` if it did not.  What has sunk far
-// into a valley is no longer found there: so the stretch is gone through in quarters.
+// How much deeper the pair is than its contacts know, m.
+double unseen_depth(const PairOnArc& pair, double when) {
+  return std::min(pair.represented(when), 0.0) - pair.deepest(when, true);
+}
+
+// When that came to be more than is allowed; `never` if it did not.  What has sunk far into a
+// valley is no longer found there: so the stretch is gone through in quarters.
 double unseen_touch(const PairOnArc& pair, double from, double to, double allowed) {
-  const auto excess = [&](double t) {
-    return std::min(pair.represented(t), 0.0) - pair.deepest(t, true) - allowed;
-  };
+  const auto excess = [&](double t) { return unseen_depth(pair, t) - allowed; };
   constexpr int quarters = 4;
   double begin = from, first = excess(from);
   if (first >= 0) return never;
@@ -149,7 +152,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
                                   static_cast<double>(answer::most_looks)));
   thread_local std::vector<double> gaps;  // at the last look
   gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
-  double from = start;
+  double from = start, unseen_before = -1;
   for (int i = 1; i <= looks; ++i) {
     const double to = i < looks ? start + length * i / looks : group.next_check;
     double end = never, known = 0;
@@ -173,7 +176,9 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
         along.around_a = surroundings.seam_neighbours(a, ground);
         along.around_b = surroundings.seam_neighbours(b, ground);
       }
-      end = std::min(end, unseen_touch(along, from, to, allowed));
+      // what nobody saw when the arc began must not grow either
+      if (unseen_before < 0) unseen_before = std::max(unseen_depth(along, start), 0.0);
+      end = std::min(end, unseen_touch(along, from, to, unseen_before + allowed));
     }
     if (end < never) return std::min(end, group.next_check);
     from = to;
