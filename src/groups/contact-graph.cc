@@ -523,6 +523,9 @@ void carry(Regrouping& work, const PairBefore& old) {
     const ContactForce f = group.arc->contact_force(static_cast<int>(c), now);
     const GroupContact& known = group.arc->start().contacts[c];
     NewContact contact{known, group.tags[c], f.gap, f.normal, f.point, known.law};
+    // the side on which the other one is: what it was may have turned away with the body
+    if (known.feature != ContactFeature::plane)
+      contact.contact.normal = work.attitude(group.tags[c].reference).conjugate() * f.normal;
     contact.contact.stretch = group.arc->stretch(static_cast<int>(c), now);
     contact.contact.bend = group.arc->bend(static_cast<int>(c), now);
     work.contacts.push_back(contact);
