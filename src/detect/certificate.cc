@@ -73,22 +73,25 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   const Vec3 m = n.cross(side.point.w);
   const Vec3 n_P = frame.R.transpose() * n, m_P = frame.R.transpose() * m;
   const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
-  const double pull = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread) -
-                      side.bend * side.body->radius;
-  if (part.kind != PartKind::polyhedron) {
-    const double gap = c - height - round_top(part, n_P) - part.margin;
-    return gap > 0 ? round_reach(part, gap, u - speed, pull, n_P, m_P) : 0;
-  }
-  double least = never;
-  for (const Vec3& vertex : part.core->vertices()) {
-    const double gap = c - height - n_P.dot(vertex);
-    if (!(gap > 0)) return 0;
-    const double rate = u - speed - m_P.dot(vertex);
-    // a concave height that is positive at both ends is so between
-    if (pull <= 0 && gap + least * (rate + 0.5 * pull * least) > 0) continue;
-    least = std::min(least, first_zero(gap, rate, pull));
-  }
-  return least;
+  const double pull_of_center = alpha - n.dot(side.acceleration) - n.cwiseAbs().dot(side.spread);
+  const auto least = [&](double bend) {
+    const double pull = pull_of_center - bend * side.body->radius;
+    if (part.kind != PartKind::polyhedron) {
+      const double gap = c - height - round_top(part, n_P) - part.margin;
+      return gap > 0 ? round_reach(part, gap, u - speed, pull, n_P, m_P) : 0;
+    }
+    double first = never;
+    for (const Vec3& vertex : part.core->vertices()) {
+      const double gap = c - height - n_P.dot(vertex);
+      if (!(gap > 0)) return 0.0;
+      const double rate = u - speed - m_P.dot(vertex);
+      // a concave height that is positive at both ends is so between
+      if (pull <= 0 && gap + first * (rate + 0.5 * pull * first) > 0) continue;
+      first = std::min(first, first_zero(gap, rate, pull));
+    }
+    return first;
+  };
+  return side.longest_along(n, least);
 }
 
 // Seconds until the two parts may meet, given n from a to b and the witness points.

@@ -4,9 +4,9 @@
 // and moves with the mean of the witness points' velocity and the bodies' acceleration along n.  As
 // long as every point of a part's core stays on its side, the parts are apart.  A core point r of a
 // body in free flight has the height along n
-//   h(s) <= h0 + n.(v + w x r) s + (n.a + (1 + kappa) W^2 |r|) s^2 / 2
-// with W a bound on |w| over the arc and kappa = max |Ii - Ij|/Ik, since |w'| <= kappa W^2 for
-// torque-free rotation.  So the time until the plane may be reached is the least root of
+//   h(s) <= h0 + n.(v + w x r) s + (n.a + (A + W^2) |r|) s^2 / 2
+// with W and A bounds on |w| and |w'| over the arc; where w stays along n, |n x w| W stands in for
+// W^2.  So the time until the plane may be reached is the least root of
 // quadratics: close to the true impact time, and never after it.  Kinematic bodies are bounded by
 // their speed, over a horizon.  Members of groups are bounded by the derivatives of their dense
 // output, over one step.

@@ -38,6 +38,21 @@ struct MovingBody : PlacedBody {
     return narrow;
   }
 
+  // The longer of two times in which no point may come too far along the unit n, given such a time
+  // by a bound on the bend: along n that is no more than |w'| + |n x w| |w|.  What spins in a plane
+  // stays in it.
+  template <class Least>
+  double longest_along(const Vec3& n, const Least& least) const {
+    const double wide = least(bend);
+    if (!(wide > 0 && wide < never) || by_speed) return wide;
+    const double change = bounds.turn_change, across = n.cross(point.w).norm();
+    // n x w may have doubled by then
+    const double until = change > 0 ? std::max(4 * wide, across / change) : never;
+    const double growth = change > 0 ? change * until : 0;
+    const double narrow = change + (across + growth) * bounds.turn;
+    return narrow < 0.5 * bend ? std::max(wide, std::min(until, least(narrow))) : wide;
+  }
+
  private:
   void bound_by(const MotionBounds& b) {
     bounds = b;

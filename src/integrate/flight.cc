@@ -28,7 +28,7 @@ MotionBounds Flight::bounds(double from, double to) const {
   MotionBounds bounds;
   bounds.acceleration = {path_.acceleration, path_.acceleration};
   bounds.turn = rotation_.max_angular_speed();
-  bounds.turn_change = turn_change_;
+  bounds.turn_change = rotation_.max_angular_acceleration();
   bounds.speed = never;
   if (to == never) {
     bounds.path = Aabb::everywhere();

@@ -14,12 +14,7 @@ namespace tw {
 class Flight final : public Trajectory {
  public:
   Flight() = default;
-  // `turn_excess`: max |Ii - Ij| / Ik, for |w'| <= turn_excess |w|^2.
-  Flight(const FreeRotation& rotation, double turn_excess, const Parabola& path)
-      : rotation_(rotation), path_(path) {
-    const double turn = rotation.max_angular_speed();
-    turn_change_ = turn_excess * turn * turn;
-  }
+  Flight(const FreeRotation& rotation, const Parabola& path) : rotation_(rotation), path_(path) {}
 
   Pose pose(double time) const override;
   Twist twist(double time) const override;
@@ -31,8 +26,7 @@ class Flight final : public Trajectory {
 
  private:
   FreeRotation rotation_;
-  double turn_change_ = 0;  // bound on |w'|, rad/s^2
-  Parabola path_;           // last: beside what predictions read of a state
+  Parabola path_;  // last: beside what predictions read of a state
 };
 
 }  // namespace tw

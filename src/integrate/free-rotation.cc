@@ -159,6 +159,9 @@ void FreeRotation::set_axisymmetric(const Vec3& n, Eigen::Index a) {
   half_turn_rate_ = 0.5 * (up * speeds_[a] + across2 / (1.0 + up) * speeds_[j]);
   max_angular_speed_ =
       std::hypot(std::sqrt(across2) * speeds_[j], up * speeds_[a]) * rounding_margin;
+  // w precesses
+  max_angular_acceleration_ =
+      std::abs(phase_rate_ * speeds_[j]) * std::sqrt(across2) * rounding_margin;
 }
 
 void FreeRotation::set_triaxial(const Vec3& n, double momentum, const Vec3& moments) {
@@ -188,6 +191,12 @@ void FreeRotation::set_triaxial(const Vec3& n, double momentum, const Vec3& mome
   const double at_zero = std::hypot(r[0] * speeds_[o.a], r[2] * speeds_[o.c]);
   const double at_one = std::hypot(std::sqrt(o.m1) * r[0] * speeds_[o.a], r[1] * speeds_[o.b]);
   max_angular_speed_ = std::max(at_zero, at_one) * rounding_margin;
+  // w_a' = L/I_a (L/I_c - L/I_b) n_b n_c and so on, each n_i within its amplitude
+  const double sa = speeds_[o.a], sb = speeds_[o.b], sc = speeds_[o.c];
+  max_angular_acceleration_ =
+      Vec3(sa * (sc - sb) * r[1] * r[2], sb * (sa - sc) * r[2] * r[0], sc * (sb - sa) * r[0] * r[1])
+          .norm() *
+      rounding_margin;
 }
 
 // Q from the attitude at time 0.

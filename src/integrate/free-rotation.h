@@ -44,6 +44,8 @@ class FreeRotation {
   Quat attitude(double elapsed) const;
   // The least bound on |w(t)| for all t, rad/s (widened by rounding where |w| varies).
   double max_angular_speed() const { return max_angular_speed_; }
+  // A bound on |w'(t)| for all t, rad/s^2; the least one but for triaxial bodies.
+  double max_angular_acceleration() const { return max_angular_acceleration_; }
 
  private:
   // uniform: w is constant: a sphere, or spin about a principal axis.
@@ -67,7 +69,7 @@ class FreeRotation {
   Vec3 amplitudes_ = Vec3::Zero();     // (s A, B, C); n at time 0 where axisymmetric
   double half_turn_rate_ = 0;          // half the mean of phi'; |w|/2 where uniform
   double phase_ = 0, phase_rate_ = 0;  // x = pi u / (2K); body precession where axisymmetric
-  double max_angular_speed_ = 0;
+  double max_angular_speed_ = 0, max_angular_acceleration_ = 0;
   JacobiTheta theta_;
   Kind kind_ = Kind::rest;
   // a (circulation or symmetry), then j, k with (a, j, k) right-handed

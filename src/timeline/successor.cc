@@ -22,7 +22,7 @@ void start_new_arc(Successor& successor, const Key& key) {
 
 void let_fly(const Body& body, StateData& data) {
   data.follows = nullptr;
-  data.flight = Flight(FreeRotation(body.moments, data.q, data.L), body.turn_excess,
+  data.flight = Flight(FreeRotation(body.moments, data.q, data.L),
                        {data.arc_time, data.x, data.v, data.acceleration});
 }
 

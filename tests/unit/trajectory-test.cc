@@ -12,11 +12,10 @@ namespace tw {
 namespace {
 
 const Vec3 moments(0.1, 0.25, 0.3);
-const double turn_excess = 2;  // (0.3 - 0.1) / 0.1, and no more of the others
 
 Flight tumbling() {
   const FreeRotation rotation(moments, Quat(0.5, 0.5, -0.5, 0.5), Vec3(0.2, 1.5, -0.4));
-  return Flight(rotation, turn_excess, {2, {1, 2, 3}, {3, -1, 5}, {0, 0.5, -9.81}});
+  return Flight(rotation, {2, {1, 2, 3}, {3, -1, 5}, {0, 0.5, -9.81}});
 }
 
 // The bounds over [from, to] against samples of the path and differences of its rates.
