@@ -63,8 +63,8 @@ struct Body {
   int slender_axis = -1;      // of P, about which it is slender (base/constants.h); -1: about none
   double girth = 0;           // how far it reaches from that axis, m
   double least_width = 0;     // the `size` of contact parameters, m
+  double thickness = 0;       // least width of any part: how deep contacts may be follows, m
   double sphere_radius = -1;  // >= 0: a single sphere centred on P
-  double turn_excess = 0;     // max |Ii - Ij| / Ik: bounds the angular acceleration
   std::shared_ptr<const Trajectory> motion;  // given: of fixed and kinematic bodies
   bool unbounded = false;
   Vec3 plane_normal = Vec3::Zero();  // a fixed half-space, world

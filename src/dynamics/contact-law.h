@@ -40,7 +40,7 @@ struct ContactConstants {
   double mu = 0;
   double kt = 0;     // N/m, 0.8 k
   double ct = 0;     // N s/m, sqrt(kt m)
-  double size = 0;   // m: least width of the smaller one
+  double size = 0;   // m: the lesser thickness (dynamics/body.h)
   double depth = 0;  // d0, m: under the lighter body's own weight
   FrictionLaw law = FrictionLaw::anchored;
   double rolling = 0, spinning = 0;  // rho_r, rho_s, m
@@ -51,7 +51,7 @@ struct ContactConstants {
   double gap_scale() const { return std::min(depth, answer::widest_gap_scale * size); }
 };
 
-// `mass`: of the lighter dynamic body of the pair, kg; `size`: least width of the smaller one, m;
+// `mass`: of the lighter dynamic body of the pair, kg; `size`: the lesser thickness, m;
 // `gravity`: its magnitude, m/s^2 (0: the standard one stands in); `unequal`: the group holds
 // masses over 100:1, which makes the contact five times as stiff and harden sooner.
 ContactConstants contact_constants(const ContactParameters& parameters, double mass, double size,

@@ -10,7 +10,7 @@
 namespace tw {
 namespace {
 
-double smaller_size(const Body& a, const Body& b) { return std::min(a.least_width, b.least_width); }
+double lesser_thickness(const Body& a, const Body& b) { return std::min(a.thickness, b.thickness); }
 
 double speed_from(const ContactParameters& parameters, double gravity, double size) {
   const double by_default =
@@ -29,7 +29,7 @@ double ContactScales::bounce_time() const { return pi * std::sqrt(law.depth / gr
 
 double fusion_speed(const Scene& scene, const Body& a, const Body& b) {
   return speed_from(scene.contacts.between(a.id(), b.id()), scene.gravity_scale(),
-                    smaller_size(a, b));
+                    lesser_thickness(a, b));
 }
 
 double borne_speed(double fusion_speed, double depth, double gravity) {
@@ -42,7 +42,7 @@ ContactScales contact_scales(const Scene& scene, const Body& a, const Body& b,
   const ContactParameters& parameters = scene.contacts.between(a.id(), b.id());
   const double mass = !a.dynamic() ? b.mass : !b.dynamic() ? a.mass : std::min(a.mass, b.mass);
   ContactScales scales;
-  scales.size = smaller_size(a, b);
+  scales.size = lesser_thickness(a, b);
   scales.gravity = scene.gravity_scale();
   scales.fusion_speed = speed_from(parameters, scales.gravity, scales.size);
   scales.law = contact_constants(

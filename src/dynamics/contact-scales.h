@@ -32,7 +32,7 @@ struct MassRange {
 
 struct ContactScales {
   ContactConstants law;
-  double size = 0;          // least width of the smaller body, m
+  double size = 0;          // the lesser thickness of the two, m
   double fusion_speed = 0;  // m/s
   double borne_speed = 0;   // m/s
   double gravity = 0;       // g, m/s^2

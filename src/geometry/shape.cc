@@ -194,6 +194,13 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
   }
   shape->mass_ = shape->bounded_ ? mass : MassProperties{};
   shape->least_width_ = shape->bounded_ ? shape->bounds(Frame()).size().minCoeff() : infinity;
+  shape->thickness_ = shape->least_width_;
+  if (shape->parts_.size() > 1)
+    for (const ConvexPart& part : shape->parts_)
+      if (part.kind != PartKind::half_space)
+        shape->thickness_ = std::min(
+            shape->thickness_,
+            part_bounds(part, Frame(part.placement.R.transpose(), Vec3::Zero())).size().minCoeff());
   TW_REQUIRE(!shape->bounded_ || (shape->least_width_ >= least_length &&
                                   shape->radius_about_origin_ <= 4 * greatest_length),
              "a " + shape->kind_name_ + " is " + show(shape->least_width_) +
@@ -349,6 +356,7 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
   shape->tree_ = std::shared_ptr<const PartTree>(shape->field_, &field.tree());
   const Aabb& box = field.tree().root().box;
   shape->least_width_ = std::min(box.size().x(), box.size().y());
+  shape->thickness_ = shape->least_width_;
   shape->radius_about_origin_ = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).norm();
   TW_REQUIRE(shape->radius_about_origin_ <= 4 * greatest_length,
              "a height field reaches " + show(shape->radius_about_origin_) +

@@ -76,6 +76,9 @@ class Shape {
   // Least width of the bounding box, m: the `size` of contact parameters.  Of a height field the
   // least of its sides, infinite if unbounded.
   double least_width() const { return least_width_; }
+  // Least width of the boxes of its parts, each along the axes of its own frame, m: a wall's
+  // thickness, however large the room is.
+  double thickness() const { return thickness_; }
   // The smallest ball around the frame's origin that holds the shape (bound by the parts' farthest
   // points, exact but for ellipsoids about another centre), m.
   double radius_about_origin() const { return radius_about_origin_; }
@@ -106,7 +109,7 @@ class Shape {
   std::shared_ptr<const PartTree> tree_;
   MassProperties mass_;
   bool bounded_ = true;
-  double least_width_ = 0;
+  double least_width_ = 0, thickness_ = 0;
   double radius_about_origin_ = 0;
   std::string kind_name_;
 };

@@ -22,14 +22,6 @@ void require_finite(const Vec3& v, const char* what, const std::string& name) {
                                "); expected three finite numbers");
 }
 
-// kappa = max |Ii - Ij| / Ik: torque-free rotation has |w'| <= kappa |w|^2.
-double turn_excess(const Vec3& m) {
-  double most = 0;
-  for (int k = 0; k < 3; ++k)
-    most = std::max(most, std::abs(m[(k + 1) % 3] - m[(k + 2) % 3]) / m[k]);
-  return most;
-}
-
 void validate(const BodyDef& def, const std::string& name) {
   require_finite(def.position, "position", name);
   require_finite(def.velocity, "velocity", name);
@@ -59,6 +51,7 @@ void resolve_shape(Body& body, const BodyDef& def) {
   body.unbounded = !body.shape_P->bounded();
   body.radius = body.shape_P->radius_about_origin();
   body.least_width = body.shape_P->least_width();
+  body.thickness = body.shape_P->thickness();
   TW_REQUIRE(!body.shape_P->is_ground() || !body.dynamic(),
              body.info.name + (body.unbounded ? " is a half-space" : " is a height field") +
                  " that moves freely; expected #:fixed? or #:motion");
@@ -99,7 +92,6 @@ std::unique_ptr<Body> make_body(const BodyDef& def, BodyId id, const std::string
         {def.density, def.mass, def.inertia, def.center_of_mass}, def.shape.get(), name);
     body->mass = body->info.mass = inertia.mass;
     body->moments = inertia.moments;
-    body->turn_excess = turn_excess(inertia.moments);
     body->X_BP = inertia.X_BP;
     body->X_PB.q = inertia.X_BP.q.conjugate();
     body->X_PB.p = -(body->X_PB.q * inertia.X_BP.p);

@@ -106,6 +106,7 @@ class SmallScene {
     body->shape_P = shape;
     body->radius = shape->radius_about_origin();
     body->least_width = shape->least_width();
+    body->thickness = shape->thickness();
     if (kind != BodyKind::dynamic) body->motion = make_standing(pose);
     body->process = graph.add_process();
     scene.first_bodies.push_back(id);

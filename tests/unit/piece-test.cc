@@ -25,10 +25,10 @@ struct Flyer {
     body.info.id = id;
     body.mass = 1;
     body.moments = Vec3(0.1, 0.15, 0.2);
-    body.turn_excess = 1;
     body.shape_P = shape;
     body.radius = shape->radius_about_origin();
     body.least_width = shape->least_width();
+    body.thickness = shape->thickness();
     const ConvexPart& part = shape->parts().front();
     if (part.kind == PartKind::sphere) body.sphere_radius = part.radius;
     state.x = x;
