@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "fuzz/generator.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "fuzz/draft.h"
 #include "fuzz/kinds.h"
+#include "fuzz/overlap.h"
 
 namespace tw::fuzz {
 namespace {
@@ -36,6 +39,42 @@ constexpr Kind table[] = {
 // stays its own.
 constexpr std::size_t in_turn = 15;
 
+// A body as it begins.
+struct Placed {
+  std::vector<Part> parts;
+  Frame frame;
+
+  explicit Placed(const DescribedBody& body) : parts(parts_of(body)), frame(body.pose) {
+    if (!body.kinematic()) return;
+    const Keyframe& first = body.keyframes.front();
+    frame = Frame({first.position, first.orientation.value_or(Quat::Identity())});
+  }
+};
+
+bool overlap_deep(const Placed& x, const Placed& y) {
+  constexpr double touch = 1e-3;  // of the lesser width
+  const double allowed = touch * std::min(least_width(x.parts), least_width(y.parts));
+  return std::any_of(x.parts.begin(), x.parts.end(), [&](const Part& a) {
+    return std::any_of(y.parts.begin(), y.parts.end(), [&](const Part& b) {
+      return overlap(a, x.frame, b, y.frame, allowed) > allowed;
+    });
+  });
+}
+
+// Kinds place their bodies by their sizes, roughly: what overlaps one before it is left out.
+void leave_out_overlapping(DescribedScene& scene) {
+  std::vector<DescribedBody> kept;
+  std::vector<Placed> there;
+  for (DescribedBody& body : scene.bodies) {
+    Placed fresh(body);
+    const auto blocks = [&](const Placed& other) { return overlap_deep(other, fresh); };
+    if (body.dynamic() && std::any_of(there.begin(), there.end(), blocks)) continue;
+    kept.push_back(std::move(body));
+    there.push_back(std::move(fresh));
+  }
+  scene.bodies = std::move(kept);
+}
+
 }  // namespace
 
 std::span<const Kind> kinds() { return table; }
@@ -45,6 +84,7 @@ DescribedScene random_scene(const std::string& kind, std::uint64_t seed) {
     if (kind == k.name) {
       Draft draft(kind, seed);
       k.draw(draft);
+      leave_out_overlapping(draft.scene);
       return draft.scene;
     }
   throw UserError("kind is " + kind + "; expected one that --help lists");
