@@ -1,10 +1,11 @@
 ;; Warnings, when a scene is loaded, of callbacks that change what no rollback undoes.
 ;;
 ;; A callback may run again, so what it keeps belongs into slots.  Forms are looked at as the expander
-;; leaves them: the procedures that are handed to add-callback!, on-collision! and #:motion, written
-;; there or defined before, and what these call by name.  Found are `set!' of a variable that is not
-;; their own, and the usual procedures that change a table, list, vector or string held by one.  What
-;; hides deeper shows under --check, when it happens ((timewarp purity)).
+;; leaves them: the procedures that are handed to add-callback!, on-collision!, add-force! and
+;; #:motion, written there or defined before, and what these call by name.  Found are `set!' of a
+;; variable that is not their own, the usual procedures that change a table, list, vector or string
+;; held by one, those that draw from a random state that is not made on the spot, and those that
+;; print.  What hides deeper shows under --check, when it happens ((timewarp purity)).
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp effects)
   #:use-module (language tree-il)
@@ -12,13 +13,20 @@
   #:use-module (srfi srfi-1)
   #:export (look-for-effects!))
 
-(define takers '(add-callback! on-collision!))
+(define takers '(add-callback! on-collision! add-force!))
 
 (define mutators
   '(hash-set! hashq-set! hashv-set! hash-remove! hashq-remove! hashv-remove! hash-clear!
     hash-create-handle! hashq-create-handle! hashv-create-handle! vector-set! vector-fill! set-car!
     set-cdr! array-set! array-fill! string-set! string-fill! f64vector-set! f32vector-set!
     s32vector-set! u32vector-set! u8vector-set! bytevector-u8-set! enq! deq! q-push! q-pop!))
+
+;; What draws from a random state, with the place of that among its arguments.
+(define draws
+  '((random . 1) (random:uniform . 0) (random:normal . 0) (random:exp . 0) (random:hollow-sphere! . 1)
+    (random:solid-sphere! . 1) (random:normal-vector! . 1)))
+
+(define printers '(display write newline write-line pk write-string simple-format))
 
 ;; ---- procedures that a scene has defined ----
 
@@ -85,12 +93,33 @@
           ((($ <lexical-ref> _ name unique) . _)
            (when (and (memq called mutators) (foreign? unique)) (found! name source 'changes)))
           (_ #f))
+        (when (draws? called arguments own) (found! called source 'draws))
+        (when (prints? called arguments) (found! called source 'prints))
         (let ((callee (definition called)))
           (when (and callee (not (memq callee seen)))
             (set! found (append (effects callee (cons callee seen)) found)))))
        (_ #f))
      procedure)
     (reverse found)))
+
+;; Whether a call draws from Guile's random state, or from one that was there before.
+(define (draws? called arguments own)
+  (match (assq called draws)
+    ((_ . place)
+     (match (drop arguments (min place (length arguments)))
+       (() #t)
+       ((($ <toplevel-ref>) . _) #t)
+       ((($ <lexical-ref> _ _ unique) . _) (not (hashq-ref own unique)))
+       (_ #f)))
+    (#f #f)))
+
+(define (prints? called arguments)
+  (or (and (memq called printers) #t)
+      (and (eq? called 'format)
+           (match arguments
+             ((($ <const> _ #f) . _) #f)
+             ((_ . _) #t)
+             (() #f)))))
 
 ;; ---- warnings ----
 
@@ -106,11 +135,17 @@
          (format port "~a:~a:~a: warning: " (or file "prompt") line column)))
       (format port "what is handed to ~a ~a ~a, which a rollback does not undo; expected it to ~a~%"
               taker
-              (match what ('sets "sets the variable") ('changes "changes what is in"))
+              (match what
+                ('sets "sets the variable")
+                ('changes "changes what is in")
+                ('draws "draws from a random state by")
+                ('prints "prints by"))
               name
-              (if (string-prefix? "#:" taker)
-                  "depend on the time alone"
-                  "change only what it is handed: a slot keeps values, an observer runs once"))
+              (cond ((string-prefix? "#:" taker) "depend on the time alone")
+                    ((string=? taker "add-force!") "depend on what it is handed alone")
+                    ((eq? what 'draws)
+                     "draw by (random-real! view), whose state is part of the body")
+                    (else "change only what it is handed: a slot keeps values, an observer runs once")))
       (force-output port))))
 
 ;; The outermost procedures in ARGUMENT.

@@ -19,6 +19,7 @@
             check-keywords
             define-keyword-procedure
             current-form-place
+            current-form-load-port
             caller-place
             place->string
             describe-error
@@ -34,6 +35,9 @@
 
 ;; Place of the top-level form that the loader runs now, or #f.
 (define current-form-place (make-parameter #f))
+
+;; What Guile's `load' was reading when that form began, or #f.
+(define current-form-load-port (make-parameter #f))
 
 (define-syntax-rule (own-directory)
   (dirname (or (assq-ref (current-source-location) 'filename) "timewarp/errors.scm")))
@@ -96,7 +100,7 @@
   "Return up to MOST frames of the user's files on the stack, innermost first, as ((PLACE . NAME) ...)."
   (let ((stack (make-stack #t)))
     ;; only the innermost form has its place at hand
-    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (current-form-place))
+    (let loop ((frame (and stack (stack-ref stack 0))) (frames '()) (form (innermost-form-place))
                (walked 0))
       (if (or (not frame) (= (length frames) most) (= walked most-frames))
           (reverse frames)
@@ -115,31 +119,42 @@
   "Return the place in the user's files that is being run, or #f."
   (match (user-frames 1)
     (((place . _)) place)
-    (_ (current-form-place))))
+    (_ (innermost-form-place))))
 
 (define (place->string place)
   "Return FILE:LINE:COLUMN."
   (match place
     ((file line column) (format #f "~a:~a:~a" file line column))))
 
-;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE) is running, or #f.  The
-;; loader's port tells only where it ends; so the file is read again.
+;; Place of the form that runs now: of a file that a form of the scene takes in by `load', or of that.
+(define (innermost-form-place)
+  (or (and (not (eq? (current-load-port) (current-form-load-port))) (loaded-form-place))
+      (current-form-place)))
+
+;; Where the form begins that Guile's own loader (guile SCRIPT, -l FILE, load) is running, or #f.
+;; The loader's port tells only where it ends; so the file is read again, once.
 (define (loaded-form-place)
   (let ((port (current-load-port)))
     (and port
          (port-filename port)
          (false-if-exception
-          (call-with-input-file (port-filename port)
-            (lambda (again)
-              (let loop ()
-                (let ((form (read-syntax again)))
-                  (cond ((eof-object? form) #f)
-                        ((< (port-line again) (port-line port)) (loop))
-                        (else
-                         (let ((source (syntax-source form)))
-                           (list (port-filename port)
-                                 (1+ (assq-ref source 'line))
-                                 (1+ (assq-ref source 'column))))))))))))))
+          (match (or (hashq-ref read-again port)
+                     (hashq-set! read-again port (cons (open-input-file (port-filename port)) #f)))
+            ((and known (again . place))
+             (let loop ((place place))
+               (cond ((and place (>= (port-line again) (port-line port)))
+                      (set-cdr! known place)
+                      place)
+                     (else
+                      (let ((form (read-syntax again)))
+                        (and (not (eof-object? form))
+                             (let ((source (syntax-source form)))
+                               (loop (list (port-filename port)
+                                           (1+ (assq-ref source 'line))
+                                           (1+ (assq-ref source 'column))))))))))))))))
+
+;; Of each port of the loader another one of its file, and the place of the last form read from it.
+(define read-again (make-weak-key-hash-table))
 
 ;; "  scene.scm:12:4 (swing)" for each frame but the first, which the message itself names
 (define (backtrace-text places)

@@ -15,11 +15,15 @@
       (in-vicinity (current-scene-directory) name)))
 
 (define (beside-caller file place)
-  "Return FILE, or, where there is none of that name in the current folder, that beside the file of
-PLACE."
-  (let ((beside (and place (string? file) (not (absolute-file-name? file))
-                     (in-vicinity (dirname (car place)) file))))
-    (if (and beside (not (file-exists? file)) (file-exists? beside)) beside file)))
+  "Return FILE beside the file of PLACE, or, where there is none of that name, in the folder of the
+scene that is being loaded, or in the current one."
+  (if (or (not (string? file)) (absolute-file-name? file))
+      file
+      (let ((beside (and place (string? (car place)) (in-vicinity (dirname (car place)) file)))
+            (in-scene (scene-file file)))
+        (cond ((and beside (file-exists? beside)) beside)
+              ((file-exists? in-scene) in-scene)
+              (else file)))))
 
 ;; A procedure that is told of each file that is read for a scene, but by Guile's `load'.
 (define current-file-reader (make-parameter (const #f)))

@@ -4,6 +4,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp arity)
+  #:use-module (timewarp purity)
   #:use-module (timewarp worlds)
   #:export (add-drag! add-spring! attach! detach! attached? add-force!))
 
@@ -63,4 +64,4 @@ It must be pure: the integrator asks it for times and motions that it only tries
 twelve times a step.  From the view it may read position, orientation, velocity and
 angular-velocity.  A callback that sets applied-force at a rate of its own is cheaper."
   (check-takes "add-force!" procedure 2 "the time and a view of the body")
-  (%add-force! (current-world) body procedure (caller-place)))
+  (%add-force! (current-world) body (watched procedure #:slots? #f) (caller-place)))

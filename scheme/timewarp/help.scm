@@ -73,7 +73,7 @@ of the above, (help friction) the names with that in them.
 Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
 whose description ends with its default.
 Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
-After an error the prompt is as before; ,option on-error debug enters Guile's debugger there.
+After an error the prompt is as before; ,option on-error 'debug enters Guile's debugger there.
 (exit) or Ctrl-D leaves.  The manual, with a tutorial: info timewarp, from a shell.
 ")
 

@@ -74,7 +74,9 @@
 (define (call-placing-errors place thunk)
   (let ((description #f))
     (catch #t
-      (lambda () (parameterize ((current-form-place place)) (thunk)))
+      (lambda ()
+        (parameterize ((current-form-place place) (current-form-load-port (current-load-port)))
+          (thunk)))
       (lambda (key . args)
         (match description
           (#(message place backtrace) (raise-error message place backtrace))

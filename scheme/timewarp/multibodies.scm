@@ -241,7 +241,8 @@ touch the base's body.  A multibody stands for its first link where a body is ex
 
 (define-keyword-procedure (load-urdf file #:key name base position orientation)
   "Add the robot that the URDF file FILE describes to the current world, and return it, a multibody.
-FILE is looked for in the current folder, then beside the file that the call stands in.
+FILE is looked for beside the file that the call stands in, then beside the scene that is being loaded,
+then in the current folder.
 
 Its links are called as in the file, by symbols, and so are their joints.  A link without a mass that
 is fixed to another becomes a part of that, one that is fixed to a base that stands a fixed body.  What

@@ -1,15 +1,18 @@
 ;; --check: callbacks are watched for changing variables of the scene, which no rollback undoes.
 ;;
-;; The data in the scene's variables is copied before a call and compared after it, with what records
-;; and procedures hold (counters in closures); so are the variables that the callback itself has kept,
-;; the slots of what it is handed, whose pairs could be changed in place, and Guile's random state.
-;; What comes after the first thousands of parts of a value, which may be circular, is not seen.
+;; The data in the scene's variables is copied before a call and compared after it, with what records,
+;; objects and procedures hold (counters in closures); so are the variables that the callback itself
+;; has kept, the slots of what it is handed, whose pairs could be changed in place, and random states:
+;; Guile's own, and what variables hold.  What comes after the first thousands of parts of a value,
+;; which may be circular, is not seen.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp purity)
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (ice-9 match)
+  #:use-module (oop goops)
+  #:use-module ((srfi srfi-1) #:select (any))
   #:use-module (system vm program)
   #:export (watched))
 
@@ -29,6 +32,9 @@
   (let copy ((value value))
     (set! left (1- left))
     (cond ((negative? left) 'unwatched)
+          ((random-state? value) (random-state->datum value))
+          ((fluid? value) (copy (fluid-ref value)))
+          ((parameter? value) (copy (value)))
           ((variable? value) (if (variable-bound? value) (copy (variable-ref value)) value))
           ((program? value)
            (if (seen? value) value (cons value (map-in-order copy (kept-variables value)))))
@@ -38,6 +44,13 @@
                                                                  field)
                                                 value)))
                          (record-type-fields (record-type-descriptor value))))
+          ((plain-object? value)
+           (if (seen? value)
+               value
+               (map-in-order (lambda (slot)
+                               (let ((name (slot-definition-name slot)))
+                                 (and (slot-bound? value name) (copy (slot-ref value name)))))
+                             (class-slots (class-of value)))))
           ((pair? value) (let ((first (copy (car value)))) (cons first (copy (cdr value)))))
           ((vector? value) (map-in-order copy (vector->list value)))
           ((string? value) (string-copy value))
@@ -105,6 +118,17 @@
       "a callback changed a variable of its own that lasts from call to call, which a rollback would "
       "not undo; expected it to change only what it is handed (a slot holds what must be kept)"))))
 
+;; an object in Scheme's own memory, and no class itself
+(define (plain-object? value)
+  (and (struct? value)
+       (is-a? value <object>)
+       (eq? (class-of (class-of value)) <class>)
+       (not (any (lambda (slot) (is-a? slot <foreign-slot>)) (class-slots (class-of value))))))
+
+;; smobs, which have no predicate
+(define random-state-class (class-of *random-state*))
+(define (random-state? value) (eq? (class-of value) random-state-class))
+
 (define (random-state) (random-state->datum *random-state*))
 
 (define (check-random before)
@@ -121,15 +145,16 @@
       "a callback changed a pair in a slot in place, which a rollback would not undo; expected it "
       "to give the slot a new value by set!"))))
 
-(define (watched procedure)
-  "Return PROCEDURE, under --check one that raises an error where it changes variables of the scene."
+(define* (watched procedure #:key (slots? #t))
+  "Return PROCEDURE, under --check one that raises an error where it changes variables of the scene;
+SLOTS?: the views that it is handed have slots."
   (if (and (override 'check) (procedure? procedure))
       (let ((module (current-module)))
         (lambda args
           (let* ((before (snapshot module))
                  (kept (copy procedure))
                  (random (random-state))
-                 (values-before (slot-values args))
+                 (values-before (if slots? (slot-values args) '()))
                  (slots-before (map copy values-before)))
             (call-with-values (lambda () (apply procedure args))
               (lambda results

@@ -2,7 +2,7 @@
 ;; a short banner.
 ;;
 ;; There is one level of it: an error is shown with the user's frames, and the prompt is there
-;; again.  So (exit) and Ctrl-D leave it at any time; `,option on-error debug' brings Guile's nested
+;; again.  So (exit) and Ctrl-D leave it at any time; `,option on-error 'debug' brings Guile's nested
 ;; prompts, with their debugger, back.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp repl)

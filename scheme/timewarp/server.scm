@@ -18,6 +18,7 @@
   #:use-module (system repl repl)
   #:use-module (ice-9 binary-ports)
   #:use-module (ice-9 match)
+  #:use-module ((ice-9 control) #:select (suspendable-continuation?))
   #:use-module (ice-9 suspendable-ports)
   #:use-module (rnrs bytevectors)
   #:use-module (srfi srfi-1)
@@ -139,6 +140,7 @@
 (define clients '())
 
 (define client-tag (make-prompt-tag "client"))
+(define restart-tag (make-prompt-tag "restart"))
 
 ;; bytes that are kept for a client that doesn't read; then it is left
 (define most-kept (expt 2 26))
@@ -198,6 +200,15 @@
     thunk
     (lambda (resume) (set-client-resume! client resume))))
 
+;; A prompt within an error handler, as Guile's debugger has it, cannot wait for its input while
+;; others go on: then the client is back at its first one.
+(define (start-client-repl)
+  (call-with-prompt restart-tag
+    start-repl
+    (lambda (inner)
+      (format #t "~%the debugger's prompt cannot wait here: back at the first one~%")
+      (start-client-repl))))
+
 (define (serve client)
   (let ((socket (client-socket client))
         (output (client-output client))
@@ -208,13 +219,15 @@
                    (current-warning-port output)
                    (current-read-waiter
                     (lambda (port)
-                      (if (eq? port socket) (abort-to-prompt client-tag) (wait port)))))
+                      (cond ((not (eq? port socket)) (wait port))
+                            ((suspendable-continuation? client-tag) (abort-to-prompt client-tag))
+                            (else (abort-to-prompt restart-tag))))))
       (with-fluids ((*repl-stack* '()))
         (save-module-excursion
          (lambda ()
            (set-current-module (resolve-module '(guile-user)))
            ;; (exit) and the end of its input end a client, not the program
-           (catch 'quit start-repl (const #f))))))
+           (catch 'quit start-client-repl (const #f))))))
     (drop-client! client)))
 
 (define (accept-client!)

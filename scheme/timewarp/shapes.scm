@@ -153,8 +153,9 @@ count the overlap twice."
   (%placed shape position orientation))
 
 (define-keyword-procedure (load-shape file #:key scale convex-hull?)
-  "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for in
-the current folder, then beside the file that the call stands in.
+  "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for
+beside the file that the call stands in, then beside the scene that is being loaded, then in the current
+folder.
 
 What hangs together in it by common vertices is a convex part, several make a union; the frame is
 that of the file.  A part that isn't convex is an error that names its object: split it in a

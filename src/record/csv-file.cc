@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "base/error.h"
 
@@ -16,6 +18,11 @@ namespace {
 // of the machine costs little
 constexpr std::size_t buffer_limit = 1 << 16;
 
+[[noreturn]] void refuse(const std::string& path, int reason) {
+  throw UserError("cannot write " + path + ": " + (reason ? std::strerror(reason) : "write error") +
+                  "; expected a file that can be written");
+}
+
 }  // namespace
 
 std::string csv_quoted(std::string_view value) {
@@ -26,6 +33,17 @@ std::string csv_quoted(std::string_view value) {
     quoted += c;
   }
   return quoted + '"';
+}
+
+void require_writable(const std::string& path) {
+  std::error_code ignored;
+  const bool is_there = std::filesystem::exists(path, ignored);
+  // who reads a pipe would be left at the first close
+  if (is_there && !std::filesystem::is_regular_file(path, ignored)) return;
+  std::FILE* const file = std::fopen(path.c_str(), "ab");
+  if (!file) refuse(path, errno);
+  std::fclose(file);
+  if (!is_there) std::remove(path.c_str());
 }
 
 CsvFile::CsvFile(const std::string& path, std::string_view header) : path_(path) {
@@ -94,9 +112,7 @@ void CsvFile::fail(int reason) {
   if (file_) std::fclose(file_);
   file_ = nullptr;
   buffer_.clear();
-  throw UserError("cannot write " + path_ + ": " +
-                  (reason ? std::strerror(reason) : "write error") +
-                  "; expected a file that can be written");
+  refuse(path_, reason);
 }
 
 }  // namespace tw

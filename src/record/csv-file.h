@@ -45,6 +45,9 @@ class CsvFile {
   bool row_started_ = false;
 };
 
+// Whether the file could be written, without touching what is in it.  Errors: as of CsvFile.
+void require_writable(const std::string& path);
+
 // "a,b" with quotes where needed.
 std::string csv_quoted(std::string_view value);
 

@@ -80,12 +80,13 @@ class CallTimer {
   double weight_ = 0, start_ = 0;
 };
 
-// Calls the procedure; an error is raised again with its circumstances.
-template <class Names>
-SCM call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names names) {
+// Calls the procedure and lets `take` have what it returns; an error of either is raised again with
+// its circumstances.
+template <class Names, class Take>
+void call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names names, Take take) {
   const CallTimer timer(hook);
   try {
-    return call_scheme(hook.procedure, arguments);
+    take(call_scheme(hook.procedure, arguments));
   } catch (const SchemeError& error) {
     const Place& place = error.place().known() ? error.place() : hook.place;
     const std::string made = hook.place.text();
@@ -94,6 +95,11 @@ SCM call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names nam
                           " s, bodies: " + names(),
                       place, error.backtrace());
   }
+}
+
+template <class Names>
+void call_hook(const Hook& hook, std::span<SCM> arguments, double time, Names names) {
+  call_hook(hook, arguments, time, names, [](SCM) {});
 }
 
 // `what` names the procedure in messages; `registrar` is what was called to register it.
@@ -120,8 +126,10 @@ std::vector<BodyId> to_targets(SCM world, SCM value) {
 std::optional<double> next_time(SCM result) {
   if (scm_is_false(result)) return std::nullopt;
   if (!scm_is_real(result))
-    throw UserError(
-        "a callback without a period returned no time; expected its next time in seconds, or #f");
+    throw SchemeError(
+        "a callback without #:period returned no time; expected its next time in seconds, or #f, "
+        "or a #:period",
+        {}, "");
   return scm_to_double(result);
 }
 
@@ -146,10 +154,13 @@ std::optional<double> ScmCallback::run(double event_time, std::span<StateView* c
   for (std::size_t i = 0; i < targets.size(); ++i)
     arguments[i + 1] = make_view(*targets[i], hook_.box->handle);
   const ViewKiller killer(arguments.all().subspan(1));
-  const SCM result = call_hook(hook_, arguments.all(), event_time,
-                               [&] { return target_names(hook_.box->world, targets); });
-  if (periodic_) return std::nullopt;
-  return next_time(result);
+  std::optional<double> next;
+  call_hook(
+      hook_, arguments.all(), event_time, [&] { return target_names(hook_.box->world, targets); },
+      [&](SCM result) {
+        if (!periodic_) next = next_time(result);
+      });
+  return next;
 }
 
 void ScmCollisionCallback::run(const Collision& collision, bool reversed, StateView& a,

@@ -1,7 +1,8 @@
 // Scheme primitives: recorders that stream poses and events to CSV files.
 //
-// A recorder's file is made when the recorder is opened, so that an unwritable file shows before
-// the run; the recorder is attached to a world when the run begins.
+// That a file can be written is seen when its recorder is opened, before the scene is loaded; it is
+// made when the run begins and the recorder is attached to a world: a scene that cannot be loaded
+// leaves what was in it.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -20,9 +21,10 @@ TW_PRIMITIVES(define_recorders)
 namespace {
 
 struct Recorder : Live<LiveKind::recorder> {
+  std::string poses_path, events_path;  // of one that is open
   std::shared_ptr<PosesWriter> poses;
   std::shared_ptr<EventsWriter> events;
-  // of one that is open
+  // of one that is attached
   CsvFile& file() { return poses ? poses->file() : events->file(); }
 };
 
@@ -55,13 +57,15 @@ void define_recorder_type() {
 
 TW_PRIMITIVE(open_poses, "%open-poses", (SCM path), "Open a file for poses.") {
   auto recorder = std::make_unique<Recorder>();
-  recorder->poses = std::make_shared<PosesWriter>(to_file_name(path, "the poses file"));
+  recorder->poses_path = to_file_name(path, "the poses file");
+  require_writable(recorder->poses_path);
   return from_recorder(recorder.release());
 }
 
 TW_PRIMITIVE(open_events, "%open-events", (SCM path), "Open a file for events.") {
   auto recorder = std::make_unique<Recorder>();
-  recorder->events = std::make_shared<EventsWriter>(to_file_name(path, "the events file"));
+  recorder->events_path = to_file_name(path, "the events file");
+  require_writable(recorder->events_path);
   return from_recorder(recorder.release());
 }
 
@@ -69,11 +73,14 @@ TW_PRIMITIVE(attach_recorder, "%attach-recorder!", (SCM world, SCM object, SCM f
              "Let a world feed the recorder.") {
   World& w = to_world(world);
   Recorder& recorder = to_recorder(object);
-  TW_REQUIRE(recorder.poses || recorder.events, "the recorder is closed; expected an open one");
-  if (recorder.poses) {
+  TW_REQUIRE(!recorder.poses_path.empty() || !recorder.events_path.empty(),
+             "the recorder is closed; expected an open one");
+  if (!recorder.poses_path.empty()) {
+    if (!recorder.poses) recorder.poses = std::make_shared<PosesWriter>(recorder.poses_path);
     recorder.poses->set_names(names_of(w));
     w.add_frame_sink(recorder.poses, to_real(fps, "fps"));
   } else {
+    if (!recorder.events) recorder.events = std::make_shared<EventsWriter>(recorder.events_path);
     recorder.events->set_names(names_of(w));
     // observers stay with the world: a closed recorder is one that nobody else holds
     for (const CollisionKind kind :
@@ -100,6 +107,8 @@ TW_PRIMITIVE(close_recorder, "%close-recorder!", (SCM world, SCM object),
   const auto events = std::move(recorder.events);
   recorder.poses.reset();
   recorder.events.reset();
+  recorder.poses_path.clear();
+  recorder.events_path.clear();
   if (poses) {
     WorldBox& box = to_world_box(world);
     box.world.remove_frame_sink(poses.get());

@@ -109,8 +109,15 @@ BodyId to_body(SCM world, SCM object, const char* name) {
   return id;
 }
 
+SCM current_world() {
+  static const SCM parameter = scm_permanent_object(
+      scm_variable_ref(scm_c_private_variable("timewarp worlds", "current-world")));
+  return scm_call_0(parameter);
+}
+
 BodyId body_number(SCM body) {
-  if (is_multibody(body)) return to_own_multibody(body).links.front();
+  if (is_multibody(body))
+    return to_multibody(body_world(body), body, "the multibody").links.front();
   return number_of(body);
 }
 

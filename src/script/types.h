@@ -50,10 +50,12 @@ bool is_body(SCM object);
 SCM body_world(SCM body);
 // The number of a body of `world`.  BadValue for what is no body, and for a body of another world.
 BodyId to_body(SCM world, SCM object, const char* name);
-// The number of a body in the world it belongs to.
+// What the Scheme parameter of that name holds.
+SCM current_world();
 // Of one that may have been removed, for what its handle alone can tell.
 BodyId body_number(SCM body);
-inline BodyId to_own_body(SCM body) { return to_body(body_world(body), body, "the body"); }
+// The number of a body of the current world.
+inline BodyId to_own_body(SCM body) { return to_body(current_world(), body, "the body"); }
 // The handle of a body, always the same object.
 SCM from_body(SCM world, BodyId id);
 
@@ -63,7 +65,7 @@ bool is_multibody(SCM object);
 inline bool stands_for_body(SCM object) { return is_body(object) || is_multibody(object); }
 const Multibody& to_multibody(SCM world, SCM object, const char* name);
 inline const Multibody& to_own_multibody(SCM object) {
-  return to_multibody(body_world(object), object, "the multibody");
+  return to_multibody(current_world(), object, "the multibody");
 }
 SCM from_multibody(SCM world, std::uint32_t number);
 

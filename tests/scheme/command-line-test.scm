@@ -234,6 +234,51 @@
          (lines-of (run-errors result))))
   (test-equal "and runs" 0 (run-status result)))
 
+(write-file "draws.scm"
+            "(use-modules (timewarp))"
+            "(define state (scene-random-state))"
+            "(define ball (add-body! #:shape (sphere 0.1)))"
+            "(add-callback! ball (lambda (t v) (random:uniform state) #f))"
+            "(add-callback! ball (lambda (t v) (random 10) #f))"
+            "(add-callback! ball (lambda (t v) (random 10 (seed->random-state 5)) #f))"
+            "(add-callback! ball (lambda (t v) (display \"\") (format #f \"x\") #f))"
+            "(define calls 0)"
+            "(add-force! ball (lambda (t v) (set! calls (1+ calls)) #(0 0 0)))")
+(let ((result (run "draws.scm" "--until=0.1" "--quiet")))
+  (test-equal "draws and prints are warned of, and what forces change"
+    '("draws.scm:4:35" "draws.scm:5:35" "draws.scm:7:35" "draws.scm:9:32")
+    (map (lambda (line) (car (string-split line #\space)))
+         (map (lambda (line) (substring line 0 (string-contains line ": warning")))
+              (lines-of (run-errors result))))))
+(define (check-of . form)
+  (apply write-file "checked.scm" "(use-modules (timewarp) (oop goops))"
+         "(define ball (add-body! #:shape (sphere 0.1)))" form)
+  (run-errors (run "checked.scm" "--until=0.1" "--quiet" "--check")))
+(for-each
+ (lambda (what definition use)
+   (test-assert (string-append "--check finds a change of " what)
+     (string-match "a callback changed the variable kept"
+                   (check-of (string-append "(define kept " definition ")")
+                             (string-append "(add-callback! ball (lambda (t v) " use " #f))")))))
+ '("a random state" "a parameter" "a fluid" "an object")
+ '("(scene-random-state)" "(make-parameter 0)" "(make-fluid 0)"
+   "(let ((c (make-class '() '((x #:init-value 0))))) (make c))")
+ '("(random:normal kept)" "(kept t)" "(fluid-set! kept 1)" "(slot-set! kept 'x 1)"))
+(test-assert "--check finds what a force changes"
+  (string-match "a callback changed the variable kept"
+                (check-of "(define kept 0)"
+                          "(add-force! ball (lambda (t v) (set! kept (1+ kept)) #(0 0 0)))")))
+(test-assert "a callback that returns no time is told with its place"
+  (string-match "^checked.scm:3:1: a callback without #:period returned no time.*\n.*at 0 s, bodies: body-0"
+                (check-of "(add-callback! ball (lambda (t v) (if #f #f)))")))
+(write-file "wrong.scm" "(use-modules (timewarp))" "(add-body! #:shape 5)")
+(write-file "night.csv" "what was computed last night")
+(for-each (lambda (scene)
+            (run scene "--poses=night.csv" "--until=0.1")
+            (test-equal (string-append "a table outlives a scene that cannot be run: " scene)
+              "what was computed last night\n" (read-file "night.csv")))
+          '("missing.scm" "wrong.scm"))
+
 ;; ---- statistics ----
 
 (let ((result (run "ball.scm" "--stats=s.json" "--seed=7" "--accuracy=1e-7")))

@@ -51,6 +51,21 @@
 (test-assert "its hull is to be had"
   (close? 3.5 (shape-volume (load-shape ell #:convex-hull? #t)) 1e-13))
 (test-message "a missing file" "nowhere.obj is missing" (load-shape "nowhere.obj"))
+
+;; beside the file that the call stands in, whatever there is in the current folder
+(mkdir (in-folder "inner"))
+(mkdir (in-folder "outer"))
+(apply write-file "inner/thing.obj" (box-lines #f 1 '(0 0 0) '(1 1 2)))
+(apply write-file "outer/thing.obj" (box-lines #f 1 '(0 0 0) '(1 1 3)))
+(apply write-file "thing.obj" (box-lines #f 1 '(0 0 0) '(1 1 4)))
+(define load-it '("(use-modules (timewarp))" "(display (shape-volume (load-shape \"thing.obj\")))"))
+(apply write-file "inner/part.scm" load-it)
+(apply write-file "outer/main.scm" load-it)
+(write-file "outer/nested.scm" "(use-modules (timewarp))" "(load \"../inner/part.scm\")")
+(test-equal "a mesh beside the scene" "3.0" (run-output (run "outer/main.scm" "--quiet" "--until=0.1")))
+(test-equal "a mesh beside a file that the scene loads" "2.0"
+  (run-output (run "outer/nested.scm" "--quiet" "--until=0.1")))
+
 (test-message "no mesh" "no faces" (load-shape (write-file "empty.obj" "# nothing")))
 (test-message "a flat mesh" "has no hull: .*flat"
   (load-shape (write-file "flat.obj" "v 0 0 0" "v 1 0 0" "v 1 1 0" "v 0 1 0" "f 1 2 3 4")))

@@ -203,6 +203,12 @@
 (answer one)
 (test-answer "the same through a socket" "done" one ",use (talk)\n'done")
 (test-answer "evaluates" "result \"ball\"" one ",talk-eval (guile-user) (body-name ball)")
+(ask one "(use-modules (system repl error-handling))")
+(test-answer "an error within a debugger's prompt is told" "Wrong type argument" one
+             "(call-with-error-handling (lambda () (car 1)))")
+(test-assert "which leaves the client at its first one"
+  (string-match "back at the first one" (answer one)))
+(test-answer "where it goes on" "= 42" one "(+ 40 2)")
 (kill pid SIGINT)
 (wait pid)
 

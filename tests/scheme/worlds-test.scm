@@ -24,6 +24,14 @@
       (refuses "collisions enabled" (enable-collisions! ball #t))
       (refuses "its queue" (state-queue ball))
       (refuses "a camera that follows it" (camera #:follow ball))
+;; what is read of it, too
+      (refuses "its position" (position ball))
+      (refuses "its velocity set" (set! (velocity ball) #(1 0 0)))
+      (refuses "points between two worlds" (closest-points crate ball))
+      (refuses "a ray" (ray-cast #(0 0 9) #(0 0 -1) #:bodies (list ball)))
+      (refuses "an overlap" (overlapping (sphere 1) #:bodies (list crate ball)))
+      (refuses "its contacts" (contacts #:body ball))
+      (refuses "a sensor on it" (accelerometer ball))
       (test-message "a checkpoint" "expected one of the current world" (restore! kept))
       (run! #:until 0.1)))
   ;; an empty world has no body of that number
