@@ -97,5 +97,6 @@ BODY, a body or view, m."
 
 (define (all-poses)
   "Return the poses of all bodies of the current world that aren't fixed, in the order in which they were
-added, as one f64vector of seven numbers each: x y z (m) and the quaternion w x y z."
+added, as one f64vector of seven numbers each: x y z (m) and the quaternion w x y z.  Not in callbacks,
+which see what they are handed."
   (%all-poses (current-world)))

@@ -82,6 +82,11 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   Stillness book = group->stillness[successor.data.member];
   if (book.since == never) return begun;
   const double age = now - book.since;
+  // what has come to a stop within a long watch need not wait for its end
+  const double rounding = answer::rounding_share * speed_scale(work.scene(), *body.body);
+  if (book.length > begun.length && speed <= rounding &&
+      std::max(book.early_peak, book.late_peak) > rounding)
+    return begun;
   double& peak = age < 0.5 * book.length ? book.early_peak : book.late_peak;
   peak = std::max(peak, speed);
   const bool touches = work.touching[work.place_of(&successor)];

@@ -5,7 +5,8 @@
 // half of the watch it had all but stopped (it settles), or was no faster and stayed in its place
 // (it trembles): a tower that begins to tip gets faster, a ball that creeps gets away.  Where the
 // watch ends with neither, it begins anew for what got faster, else goes on for twice as long: so
-// what settles slowly is found, too.  A still member *can rest* if all that it touches is slow or
+// what settles slowly is found, too; where all that is left of its speed is rounding, such a long
+// watch is broken off for a short one.  A still member *can rest* if all that it touches is slow or
 // stands still.  Whether its contacts slip is not asked: what slides gets away or stops, and what
 // presses with next to nothing may slip for ever.
 //
