@@ -39,6 +39,15 @@ TW_LANES Lanes weighted_sum(Lanes first, const double (&weights)[rodas4::stages 
   return sum;
 }
 
+// The last rejected try of a step: its length, s, and error over tolerance.
+class Rejection {
+ public:
+  double cut(double h, double error);
+
+ private:
+  double h_ = 0, error_ = 0;
+};
+
 }  // namespace
 
 GroupStepper::GroupStepper(const GroupStart& start)
@@ -187,6 +196,28 @@ double GroupStepper::error_norm(const GroupScratch& s) const {
                    (4.0 * std::max(system_.members(), 1)));
 }
 
+// What a rejected step is to be cut by.  Its error goes as h^4 where all is smooth, but as h to h^3
+// where a contact opens, closes or begins to slip within it: from the second one on the last two
+// say how, to a whole power.
+double Rejection::cut(double h, double error) {
+  int order = 4;
+  double least = answer::least_step_change;
+  if (error_ > 0 && h < h_) {
+    order = 1;
+    const double ratio = h / h_;
+    for (double fallen = error_ * ratio * std::sqrt(ratio); order < 4 && error < fallen; ++order)
+      fallen *= ratio;
+    least = answer::least_repeated_change;
+  }
+  h_ = h;
+  error_ = error;
+  const double root = order == 1   ? error
+                      : order == 2 ? std::sqrt(error)
+                      : order == 3 ? std::cbrt(error)
+                                   : std::sqrt(std::sqrt(error));
+  return std::clamp(answer::step_safety / root, least, 0.9);
+}
+
 double GroupStepper::fastest_turn(const GroupScratch& s) const {
   double squared = 0;
   for (int i = 0; i < system_.members(); ++i) {
@@ -268,6 +299,7 @@ bool GroupStepper::implicit_step() {
   if (system_.moved_from_outside())
     system_.set_time_slope(time, h, s.state.data(), s.slope.data(), s, s.time_slope.data());
 
+  Rejection last_one;
   for (bool rejected = false;; rejected = true) {
     // the last step lands on the end, the one before leaves no sliver
     const bool last = h >= left * (1 - 1e-6);
@@ -277,10 +309,9 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const double change = good ? std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
-                                            answer::least_step_change, answer::most_step_change)
-                               : 0.1;
     if (good && error <= 1) {
+      const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
+                                       answer::least_step_change, answer::most_step_change);
       accept(last ? start_.end : time + h, s);
       ++counts_.steps;
       // a step cut short says little against a longer one
@@ -290,7 +321,7 @@ bool GroupStepper::implicit_step() {
       return true;
     }
     ++counts_.rejected;
-    h *= std::min(change, 0.9);
+    h *= good ? last_one.cut(h, error) : 0.1;
     if (!(time + 0.1 * h > time))
       return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
   }
