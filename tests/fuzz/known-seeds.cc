@@ -9,8 +9,8 @@ namespace {
 
 const KnownFault table[] = {
     // beyond what make check-long runs; the causes were not looked into
-    {"drum", 560, Fault::energy, 0.0021, "four bodies in a drum"},
-    {"thin", 199, Fault::energy, 0.0023, "a rim of a coin on another one comes into contact deep"},
+    {"drum", 560, Fault::energy, 0.0067, "a ball is jammed by friction between drum and end wall"},
+    {"thin", 199, Fault::energy, 0.0015, "a rim of a coin on another one comes into contact deep"},
 };
 
 const MendedSeed mended[] = {
@@ -50,6 +50,7 @@ const MendedSeed mended[] = {
     {"lattice", 6028, "what spun upright on a wall was looked at every microsecond"},
     {"shaker", 6756, "the walls of a room were as soft as the room is wide"},
     {"piston", 10031, "a cylinder that whirled on its rim at accuracy 1e-4 gained energy"},
+    {"thin", 5313, "steps were cut too little, again and again, at kinks of the contact law"},
     {"heap", 330, "a heap without friction at accuracy 1e-4 gained energy"},
 };
 
