@@ -130,8 +130,8 @@ inline constexpr double same_place = 1e-2, same_normal = 0.95;
 
 // ---- steps of a group's arc ----
 // The next step is h clamp(safety err^(-1/4), least, most), after a second rejection h
-// clamp(safety err^(-1/p), least repeated, 0.9); the first aims at this error, in tolerances, for it
-// is tried without knowing.
+// clamp(safety err^(-1/p), least repeated, 0.9); the first aims at this error, in tolerances, for
+// it is tried without knowing.
 inline constexpr double step_safety = 0.9, least_step_change = 0.2, most_step_change = 5;
 inline constexpr double least_repeated_change = 0.05;
 inline constexpr double first_step_error = 50;

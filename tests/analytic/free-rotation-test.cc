@@ -224,6 +224,26 @@ TEST(FreeRotation, ten_thousand_seconds_cost_only_the_rounding_of_the_angle) {
   }
 }
 
+// |w'| from differences of w: never above the bound, and as high where the body is symmetric.
+TEST(FreeRotation, angular_acceleration_stays_within_its_bound) {
+  for (const Vec3& moments : {Vec3(3, 2, 1), Vec3(2, 2, 1e-3), Vec3(1, 1, 2), Vec3(3, 2.999, 1)})
+    for (const Vec3& w : {Vec3(0.4, 0.2, 0.1), Vec3(0.05, 3, 0.02), Vec3(1, -2, 5)}) {
+      const FreeRotation motion = Spin{moments, tilted(), w}.motion();
+      const double bound = motion.max_angular_acceleration();
+      const double step = 1e-4 / motion.max_angular_speed();
+      double most = 0;
+      for (int i = 0; i < 400; ++i) {
+        Quat q;
+        Vec3 before, after;
+        motion.evaluate(0.05 * i - step, q, before);
+        motion.evaluate(0.05 * i + step, q, after);
+        most = std::max(most, (after - before).norm() / (2 * step));
+      }
+      EXPECT_LE(most, bound * (1 + 1e-6) + 1e-9) << moments.transpose() << ", " << w.transpose();
+      if (moments.x() == moments.y()) EXPECT_GT(most, 0.999 * bound) << moments.transpose();
+    }
+}
+
 // Steady spin about each axis, the unstable middle one included, either way round.
 TEST(FreeRotation, spin_about_a_principal_axis_is_uniform) {
   for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -238,6 +258,7 @@ TEST(FreeRotation, spin_about_a_principal_axis_is_uniform) {
         EXPECT_EQ(w_W, w);
       }
       EXPECT_EQ(motion.max_angular_speed(), 5.0);
+      EXPECT_EQ(motion.max_angular_acceleration(), 0);
     }
 }
 

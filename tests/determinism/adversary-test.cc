@@ -55,7 +55,7 @@ TEST(Adversary, cubes_that_meet_face_on_up_to_rounding) {
 }
 
 TEST(Adversary, tray_and_bat_that_move_by_procedures) {
-  expect_same_under_adversaries(procedure_scene(long_tests() ? 3 : 1), 10);
+  expect_same_under_adversaries(procedure_scene(long_tests() ? 3 : 2), 10);
 }
 
 TEST(Adversary, spheres_molecules_boxes_and_rocks) {
