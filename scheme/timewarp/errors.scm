@@ -169,7 +169,7 @@
 
 (define* (raise-error message #:optional place (backtrace ""))
   "Raise a timewarp-error with MESSAGE at PLACE, by default where the user's files call."
-  (let ((place (or place (caller-place) (loaded-form-place))))
+  (let ((place (or place (caller-place))))
     (without-guiles-backtrace
      (lambda ()
        (throw 'timewarp-error #f "~A" (list message) (list place backtrace))))))

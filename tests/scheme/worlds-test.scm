@@ -24,7 +24,7 @@
       (refuses "collisions enabled" (enable-collisions! ball #t))
       (refuses "its queue" (state-queue ball))
       (refuses "a camera that follows it" (camera #:follow ball))
-;; what is read of it, too
+      ;; what is read of it, too
       (refuses "its position" (position ball))
       (refuses "its velocity set" (set! (velocity ball) #(1 0 0)))
       (refuses "points between two worlds" (closest-points crate ball))

@@ -279,7 +279,7 @@ TEST(Manifold, edges_along_each_other_touch_at_both_ends) {
       EXPECT_NEAR(from, shift - 0.5, 1e-12);
       EXPECT_NEAR(to, 0.5, 1e-12);
     }
-  // a hair apart from parallel, and no more than one point where they cross
+  // where they cross there is one point
   const Frame left = turned({0, lean, 0}, {-aside, 0, 1});
   const Frame skew = turned({0, -lean, 0}, {aside - 1e-3, 0, 1});
   const Frame crossing(rotation_by({0.3, 0, 0}).toRotationMatrix() * skew.R, skew.p);
