@@ -131,6 +131,12 @@ void CallbackBook::rewind(std::uint32_t number, const Key& key) {
   schedule(number);
 }
 
+void CallbackBook::note_committed(const State& state) {
+  CallbackRecord& callback = records_[state.key.id];
+  if (state.process == sim_.process_of(callback.def.targets.front()))
+    callback.committed_next = state.next_callback;
+}
+
 std::vector<std::pair<Key, double>> CallbackBook::committed_ticks() const {
   const Present& present = sim_.present;
   const Key now = !present.begun          ? Key{}

@@ -17,6 +17,7 @@
 namespace tw {
 
 struct Simulation;
+struct State;
 
 struct CallbackRecord {
   CallbackDef def;
@@ -50,7 +51,8 @@ class CallbackBook {
   void move_on(std::uint32_t number, double next);
   // A target lost its states from `key` on: back to the first call that is not done any more.
   void rewind(std::uint32_t number, const Key& key);
-  void note_committed(std::uint64_t number, double next) { records_[number].committed_next = next; }
+  // A call is committed, by a state of a target, or of one that it has drawn into their group.
+  void note_committed(const State& state);
 
   // ---- checkpoints ----
   // Of each: the key of the first call that is not committed, and the committed next time.

@@ -116,8 +116,7 @@ void Commit::commit_state(State& state) {
   state.committed = true;
   if (trace_) trace_->add(state);
   count(state);
-  if (state.key.kind == KeyKind::callback)
-    callbacks_.note_committed(state.key.id, state.next_callback);
+  if (state.key.kind == KeyKind::callback) callbacks_.note_committed(state);
   if (state.report) delivery_.note(state.report);
   if (sim_.options.hash && state.changed) {
     const Body& body = sim_.body_of(state.process);

@@ -22,11 +22,11 @@ struct CallbackBookTest : testing::Test {
     return book.add(def);
   }
   // The record that a call leaves on its target.
-  void leave_record(std::uint32_t number, double next) {
-    const Key key = book[number].next;
-    State& state = *simulation.graph.append(simulation.process_of(ball), key);
+  State& leave_record(std::uint32_t number, double next) {
+    State& state = *simulation.graph.append(simulation.process_of(ball), book[number].next);
     state.next_callback = next;
     book.move_on(number, next);
+    return state;
   }
   double next(std::uint32_t number) const { return book[number].next.time; }
 };
@@ -92,11 +92,15 @@ TEST_F(CallbackBookTest, parked_until_a_rollback_and_ended_for_good) {
 }
 
 TEST_F(CallbackBookTest, committed_ticks_bring_back_what_comes_next) {
+  const BodyId fellow = simulation.add_ball(0.5, Vec3(3, 0, 0), Vec3::Zero());
   const std::uint32_t steady = add(0.5, 0.5), free = add(0.25, std::nullopt);
   simulation.present.begun = true;
   simulation.present.time = 1;
   simulation.present.due = {1, true};
-  book.note_committed(free, 1.75);
+  // a fellow of the target's group that was drawn in knows no next time
+  const State& drawn_in = *simulation.graph.append(simulation.process_of(fellow), book[free].next);
+  book.note_committed(leave_record(free, 1.75));
+  book.note_committed(drawn_in);
   const auto ticks = book.committed_ticks();
   for (int k = 0; k < 5; ++k) book.move_on(steady, never);
   book.move_on(free, 9);
