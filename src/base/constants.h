@@ -55,10 +55,11 @@ inline constexpr double preload_beyond = 1.5;
 // ---- multibodies ----
 // A stop at a joint's limit yields so far under the weight beyond it, rad or share of its reach.
 inline constexpr double stop_depth = 1e-4;
-// Speed at which a joint strikes its stop no more but leans on it, rad/s or m/s; it bounds what the
-// stop damps.
-inline constexpr double stop_speed = 1e-2;
-// A joint is at its stop from this far on, rad or m, and as a share of the limit.
+// Speed at which a joint strikes its stop no more but leans on it, of sqrt(g/reach) rad/s or
+// sqrt(g reach) m/s with the reach of what it moves; it bounds what the stop damps.  1 cm/s at 1 m.
+inline constexpr double stop_speed = 3e-3;
+// A joint is at its stop from this far on: rad, or of the reach of what it moves; and as a share of
+// the limit.
 inline constexpr double stop_tolerance = 1e-12;
 // A multibody alone is followed by an explicit method while nothing at its joints is faster than so
 // many times its own motion: beyond, stability would set the steps.
@@ -69,8 +70,9 @@ inline constexpr double joint_step_share = 0.05;
 inline constexpr double spring_step_share = 0.1;
 // Looser steps than this are made by a method of order 5.
 inline constexpr double loose_steps = 1e-5;
-// Coulomb friction of a joint is smooth below about this speed, rad/s or m/s.
-inline constexpr double joint_friction_speed = 1e-3;
+// Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 1 mm/s
+// at 1 m.
+inline constexpr double joint_friction_speed = 3e-4;
 
 // ---- where bodies meet ----
 // Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no

@@ -31,7 +31,7 @@ struct AtStop {
     side = low ? 1 : -1;
     gap = side * (q - limit);
     speed = -side * joints.u[static_cast<std::size_t>(axis.u)];
-    touches = gap <= answer::stop_tolerance * (1 + std::abs(limit));
+    touches = gap <= stop_tolerance(axis, limit);
   }
 };
 
@@ -44,12 +44,14 @@ void strike(const Multibody& multibody, double now, MultibodyState& joints) {
   std::vector<double> unit(joints.u.size());
   for (int count = 0; count < guard::most_stop_impulses; ++count) {
     const Axis* struck = nullptr;
-    double fastest = answer::stop_speed;
+    double fastest = 0;  // of what is slow there
     for (std::size_t i = 0; i < tree.axes().size(); ++i) {
-      const AtStop at(tree.axes()[i], joints);
-      if (!at.touches || joints.stops[i] == at.stop || !(at.speed > fastest)) continue;
-      struck = &tree.axes()[i];
-      fastest = at.speed;
+      const Axis& axis = tree.axes()[i];
+      const AtStop at(axis, joints);
+      if (!at.touches || joints.stops[i] == at.stop) continue;
+      if (!(at.speed > std::max(1.0, fastest) * stop_speed(axis))) continue;
+      struck = &axis;
+      fastest = at.speed / stop_speed(axis);
     }
     if (!struck) return;
     if (!placed) {
@@ -57,7 +59,8 @@ void strike(const Multibody& multibody, double now, MultibodyState& joints) {
       factor(tree, placed->kinematics(), factors);
     }
     const Factored factored{tree, placed->kinematics(), factors};
-    const double impulse = (1 + struck->law.restitution) * fastest * AtStop(*struck, joints).side /
+    const AtStop at(*struck, joints);
+    const double impulse = (1 + struck->law.restitution) * at.speed * at.side /
                            inverse_inertia_of_dof(factored, struck->u);
     unit.assign(unit.size(), 0.0);
     unit[static_cast<std::size_t>(struck->u)] = impulse;
@@ -76,11 +79,11 @@ void settle_stops(const Multibody& multibody, double now, bool may_leave, Multib
   joints.stops.resize(axes.size(), Stop::none);
   strike(multibody, now, joints);
   // rounding of an impulse that leaves nothing
-  constexpr double nothing = 1e-6 * answer::stop_speed;
+  constexpr double nothing = 1e-6;  // of what is slow
   bool leans = false;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const AtStop at(axes[i], joints);
-    if (at.touches && joints.stops[i] != at.stop && at.speed > -nothing)
+    if (at.touches && joints.stops[i] != at.stop && at.speed > -nothing * stop_speed(axes[i]))
       joints.stops[i] = at.stop;
     else if (may_leave && !at.touches && at.speed < 0)
       joints.stops[i] = Stop::none;

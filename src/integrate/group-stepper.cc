@@ -57,7 +57,7 @@ GroupStepper::GroupStepper(const GroupStart& start)
                      std::none_of(start.members.begin(), start.members.end(),
                                   [](const GroupMember& m) { return m.forces != nullptr; }) &&
                      start.members.size() == start.trees.front().members.size();
-  if (alone && is_nonstiff(start.trees.front(), start.joint_rate)) {
+  if (alone && is_nonstiff(start.trees.front(), start.joint_size, start.joint_rate)) {
     const GroupTree& tree = start.trees.front();
     std::vector<double> y(tree.state->u.size(), 0.0);
     y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());

@@ -15,6 +15,24 @@ using namespace multibody;
 
 namespace {
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// Of each dof, whether it is a distance, m.
+std::vector<bool> distances(const Tree& tree) {
+  std::vector<bool> of(index(tree.nv()), false);
+  for (const Node& node : tree.nodes())
+    if (node.kind == NodeKind::slider || node.kind == NodeKind::floating)
+      for (int k = 0; k < std::min(node.dofs, 3); ++k) of[index(node.u + k)] = true;
+  return of;
+}
+
+// The fastest of these velocities, distances as shares of `size`, `rate` at least, 1/s.
+double fastest_rate(const std::vector<bool>& is_distance, const double* u, double size,
+                    double rate) {
+  for (std::size_t k = 0; k < is_distance.size(); ++k)
+    rate = std::max(rate, std::abs(u[k]) / (is_distance[k] ? size : 1));
+  return rate;
+}
+
 }  // namespace
 
 JointEquations::JointEquations(const GroupTree& tree, double end, double tolerance, double size,
@@ -24,7 +42,7 @@ JointEquations::JointEquations(const GroupTree& tree, double end, double toleran
       tolerance_(tolerance),
       size_(size),
       rate_(rate),
-      is_distance_(index(n_), false),
+      is_distance_(distances(tree.multibody->tree)),
       base_(*tree.multibody, end),
       placed_(tree.multibody->tree),
       articulation_(tree.multibody->tree),
@@ -32,9 +50,6 @@ JointEquations::JointEquations(const GroupTree& tree, double end, double toleran
       tau_(index(n_)) {
   around_.gravity = tree.gravity;
   around_.base = tree.multibody->base;
-  for (const Node& node : tree.multibody->tree.nodes())
-    if (node.kind == NodeKind::slider || node.kind == NodeKind::floating)
-      for (int k = 0; k < std::min(node.dofs, 3); ++k) is_distance_[index(node.u + k)] = true;
 }
 
 int JointEquations::chart_size() const { return tree_.multibody->tree.nq(); }
@@ -56,9 +71,7 @@ void JointEquations::slope(double time, const double* y, const double* chart, do
 }
 
 void JointEquations::tolerances(const double* y, const double*, double* allowed) const {
-  double fastest = rate_;
-  for (int k = 0; k < n_; ++k)
-    fastest = std::max(fastest, std::abs(y[n_ + k]) / (is_distance_[index(k)] ? size_ : 1));
+  const double fastest = fastest_rate(is_distance_, y + n_, size_, rate_);
   for (int k = 0; k < n_; ++k) {
     const double scale = is_distance_[index(k)] ? size_ : 1;
     allowed[k] = tolerance_ * scale;
@@ -85,11 +98,11 @@ void JointEquations::recentre(double* y, double* slope, double* chart) const {
   std::copy_n(y + n_, n_, slope);
 }
 
-bool is_nonstiff(const GroupTree& start, double rate) {
+bool is_nonstiff(const GroupTree& start, double size, double rate) {
   const Tree& tree = start.multibody->tree;
   const MultibodyState& state = *start.state;
-  double fastest = rate, stiffest = 0;
-  for (const double u : state.u) fastest = std::max(fastest, std::abs(u));
+  const double fastest = fastest_rate(distances(tree), state.u.data(), size, rate);
+  double stiffest = 0;
   const std::vector<Axis>& axes = tree.axes();
   Kinematics placed(tree);
   Articulation factors(tree);
@@ -99,7 +112,7 @@ bool is_nonstiff(const GroupTree& start, double rate) {
     ServoGains servo;
     if (!state.servos.empty()) servo = state.servos[i];
     double stiffness = law.stiffness + servo.stiffness, damping = law.damping + servo.damping;
-    if (law.friction > 0) damping += law.friction / answer::joint_friction_speed;
+    if (law.friction > 0) damping += law.friction / friction_speed(axes[i]);
     if (!state.stops.empty() && state.stops[i] != Stop::none) stiffness += axes[i].stop_stiffness;
     if (stiffness == 0 && damping == 0) continue;
     if (!factored) {

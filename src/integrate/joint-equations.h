@@ -41,7 +41,8 @@ class JointEquations final : public Equations {
 };
 
 // Whether explicit steps of a multibody are as long as accuracy lets them be: nothing that acts at
-// its joints is stiff against how it moves, a function of the state it starts in.
-bool is_nonstiff(const GroupTree& tree, double rate);
+// its joints is stiff against how it moves, a function of the state it starts in.  `size`, `rate`:
+// as above.
+bool is_nonstiff(const GroupTree& tree, double size, double rate);
 
 }  // namespace tw

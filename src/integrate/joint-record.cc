@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/constants.h"
 #include "math/root.h"
 #include "math/rotation-vector.h"
 
@@ -344,32 +343,32 @@ double JointRecord::value(const Axis& axis, int step, double r) const {
   return node(step)[axis.q] + y[index(axis.u)];
 }
 
-// Over a part of a step: halved until it is surely on one side, or too short to matter.
-double JointRecord::first_beyond(const Axis& axis, double side, double limit, int step, double r0,
-                                 double r1, bool& inside) const {
+// Over a part of a step: halved until it is surely on one side, or too short to matter.  `least`:
+// how far it may be from the limit, negative beyond.
+double JointRecord::first_beyond(const Axis& axis, double side, double limit, double least,
+                                 int step, double r0, double r1) const {
   constexpr double shortest = 1.0 / 4096;
-  const double tolerance = answer::stop_tolerance * (1 + std::abs(limit));
-  const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) + tolerance; };
-  const double middle = 0.5 * (r0 + r1), here = gap(middle);
+  const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) - least; };
+  const double middle = 0.5 * (r0 + r1);
   const double reach =
       0.5 * (r1 - r0) * path_.length(step) * path_.rate_bounds(step, axis.u, r0, r1)[0];
-  if (here > reach) return inside = true, never;
-  if (!inside && here < -reach) return never;
+  if (gap(middle) > reach) return never;
   if (r1 - r0 > shortest) {
-    const double first = first_beyond(axis, side, limit, step, r0, middle, inside);
-    return first < never ? first : first_beyond(axis, side, limit, step, middle, r1, inside);
+    const double first = first_beyond(axis, side, limit, least, step, r0, middle);
+    return first < never ? first : first_beyond(axis, side, limit, least, step, middle, r1);
   }
   const double left = gap(r0), right = gap(r1);
-  if (right >= 0) return inside = true, never;
-  if (!inside && !(left >= 0)) return never;
+  if (right >= 0) return never;
   const double r = left > 0 ? find_root(gap, r0, r1, left, right).left : r0;
   return path_.time(step) + r * path_.length(step);
 }
 
 double JointRecord::first_beyond(const Axis& axis, double side, double limit) const {
-  bool inside = false;
+  if (path_.steps() == 0) return never;
+  const double gap = side * (value(axis, 0, 0) - limit);
+  const double least = std::min(gap, 0.0) - multibody::stop_tolerance(axis, limit);
   for (int step = 0; step < path_.steps(); ++step)
-    if (const double when = first_beyond(axis, side, limit, step, 0, 1, inside); when < never)
+    if (const double when = first_beyond(axis, side, limit, least, step, 0, 1); when < never)
       return when;
   return never;
 }

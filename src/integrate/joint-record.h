@@ -45,8 +45,8 @@ class JointRecord {
   // The rates of the pose; at a node those of the step before it, as `pose_rates` of the group.
   Twist rates(int link, double time) const;
   MotionBounds bounds(int link, double from, double to) const;
-  // When a coordinate first gets below (side 1) or above (side -1) a limit, s; `never`: it does
-  // not.  One that is beyond where the record begins has to come back first.
+  // When a coordinate first gets below (side 1) or above (side -1) a limit, s, or, where it begins
+  // beyond it, further beyond; `never`: it does not.
   double first_beyond(const multibody::Axis& axis, double side, double limit) const;
   // A copy from the step that holds `from` on.
   JointRecord stretch(double from) const;
@@ -60,8 +60,8 @@ class JointRecord {
   void fill(int step, double r, double time, bool of_path, Placed& p) const;
   double time_at(int step, double r) const;
   double value(const multibody::Axis& axis, int step, double r) const;
-  double first_beyond(const multibody::Axis& axis, double side, double limit, int step, double r0,
-                      double r1, bool& inside) const;
+  double first_beyond(const multibody::Axis& axis, double side, double limit, double least,
+                      int step, double r0, double r1) const;
   struct Stretch;
   struct Ends;
   MotionRates base_rates(const Stretch& stretch) const;

@@ -11,8 +11,6 @@
 namespace tw::multibody {
 namespace {
 
-constexpr double v0 = answer::joint_friction_speed;
-
 // The index of an axis' first coordinate and dof, and its inputs.
 struct AxisInputs {
   std::size_t q, u;
@@ -34,7 +32,9 @@ struct Scalar {
   double torque = 0, by_q = 0, by_u = 0;
 };
 
-Scalar passive(const AxisSpec& law, double q, double u) {
+Scalar passive(const Axis& axis, double q, double u) {
+  const AxisSpec& law = axis.law;
+  const double v0 = friction_speed(axis);
   const double root = std::sqrt(u * u + v0 * v0);
   return {-law.damping * u - law.friction * u / root - law.stiffness * (q - law.rest),
           -law.stiffness, -law.damping - law.friction * v0 * v0 / (root * root * root)};
@@ -62,7 +62,7 @@ Scalar scalar_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, 
   const auto add = [&](const Scalar& s) {
     sum.torque += s.torque, sum.by_q += s.by_q, sum.by_u += s.by_u;
   };
-  if (axis.passive) add(passive(axis.law, q, u));
+  if (axis.passive) add(passive(axis, q, u));
   if (in.driven()) {
     const double speed = inputs.target_velocities.empty() ? 0 : inputs.target_velocities[in.u];
     add(servo(in.servo, inputs.targets[in.q] - q, speed - u));
@@ -93,6 +93,7 @@ Ball ball_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, cons
   Ball sum;
   const AxisSpec& law = axis.law;
   if (axis.passive) {
+    const double v0 = friction_speed(axis);
     const double root = std::sqrt(u.squaredNorm() + v0 * v0);
     const Quat e = from_rest(axis.rest_attitude, q);
     sum.torque = -law.damping * u - law.friction / root * u - law.stiffness * turn(e);
@@ -142,8 +143,16 @@ void require_gain(double value, bool may_be_infinite, const std::string& what) {
 
 }  // namespace
 
+double friction_speed(const Axis& axis) { return answer::joint_friction_speed * axis.slow; }
+
 double stop_damping(const Axis& axis) {
-  return 1.5 * (1 - axis.law.restitution) / answer::stop_speed;
+  return 1.5 * (1 - axis.law.restitution) / stop_speed(axis);
+}
+
+double stop_speed(const Axis& axis) { return answer::stop_speed * axis.slow; }
+
+double stop_tolerance(const Axis& axis, double limit) {
+  return answer::stop_tolerance * (axis.unit + std::abs(limit));
 }
 
 void require_inputs(const Tree& tree, const Inputs& inputs) {

@@ -3,7 +3,7 @@
 // Of a scalar coordinate, T = sum of
 //   given        tau
 //   damping      -c u
-//   friction     -f u / sqrt(u^2 + v0^2), v0 = answer::joint_friction_speed
+//   friction     -f u / sqrt(u^2 + v0^2), v0 its friction_speed
 //   spring       -k (q - rest)
 //   servo        kp (target - q) + kd (target velocity - u), cut to +-max torque
 //   stop         k d (1 + b d') where positive, else 0; d the depth beyond the limit
@@ -59,7 +59,13 @@ void add_joint_derivatives(const Tree& tree, In q, In u, const Inputs& inputs, O
 // Potential of the springs, J; not of servos and stops.
 double spring_energy(const Tree& tree, In q);
 
-// b, s/rad or s/m, of an axis' stop: restitution e at answer::stop_speed.
+// v0, rad/s or m/s.
+double friction_speed(const Axis& axis);
+// b, s/rad or s/m, of an axis' stop: restitution e at stop_speed.
 double stop_damping(const Axis& axis);
+// What is slower than this at its stop leans on it, rad/s or m/s.
+double stop_speed(const Axis& axis);
+// How near its limit it is at its stop, rad or m.
+double stop_tolerance(const Axis& axis, double limit);
 
 }  // namespace tw::multibody

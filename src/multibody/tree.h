@@ -102,6 +102,8 @@ struct Axis {
   int q = 0, u = 0;
   AxisSpec law;
   Quat rest_attitude = Quat::Identity();
+  double unit = 1;            // rad, or the reach of what it moves, m
+  double slow = 1;            // that over sqrt(reach/g): the scale of what is slow, rad/s or m/s
   double stop_stiffness = 0;  // N m/rad or N/m
   bool passive = false;       // damping, friction or a spring
 };
@@ -141,7 +143,7 @@ class Tree {
   int add_node(NodeKind kind, int parent, const Frame& X_PF);
   void add_axis(const AxisSpec& law, bool ball, int q, int u, const Quat& rest);
   void add_mass(Node& node, const LinkSpec& spec, const Frame& X_NL);
-  void set_stops();
+  void set_scales();
   void require_regular() const;
 
   std::vector<Link> links_;

@@ -15,14 +15,6 @@ BodyId add_named_ball(World& world, const std::string& name, const Vec3& positio
   return world.add_body(def);
 }
 
-void add_floor(World& world) {
-  BodyDef def;
-  def.name = "floor";
-  def.shape = make_half_space(Vec3::UnitZ(), 0);
-  def.fixed = true;
-  world.add_body(def);
-}
-
 // Times of fusions.
 void watch_fusions(World& world, std::vector<double>& times) {
   world.add_collision_observer([&times](const Collision& c) { times.push_back(c.time); },

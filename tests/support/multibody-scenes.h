@@ -7,6 +7,7 @@
 #include "geometry/shape.h"
 #include "kernel/world.h"
 #include "multibody/multibody.h"
+#include "support/scene.h"
 
 namespace tw::test {
 
@@ -51,14 +52,6 @@ inline MultibodyDef car(const Vec3& position) {
     def.links.push_back(wheel);
   }
   return def;
-}
-
-inline void add_floor(World& world) {
-  BodyDef floor;
-  floor.name = "floor";
-  floor.shape = make_half_space(Vec3::UnitZ(), 0);
-  floor.fixed = true;
-  world.add_body(floor);
 }
 
 inline void set_joint(World& world, std::uint32_t multibody, std::size_t coordinate, double q) {

@@ -50,6 +50,14 @@ inline BodyId add_wall(World& world, const Vec3& normal, double offset) {
   return world.add_body(def);
 }
 
+inline BodyId add_floor(World& world) {
+  BodyDef def;
+  def.name = "floor";
+  def.shape = make_half_space(Vec3::UnitZ(), 0);
+  def.fixed = true;
+  return world.add_body(def);
+}
+
 // Six walls around [lo, hi]^3.
 inline void add_walls(World& world, double lo, double hi) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -20,14 +20,6 @@ inline BodyDef named(BodyDef def, const std::string& name) {
   return def;
 }
 
-inline BodyId add_floor(World& world) {
-  BodyDef def;
-  def.name = "floor";
-  def.shape = make_half_space(Vec3::UnitZ(), 0);
-  def.fixed = true;
-  return world.add_body(def);
-}
-
 // ---- columns ----
 
 // `count` cubes of 0.2 m on top of each other; the top one weighs `ratio` times as much as the

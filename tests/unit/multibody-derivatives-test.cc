@@ -160,8 +160,8 @@ TEST(MultibodyDerivatives, a_stop_pushes_out_and_is_smooth_in_contact) {
       return tau[0];
     };
     const double q = side * 1.001, u = side * 2e-3;
-    // b = 1.5 (1 - 0.5)/0.01
-    EXPECT_NEAR(torque(q, u), -side * 1e4 * 0.001 * (1 + 75 * 2e-3), 1e-9);
+    const double reach = std::sqrt(1.5), b = 1.5 * 0.5 / (3e-3 * std::sqrt(9.81 / reach));
+    EXPECT_NEAR(torque(q, u), -side * 1e4 * 0.001 * (1 + b * 2e-3), 1e-9);
     EXPECT_EQ(torque(side * 0.999, u), 0) << "within the limits";
     EXPECT_EQ(torque(q, -side * 1), 0) << "it never pulls";
     Numbers Kq{0}, Ku{0};
