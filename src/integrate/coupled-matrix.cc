@@ -21,7 +21,7 @@ struct CoupledMatrix::Data {
   Eigen::SparseMatrix<double> sparse;
   Eigen::KLU<Eigen::SparseMatrix<double>> sparse_factors;
   bool is_dense = true, analysed = false;
-  Eigen::VectorXd scale;
+  Eigen::VectorXd units, scale;  // of columns and rows
   std::uint64_t factorizations = 0;
 };
 
@@ -30,6 +30,7 @@ CoupledMatrix::CoupledMatrix(std::vector<std::vector<int>> rows_of)
   Data& d = *data_;
   d.rows_of = std::move(rows_of);
   const int n = size();
+  d.units.setOnes(n);
   d.scale.resize(n);
   d.is_dense = n <= cost::most_dense_unknowns;
   if (d.is_dense) {
@@ -50,14 +51,15 @@ const std::vector<int>& CoupledMatrix::rows_of(int column) const {
 }
 std::uint64_t CoupledMatrix::factorizations() const { return data_->factorizations; }
 
-void CoupledMatrix::set_column(int column, const double* numbers) {
+void CoupledMatrix::set_column(int column, const double* numbers, double unit) {
   Data& d = *data_;
+  d.units[column] = unit;
   if (d.is_dense) {
-    for (const int row : d.rows_of[index(column)]) d.dense(row, column) = numbers[row];
+    for (const int row : d.rows_of[index(column)]) d.dense(row, column) = unit * numbers[row];
     return;
   }
   double* to = d.sparse.valuePtr() + d.sparse.outerIndexPtr()[column];
-  for (const int row : d.rows_of[index(column)]) *to++ = numbers[row];
+  for (const int row : d.rows_of[index(column)]) *to++ = unit * numbers[row];
 }
 
 bool CoupledMatrix::factor() {
@@ -95,6 +97,7 @@ bool CoupledMatrix::solve(double* right_side) const {
     x = d.dense_factors.solve(scaled);
   else
     x = d.sparse_factors.solve(scaled);
+  x = x.cwiseProduct(d.units);
   return x.allFinite();
 }
 

@@ -2,8 +2,9 @@
 // by column, factored and solved again and again with the same pattern.
 //
 // Dense LU with partial pivoting for few unknowns, KLU for many (T. A. Davis, E. Palamadai
-// Natarajan, ACM TOMS 37 (2010)).  Both pivot: joints and bodies have units of their own, so rows
-// are scaled to their largest entry first.
+// Natarajan, ACM TOMS 37 (2010)).  Both pivot, and must not do so by kg, m and rad: unknowns are
+// taken in units in which each moves with about the same energy, and then rows are scaled to their
+// largest entry.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -24,8 +25,9 @@ class CoupledMatrix {
 
   int size() const;
   const std::vector<int>& rows_of(int column) const;
-  // From a column of `size` numbers; those outside the pattern are not looked at.
-  void set_column(int column, const double* numbers);
+  // From a column of `size` numbers; those outside the pattern are not looked at.  `unit` > 0: of
+  // its unknown.
+  void set_column(int column, const double* numbers, double unit);
   // False: singular, or not finite.
   bool factor();
   bool solve(double* right_side) const;

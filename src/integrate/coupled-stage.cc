@@ -6,6 +6,7 @@
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include "integrate/group-rows.h"
 #include "integrate/group-system.h"
@@ -172,6 +173,9 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
     const Member& m = member_[index(i)];
     if (m.is_link) continue;
     BodyChange& change = s.changes[index(i)];
+    // of velocities and of angular momenta
+    const double units[2] = {std::sqrt(m.inverse_mass),
+                             1 / std::sqrt(m.inverse_moments.minCoeff())};
     for (int c = 0; c < 6; ++c) {
       clear(m.unknown + c);
       change = BodyChange{};
@@ -184,7 +188,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
       }
       column[index(m.unknown + c)] = (c < 3 ? m.mass : 1.0) * sigma_;
       gather_column(couplings_of_slot_[index(i)], s, {&i, 1}, column.data());
-      coupled_->set_column(m.unknown + c, column.data());
+      coupled_->set_column(m.unknown + c, column.data(), units[c / 3]);
     }
     change = BodyChange{};
   }
@@ -202,7 +206,8 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
       gather_column(couplings_of_tree_[t], s, tree.start().members, column.data());
       for (std::size_t i = 0; i < n; ++i)
         column[index(tree_unknowns_[t]) + i] += tree.matrix()[n * k + i];
-      coupled_->set_column(number, column.data());
+      const double own = std::abs(column[index(number)]);
+      coupled_->set_column(number, column.data(), own > 0 ? std::sqrt(sigma_ / own) : 1);
       unit[k] = 0;
     }
     for (const int member : tree.start().members) s.changes[index(member)] = BodyChange{};
