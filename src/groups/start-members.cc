@@ -57,7 +57,7 @@ void StartOfMembers::set_tolerances() {
   if (springs_alone) {
     const double share = answer::spring_step_share * accuracy;
     start_.position_tolerance = share * size_;
-    start_.velocity_tolerance = share * std::sqrt(gravity * size_);
+    start_.velocity_tolerance = share * std::max(std::sqrt(gravity * size_), speed_);
     return;
   }
   const double closeness = group_closeness(accuracy, speed_ / std::sqrt(gravity * size_));
