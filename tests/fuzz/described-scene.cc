@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "fuzz/deeds.h"
+#include "support/counter.h"
 #include "support/scene.h"
 
 namespace tw::fuzz {
@@ -12,6 +14,16 @@ std::size_t DescribedScene::moving() const {
   const auto count = std::count_if(bodies.begin(), bodies.end(),
                                    [](const DescribedBody& body) { return !body.fixed; });
   return static_cast<std::size_t>(count);
+}
+
+bool DescribedScene::has(const std::string& body) const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [&](const DescribedBody& other) { return other.name == body; });
+}
+
+bool DescribedScene::driven() const {
+  return std::any_of(callbacks.begin(), callbacks.end(),
+                     [](const DescribedCallback& c) { return c.deed == Deed::reach; });
 }
 
 Solid ball(double radius) {
@@ -103,12 +115,84 @@ ShapePtr shape_of(const DescribedBody& body) {
     const Hills& hills = *body.hills;
     return make_height_field(hills.heights, hills.columns, hills.spacing, hills.spacing);
   }
-  if (body.solids.size() == 1) return shape_of(body.solids.front());
+  if (body.solids.size() == 1) {
+    const Solid& solid = body.solids.front();
+    return solid.placed() ? place_shape(shape_of(solid), solid.placement) : shape_of(solid);
+  }
   std::vector<ShapePtr> parts;
   for (const Solid& solid : body.solids)
     parts.push_back(place_shape(shape_of(solid), solid.placement));
   return make_union(parts);
 }
+
+namespace {
+
+BodyDef definition(const DescribedBody& body, bool counts) {
+  BodyDef def;
+  def.name = body.name;
+  def.shape = shape_of(body);
+  if (counts) def.slots = test::make_counter();
+  if (body.dynamic()) def.density = body.density;
+  if (body.hanging) return def;
+  def.fixed = body.fixed;
+  if (body.kinematic()) {
+    def.motion = make_keyframes(body.keyframes, body.smooth);
+  } else {
+    def.position = body.pose.p;
+    def.orientation = body.pose.q;
+  }
+  if (body.dynamic()) {
+    def.velocity = body.velocity;
+    def.angular_velocity = body.spin;
+  }
+  return def;
+}
+
+// The links from this body on; returns where they end.
+std::size_t add_multibody(World& world, const DescribedScene& scene, std::size_t first) {
+  const auto& bodies = scene.bodies;
+  MultibodyDef def;
+  def.name = bodies[first].hanging->multibody;
+  def.free = bodies[first].hanging->free;
+  def.position = bodies[first].pose.p;
+  def.orientation = bodies[first].pose.q;
+  const auto short_name = [&](const std::string& name) {
+    return name.empty() ? name : name.substr(def.name.size() + 1);
+  };
+  std::vector<double> velocities;
+  std::size_t end = first;
+  for (; end < bodies.size() && bodies[end].hanging; ++end) {
+    const Hanging& hanging = *bodies[end].hanging;
+    if (hanging.multibody != def.name) break;
+    LinkDef link;
+    link.name = short_name(bodies[end].name);
+    link.parent = short_name(hanging.parent);
+    link.joint = hanging.joint;
+    link.body = definition(bodies[end], !scene.callbacks.empty());
+    link.body.name.clear();
+    def.links.push_back(link);
+    velocities.insert(velocities.end(), hanging.velocity.begin(), hanging.velocity.end());
+  }
+  const Multibody& added = world.multibody(world.add_multibody(def));
+  world.edit(added.links.front(), [&](StateView& view) {
+    view.change_joints([&](MultibodyState& joints) { joints.u = velocities; });
+  });
+  return end;
+}
+
+void add_bond(World& world, const DescribedBond& bond) {
+  const BodyId a = world.find_body(bond.a).value(), b = world.find_body(bond.b).value();
+  if (bond.holds) {
+    world.attach(a, b);
+    return;
+  }
+  SpringDef def = bond.spring;
+  def.a = a;
+  def.b = b;
+  world.add_spring(def);
+}
+
+}  // namespace
 
 void fill(World& world, const DescribedScene& scene) {
   world.set_gravity(scene.gravity);
@@ -119,24 +203,14 @@ void fill(World& world, const DescribedScene& scene) {
   contact.rolling_friction = scene.rolling;
   contact.spinning_friction = scene.spinning;
   world.set_contact({}, {}, contact);
-  for (const DescribedBody& body : scene.bodies) {
-    BodyDef def;
-    def.name = body.name;
-    def.shape = shape_of(body);
-    def.fixed = body.fixed;
-    if (body.kinematic()) {
-      def.motion = make_keyframes(body.keyframes, body.smooth);
-    } else {
-      def.position = body.pose.p;
-      def.orientation = body.pose.q;
-    }
-    if (body.dynamic()) {
-      def.density = body.density;
-      def.velocity = body.velocity;
-      def.angular_velocity = body.spin;
-    }
-    world.add_body(def);
+  for (std::size_t i = 0; i < scene.bodies.size();) {
+    if (scene.bodies[i].hanging)
+      i = add_multibody(world, scene, i);
+    else
+      world.add_body(definition(scene.bodies[i++], !scene.callbacks.empty()));
   }
+  for (const DescribedBond& bond : scene.bonds) add_bond(world, bond);
+  add_callbacks(world, scene);
 }
 
 }  // namespace tw::fuzz

@@ -15,6 +15,7 @@
 
 #include "integrate/keyframes.h"
 #include "kernel/world.h"
+#include "multibody/tree.h"
 
 namespace tw::fuzz {
 
@@ -30,6 +31,10 @@ struct Solid {
   Vec3 normal = Vec3::UnitZ();  // half-space: solid where normal.x <= offset
   double offset = 0;
   Pose placement;  // not of half-spaces
+
+  bool placed() const {
+    return placement.p != Vec3::Zero() || placement.q.coeffs() != Quat::Identity().coeffs();
+  }
 };
 
 // A height field of cells of `spacing` metres.
@@ -42,6 +47,18 @@ struct Hills {
   std::size_t rows() const { return heights.size() / columns; }
 };
 
+// How a body hangs on a multibody, whose links follow one another in the scene, parents first.
+// They are named MULTIBODY/LINK.
+struct Hanging {
+  std::string multibody;
+  std::string parent;    // a link's whole name; empty: the base, at the first link's pose, or none
+                         // where the first link is free
+  std::string part, on;  // first links: of what is welded to it, and of what that hangs on
+  multibody::JointSpec joint;
+  bool free = false;
+  std::vector<double> velocity;  // of the joint
+};
+
 struct DescribedBody {
   std::string name;
   std::vector<Solid> solids;   // several: a union
@@ -52,9 +69,37 @@ struct DescribedBody {
   bool fixed = false;
   std::vector<Keyframe> keyframes;  // kinematic where there are any
   bool smooth = false;
+  std::optional<Hanging> hanging;
 
+  // Links on both sides of a joint, with what is welded to them, don't touch.
+  bool joined_to(const DescribedBody& other) const {
+    if (!hanging || !other.hanging) return false;
+    const Hanging &a = *hanging, &b = *other.hanging;
+    return a.part == b.part || a.part == b.on || a.on == b.part;
+  }
   bool kinematic() const { return !keyframes.empty(); }
   bool dynamic() const { return !fixed && !kinematic(); }
+};
+
+// A spring between two points, or a hold; of bodies by name.
+struct DescribedBond {
+  std::string a, b;
+  SpringDef spring;  // its bodies say nothing
+  bool holds = false;
+};
+
+// What a callback does, with a counter of its calls in the slot of its first target:
+//   turn    every other time, by chance, turns a velocity: (x y z) becomes (y z x)
+//   feel    where the first target has contacts, every other time its spin turns round
+//   grip    holds the two targets together, or lets go, at times drawn at random
+//   reach   turns the first joint's torque round, where that of the last link is beyond a limit
+enum class Deed { turn, feel, grip, reach };
+
+struct DescribedCallback {
+  Deed deed = Deed::turn;
+  std::vector<std::string> targets;  // of bodies, by name
+  double start = 0, period = 0;      // s
+  double torque = 0;                 // N m or N: reach
 };
 
 // Where centres of dynamic bodies stay, in the frame of a body.
@@ -74,10 +119,15 @@ struct DescribedScene {
   double friction = 0.5, restitution = 0.3, accuracy = 1e-6;
   double rolling = 0, spinning = 0;  // m
   std::vector<DescribedBody> bodies;
+  std::vector<DescribedBond> bonds;
+  std::vector<DescribedCallback> callbacks;  // and each collision counts, where there are any
   Room room;
 
   std::string name() const { return kind + ":" + std::to_string(seed); }
   std::size_t moving() const;
+  bool has(const std::string& body) const;
+  // Callbacks give energy.
+  bool driven() const;
 };
 
 Solid ball(double radius);

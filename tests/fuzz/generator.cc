@@ -33,6 +33,11 @@ constexpr Kind table[] = {
     {"hills", "bodies fall and roll on a height field between four walls", draw_hills},
     {"rolls", "what is round falls into a pit, where rolling and spinning are resisted",
      draw_rolls},
+    {"chains", "chains, stars and carts of links, hung or free, fall into a pit with others",
+     draw_chains},
+    {"bonds", "bodies that springs and holds tie to each other and to posts fall into a pit",
+     draw_bonds},
+    {"called", "bodies and carts that callbacks and sensors turn, hold and drive", draw_called},
 };
 
 // Which the seeds take in turn; the others are asked for by name, so that what is known of a seed
@@ -61,18 +66,45 @@ bool overlap_deep(const Placed& x, const Placed& y) {
   });
 }
 
-// Kinds place their bodies by their sizes, roughly: what overlaps one before it is left out.
+// A body and, of a multibody, the links that follow it.
+std::size_t end_of(const std::vector<DescribedBody>& bodies, std::size_t first) {
+  std::size_t end = first + 1;
+  if (!bodies[first].hanging) return end;
+  const std::string& multibody = bodies[first].hanging->multibody;
+  while (end < bodies.size() && bodies[end].hanging && bodies[end].hanging->multibody == multibody)
+    ++end;
+  return end;
+}
+
+// Kinds place their bodies by their sizes, roughly: what overlaps one before it is left out, with
+// its multibody, its bonds and its callbacks.
 void leave_out_overlapping(DescribedScene& scene) {
   std::vector<DescribedBody> kept;
   std::vector<Placed> there;
-  for (DescribedBody& body : scene.bodies) {
-    Placed fresh(body);
-    const auto blocks = [&](const Placed& other) { return overlap_deep(other, fresh); };
-    if (body.dynamic() && std::any_of(there.begin(), there.end(), blocks)) continue;
-    kept.push_back(std::move(body));
-    there.push_back(std::move(fresh));
+  for (std::size_t i = 0, end; i < scene.bodies.size(); i = end) {
+    end = end_of(scene.bodies, i);
+    const std::size_t before = kept.size();
+    bool blocked = false;
+    for (std::size_t k = i; k < end; ++k) {
+      const DescribedBody& body = scene.bodies[k];
+      Placed fresh(body);
+      for (std::size_t j = 0; j < kept.size() && body.dynamic(); ++j)
+        blocked = blocked || (!body.joined_to(kept[j]) && overlap_deep(there[j], fresh));
+      kept.push_back(body);
+      there.push_back(std::move(fresh));
+    }
+    if (!blocked) continue;
+    kept.resize(before);
+    there.erase(there.begin() + static_cast<std::ptrdiff_t>(before), there.end());
   }
   scene.bodies = std::move(kept);
+  std::erase_if(scene.bonds, [&](const DescribedBond& bond) {
+    return !scene.has(bond.a) || !scene.has(bond.b);
+  });
+  std::erase_if(scene.callbacks, [&](const DescribedCallback& callback) {
+    return !std::all_of(callback.targets.begin(), callback.targets.end(),
+                        [&](const std::string& name) { return scene.has(name); });
+  });
 }
 
 }  // namespace

@@ -85,6 +85,7 @@ class JudgedRun {
     for (std::size_t a = 0; a < parts_.size(); ++a)
       for (std::size_t b = a + 1; b < parts_.size(); ++b) {
         if (!scene_.bodies[a].dynamic() && !scene_.bodies[b].dynamic()) continue;
+        if (scene_.bodies[a].joined_to(scene_.bodies[b])) continue;
         const double width = std::min(widths_[a], widths_[b]);
         for (const Part& part_a : parts_[a])
           for (const Part& part_b : parts_[b]) {
@@ -136,7 +137,7 @@ class JudgedRun {
     f_.energy_scale = std::max({f_.energy_scale, std::abs(work), given_ - lowest_still_, weights});
     const double own = total - work;
     const double rise = (own - lowest_) / f_.energy_scale;
-    if (rise > f_.rise) {
+    if (rise > f_.rise && !scene_.driven()) {
       f_.rise = rise;
       f_.rise_time = when;
     }
@@ -148,7 +149,8 @@ class JudgedRun {
     constexpr int tenth = samples / 10;
     if (sample % tenth) return;
     const double units = scene_.duration / 10 / scene_.time_unit;
-    const double moving = static_cast<double>(scene_.moving()), now = cpu();
+    const double now = cpu();
+    const double moving = static_cast<double>(std::max<std::size_t>(scene_.moving(), 1));
     f_.pace = std::max(f_.pace, (now - tenth_cpu_) / units / moving);
     tenth_cpu_ = now;
   }

@@ -29,4 +29,9 @@ void draw_groove(Draft& draft);
 void draw_ramp(Draft& draft);
 void draw_hills(Draft& draft);
 
+// kinds-joined.cc
+void draw_chains(Draft& draft);
+void draw_bonds(Draft& draft);
+void draw_called(Draft& draft);
+
 }  // namespace tw::fuzz

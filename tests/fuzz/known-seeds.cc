@@ -52,6 +52,9 @@ const MendedSeed mended[] = {
     {"piston", 10031, "a cylinder that whirled on its rim at accuracy 1e-4 gained energy"},
     {"thin", 5313, "steps were cut too little, again and again, at kinks of the contact law"},
     {"heap", 330, "a heap without friction at accuracy 1e-4 gained energy"},
+    {"called", 110, "a callback that grips was called no more after a commit in a group"},
+    {"called", 103, "of a small cart and what it drove on equations were solved in SI units"},
+    {"chains", 123, "a joint came to lean on a stop that it had passed unseen"},
 };
 
 }  // namespace

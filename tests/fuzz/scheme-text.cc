@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "base/error.h"
 #include "fuzz/described-scene.h"
+#include "fuzz/scheme-ties.h"
 
 namespace tw::fuzz {
-namespace {
 
 std::string text(const Vec3& v) {
   return "#(" + show(v.x()) + " " + show(v.y()) + " " + show(v.z()) + ")";
@@ -14,7 +14,9 @@ std::string text(const Quat& q) {
   return "#(" + show(q.w()) + " " + show(q.x()) + " " + show(q.y()) + " " + show(q.z()) + ")";
 }
 
-std::string text(const Solid& solid) {
+namespace {
+
+std::string solid_text(const Solid& solid) {
   switch (solid.kind) {
     case SolidKind::ball: return "(sphere " + show(solid.radius) + ")";
     case SolidKind::box:
@@ -37,7 +39,7 @@ std::string text(const Solid& solid) {
   return points + "))";
 }
 
-std::string text(const Hills& hills) {
+std::string hills_text(const Hills& hills) {
   std::string rows = "(height-field '(";
   for (std::size_t i = 0; i < hills.heights.size(); ++i) {
     if (i % hills.columns == 0) rows += i == 0 ? "\n      (" : ")\n      (";
@@ -46,19 +48,28 @@ std::string text(const Hills& hills) {
   return rows + ")) #:spacing " + show(hills.spacing) + ")";
 }
 
+}  // namespace
+
 std::string shape_text(const DescribedBody& body) {
-  if (body.hills) return text(*body.hills);
-  if (body.solids.size() == 1) return text(body.solids.front());
+  if (body.hills) return hills_text(*body.hills);
+  const auto placed_text = [](const Solid& solid) {
+    return "(placed " + solid_text(solid) + " #:position " + text(solid.placement.p) +
+           " #:orientation " + text(solid.placement.q) + ")";
+  };
+  if (body.solids.size() == 1) {
+    const Solid& solid = body.solids.front();
+    return solid.placed() ? placed_text(solid) : solid_text(solid);
+  }
   std::string shape = "(union";
-  for (const Solid& solid : body.solids)
-    shape += "\n    (placed " + text(solid) + " #:position " + text(solid.placement.p) +
-             " #:orientation " + text(solid.placement.q) + ")";
+  for (const Solid& solid : body.solids) shape += "\n    " + placed_text(solid);
   return shape + ")";
 }
 
-std::string text(const DescribedBody& body) {
-  std::string form =
-      "(add-body! #:name \"" + body.name + "\"\n  #:shape " + shape_text(body) + "\n ";
+namespace {
+
+std::string body_form(const DescribedBody& body, bool counts) {
+  std::string form = "(add-body! #:name \"" + body.name + "\"" + (counts ? slots_text : "") +
+                     "\n  #:shape " + shape_text(body) + "\n ";
   if (body.kinematic()) {
     form += " #:motion (keyframes '(";
     for (const Keyframe& frame : body.keyframes)
@@ -78,7 +89,8 @@ std::string scheme_text(const DescribedScene& scene) {
   std::string all = ";; fuzz-scenes --kind=" + scene.kind +
                     " --seeds=" + std::to_string(scene.seed) + ": size " + show(scene.size) +
                     " m, time unit " + show(scene.time_unit) + " s\n";
-  all += "(use-modules (timewarp))\n";
+  all += scene.callbacks.empty() ? "(use-modules (timewarp))\n"
+                                 : "(use-modules (timewarp) (timewarp vectors))\n";
   all += "(scene #:title \"" + scene.name() + "\" #:duration " + show(scene.duration) +
          " #:gravity " + text(scene.gravity) + "\n  #:accuracy " + show(scene.accuracy) +
          " #:fps " + show(60 / scene.duration) + ")\n";
@@ -89,7 +101,13 @@ std::string scheme_text(const DescribedScene& scene) {
                                                      " #:spinning-friction " + show(scene.spinning)
                                                : "") +
       ")\n";
-  for (const DescribedBody& body : scene.bodies) all += text(body);
+  for (std::size_t i = 0; i < scene.bodies.size();) {
+    if (scene.bodies[i].hanging)
+      all += multibody_text(scene, i);
+    else
+      all += body_form(scene.bodies[i++], !scene.callbacks.empty());
+  }
+  all += bonds_text(scene) + callbacks_text(scene);
   Vec3 center = Vec3::Zero();
   double count = 0;
   for (const DescribedBody& body : scene.bodies)
