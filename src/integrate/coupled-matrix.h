@@ -17,6 +17,9 @@ namespace tw {
 
 class CoupledMatrix {
  public:
+  // Whether a matrix of this size is dense, and its pattern need not be known.
+  static bool is_dense(int size);
+  explicit CoupledMatrix(int size);
   // `rows_of`: of each column, the rows that may not be 0, ascending.
   explicit CoupledMatrix(std::vector<std::vector<int>> rows_of);
   ~CoupledMatrix();

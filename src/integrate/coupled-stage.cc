@@ -74,6 +74,11 @@ void GroupSystem::make_coupled() {
     all.tidy();
   }
 
+  if (CoupledMatrix::is_dense(count)) {
+    coupled_ = std::make_unique<CoupledMatrix>(count);
+    return;
+  }
+
   // the unknowns of each slot, and the rows that each column may reach
   std::vector<std::vector<int>> unknowns(index(packs_.slots));
   const auto run = [](int first, int length) {
