@@ -12,24 +12,22 @@ void ContactBook::add(const ContactSide& a, const ContactSide& b, const ContactS
   if (settings.collide && !*settings.collide) may_disable_ = true;
   known_.clear();
   serial_ = next_serial();
-  classes_.clear();
-  class_of_material_.clear();
-  classify();
+  for (const ContactSide* side : {&a, &b}) {
+    if (side->kind != ContactSide::Kind::body || !named_.insert(side->body).second) continue;
+    if (side->body < classes_.size()) classes_[side->body] = class_of(side->body);
+  }
 }
 
 void ContactBook::add_body(const Body& body) {
   bodies_.push_back(body.contact);
-  classify();
+  classes_.push_back(class_of(static_cast<BodyId>(classes_.size())));
 }
 
-void ContactBook::classify() {
-  while (classes_.size() < bodies_.size()) {
-    const BodyId id = static_cast<BodyId>(classes_.size());
-    BodyId first = id;
-    if (!table_.names_body(id))
-      first = class_of_material_.try_emplace(bodies_[id].material, id).first->second;
-    classes_.push_back(first);
-  }
+ContactBook::ClassId ContactBook::class_of(BodyId id) {
+  constexpr ClassId of_materials = ClassId{1} << 31;
+  if (named_.count(id)) return id;
+  const auto next = static_cast<ClassId>(of_materials + class_of_material_.size());
+  return class_of_material_.try_emplace(bodies_[id].material, next).first->second;
 }
 
 std::uint64_t ContactBook::next_serial() {
@@ -45,7 +43,7 @@ const ContactParameters& ContactBook::look_up(std::uint64_t classes, BodyId a, B
 }
 
 const ContactParameters& ContactBook::between(BodyId a, BodyId b) const {
-  const BodyId x = std::min(classes_[a], classes_[b]), y = std::max(classes_[a], classes_[b]);
+  const ClassId x = std::min(classes_[a], classes_[b]), y = std::max(classes_[a], classes_[b]);
   const std::uint64_t classes = std::uint64_t{x} << 32 | y;
   struct Remembered {
     std::uint64_t serial = 0, classes = 0;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "dynamics/body.h"
@@ -30,12 +31,15 @@ class ContactBook {
   bool may_disable() const { return may_disable_; }
 
  private:
-  void classify();
+  // Bodies that a rule names are classes of their own; others are one with all of their material.
+  using ClassId = std::uint32_t;
+  ClassId class_of(BodyId id);
 
   ContactTable table_;
   std::vector<ContactBody> bodies_;
-  std::vector<BodyId> classes_;  // of each body: the first body of its class
-  std::unordered_map<std::string, BodyId> class_of_material_;
+  std::vector<ClassId> classes_;  // of each body
+  std::unordered_map<std::string, ClassId> class_of_material_;
+  std::unordered_set<BodyId> named_;
   bool may_disable_ = false;
   const ContactParameters& look_up(std::uint64_t classes, BodyId a, BodyId b) const;
   static std::uint64_t next_serial();

@@ -74,14 +74,6 @@ void ContactTable::add(const ContactSide& a, const ContactSide& b,
   ++version_;
 }
 
-bool ContactTable::names_body(std::uint32_t id) const {
-  const auto names = [id](const ContactSide& side) {
-    return side.kind == ContactSide::Kind::body && side.body == id;
-  };
-  return std::any_of(rules_.begin(), rules_.end(),
-                     [&](const Rule& rule) { return names(rule.a) || names(rule.b); });
-}
-
 ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody& b) const {
   // rules that match, the most specific first, at ties the later first
   std::vector<std::pair<int, const Rule*>> found;

@@ -57,8 +57,6 @@ class ContactTable {
   void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   ContactParameters look_up(const ContactBody& a, const ContactBody& b) const;
   bool empty() const { return rules_.empty(); }
-  // Whether a rule is about this very body.
-  bool names_body(std::uint32_t id) const;
   // Changes with every add: lets callers cache what they looked up.
   unsigned version() const { return version_; }
 
