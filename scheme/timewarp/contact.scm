@@ -55,7 +55,8 @@ the earlier.
     (else (bad-value "impact-law" law "'chatterjee-ruina"))))
 
 (define (contact-parameters a b)
-  "Return the restitution, the friction and whether they collide for the bodies A and B, as a list."
+  "Return the restitution, the friction, whether they collide, and the lengths of rolling and spinning
+friction, m, for the bodies A and B, as a list of five."
   (%contact-parameters (current-world) a b))
 
 (define (disable-collisions! a b)

@@ -5,6 +5,7 @@
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
   #:use-module (timewarp files)
+  #:use-module ((timewarp option-table) #:select (text->size))
   #:use-module (ice-9 match)
   #:export (render!)
   ;; for the other modules
@@ -25,13 +26,15 @@
     (raise-error (string-append what " needs drawing, which was left out when timewarp was built; "
                                 "expected a build without --disable-render"))))
 
-;; SIZE as two values; (WIDTH HEIGHT), a vector of these, or #f for the default.
+;; SIZE as two values; (WIDTH HEIGHT), a vector of these, "WIDTHxHEIGHT", or #f for the default.
 (define (picture-size size)
-  (match (or size (override 'size) '(1280 720))
+  (match (cond ((not size) (or (override 'size) '(1280 720)))
+               ((string? size) (or (text->size size) size))
+               (else size))
     ((or ((? exact-integer? width) (? exact-integer? height))
          #((? exact-integer? width) (? exact-integer? height)))
      (values width height))
-    (other (bad-value "size" other "(WIDTH HEIGHT) in pixels"))))
+    (other (bad-value "size" other "(WIDTH HEIGHT) in pixels, or \"WIDTHxHEIGHT\""))))
 
 (define (picture-quality quality)
   (let ((quality (or quality (override 'quality) 'normal)))

@@ -109,11 +109,17 @@ After an error the prompt is as before; ,option on-error 'debug enters Guile's d
          (show-help name (variable-ref variable)))
         ((find subject? help-groups) => show-group)
         (variable (show-help name (variable-ref variable)))
+        ((home name) => (lambda (module) (show-with-home name module)))
         (else
          (match (names-with text)
            (() (bad-value "help's argument" name
                           "a name, a subject of (help), or a part of a name"))
            (names (format #t "names with ~a:~%~a~%" text (names->lines names)))))))
+
+;; What MODULE has and is not imported here.
+(define (show-with-home name module)
+  (show-help name (module-ref (resolve-interface module) name))
+  (format #t "~%(use-modules ~a) imports it.~%" module))
 
 (define (bound-variable module name)
   (let ((variable (module-variable module name)))

@@ -3,7 +3,7 @@
 (define-module (timewarp near-names)
   #:use-module (ice-9 match)
   #:use-module (srfi srfi-1)
-  #:export (hint meant names-with))
+  #:export (hint home meant names-with))
 
 ;; loaded by name when a hint is asked for: they themselves need errors, and errors need this file
 (define known-modules '((timewarp) (timewarp vectors)))
@@ -63,15 +63,18 @@
     (#f "")
     (like (format #f "; is ~a meant?" like))))
 
+(define (home name)
+  "Return the module of timewarp's that exports NAME, or #f."
+  (find (lambda (module)
+          (let ((found (interface module))) (and found (module-variable found name))))
+        known-modules))
+
 (define (hint name)
   "Return what to say after `Unbound variable: NAME': the module that has it, or the name that may
 have been meant; else \"\"."
-  (define home
-    (find (lambda (module)
-            (let ((found (interface module))) (and found (module-variable found name))))
-          known-modules))
-  (if home
-      (format #f "; (use-modules ~a) imports it" home)
+  (define module (home name))
+  (if module
+      (format #f "; (use-modules ~a) imports it" module)
       (meant name (append (names (current-module))
                           (append-map (lambda (module) (names (interface module)))
                                       known-modules)))))

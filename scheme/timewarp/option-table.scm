@@ -11,7 +11,7 @@
   #:use-module (ice-9 match)
   #:export (usage-error
             ;; values
-            ->number seconds positive natural positive-integer text optional-text
+            ->number seconds positive natural positive-integer text optional-text text->size
             ;; rows and tables
             row-key row-long-name row-convert
             parse-options option-ref option-values
@@ -40,6 +40,12 @@
 (define (text name text)
   (when (string-null? text) (usage-error "--~a is empty; expected a name" name))
   text)
+
+(define (text->size text)
+  "Return (WIDTH HEIGHT) of \"WIDTHxHEIGHT\", #f of another text."
+  (match (map string->number (string-split text #\x))
+    (((? exact-integer? width) (? exact-integer? height)) (list width height))
+    (_ #f)))
 
 (define (optional-text name text*)
   (if text* (text name text*) #t))

@@ -3,6 +3,7 @@
 (define-module (timewarp options)
   #:use-module (timewarp option-table)
   #:use-module (ice-9 match)
+  #:use-module ((srfi srfi-1) #:select (any))
   #:export (parse-command-line option-help documented-options)
   ;; for timewarp-sweep, which hands them on
   #:export (timewarp-options))
@@ -10,12 +11,18 @@
 ;; ---- values ----
 
 (define (size name text)
-  (match (map string->number (string-split text #\x))
-    (((? exact-integer? width) (? exact-integer? height))
+  (match (text->size text)
+    (#f (usage-error "--size is ~s; expected WIDTHxHEIGHT such as 1280x720" text))
+    ((and sides (width height))
      (unless (and (<= 1 width 16384) (<= 1 height 16384))
        (usage-error "--size is ~s; expected 1 to 16384 pixels a side" text))
-     (list width height))
-    (_ (usage-error "--size is ~s; expected WIDTHxHEIGHT such as 1280x720" text))))
+     sides)))
+
+(define (movie name text)
+  (unless (any (lambda (ending) (string-suffix-ci? ending text))
+               '(".mp4" ".m4v" ".mov" ".mkv" ".webm" ".gif"))
+    (usage-error "--movie is ~s; expected a name that ends in .mp4, .mov, .mkv, .webm or .gif" text))
+  text)
 
 (define (threads name text)
   (->number name text (lambda (x) (and (exact-integer? x) (<= 1 x 256)))
@@ -77,7 +84,7 @@
     (quality ("quality") "QUALITY" ,quality "draft, normal or best (normal)")
     (part ("part") "K/N" ,part "of every N frames draw the K-th only, so that N runs share them")
     (contacts ("contacts") #f #f "draw contacts into the pictures: a line along the normal of each")
-    (movie (#\m "movie") "FILE" ,text "a movie of the frames by ffmpeg: .mp4, .mov, .mkv, .webm or .gif")
+    (movie (#\m "movie") "FILE" ,movie "a movie of the frames by ffmpeg: .mp4, .mov, .mkv, .webm or .gif")
     (at ("at") "T" ,seconds "draw one frame only, at time T, to the file that --frames names")
     (no-overlay ("no-overlay") #f #f "pictures without title, time and scale")
     (record (#\o "record") "FILE" ,(later "the recording format") "not there yet")

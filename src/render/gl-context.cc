@@ -49,6 +49,8 @@ const GlLibrary& gl_library() {
   make_environment_safe();
   std::string osmesa_reason = "OSMesa is not wanted", egl_reason = "EGL is not wanted";
   const char* wanted = std::getenv("TIMEWARP_OPENGL");
+  TW_REQUIRE(!wanted || is_one_of(wanted, {"", "egl", "osmesa"}),
+             "TIMEWARP_OPENGL is " + std::string(wanted) + "; expected osmesa or egl, or nothing");
   if (!is_one_of(wanted, {"egl"})) library = open_osmesa_library(osmesa_reason);
   if (!library && !is_one_of(wanted, {"osmesa"})) library = open_egl_library(egl_reason);
   TW_REQUIRE(library,

@@ -82,11 +82,12 @@ TW_PRIMITIVE(set_contact, "%set-contact!", (SCM world, SCM a, SCM b, SCM alist),
 }
 
 TW_PRIMITIVE(contact_parameters, "%contact-parameters", (SCM world, SCM a, SCM b),
-             "Return (restitution friction collide?) that hold for two bodies.") {
+             "Return (restitution friction collide? rolling spinning) that hold for two bodies.") {
   const ContactParameters p = to_world(world).contact_parameters(
       to_body(world, a, "the first body"), to_body(world, b, "the second body"));
-  return scm_list_3(scm_from_double(p.restitution), scm_from_double(p.friction),
-                    scm_from_bool(p.collide));
+  return scm_list_5(scm_from_double(p.restitution), scm_from_double(p.friction),
+                    scm_from_bool(p.collide), scm_from_double(p.rolling_friction),
+                    scm_from_double(p.spinning_friction));
 }
 
 }  // namespace tw

@@ -115,6 +115,16 @@ TEST_F(GlContextDeathTest, what_is_missing_is_told_with_its_package) {
       testing::ExitedWithCode(0), "cannot draw: .*libOSMesa.*; EGL is not wanted; on Debian: ");
 }
 
+TEST_F(GlContextDeathTest, a_library_that_there_is_not_is_refused) {
+  const Environment wanted("TIMEWARP_OPENGL", "vulkan");
+  EXPECT_EXIT(
+      {
+        std::fputs(user_error_of([] { gl_library(); }).c_str(), stderr);
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "TIMEWARP_OPENGL is vulkan; expected osmesa or egl");
+}
+
 TEST_F(GlContextDeathTest, environments_that_crash_mesa_are_mended) {
   // before the library is opened, which mends it: in this process and in its child
   const Environment driver("GALLIUM_DRIVER", "zink");

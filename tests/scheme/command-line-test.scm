@@ -150,6 +150,7 @@
 (refused "--part is \"3/2\"; expected K/N with K from 1 to N" "ball.scm" "--part=3/2")
 (refused "--part is \"2\"; expected K/N such as 1/8" "ball.scm" "--part=2")
 (refused "--quality is \"great\"; expected draft" "ball.scm" "--quality=great")
+(refused "--movie is \"film.avi\"; expected a name that ends in .mp4" "ball.scm" "--movie=film.avi")
 (refused "--seed is \"-1\"" "ball.scm" "--seed=-1")
 (refused "more than one scene" "ball.scm" "ball.scm")
 (refused "there is no scene" "--until=3")

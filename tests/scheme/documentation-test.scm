@@ -55,6 +55,9 @@
                 (with-output-to-string (lambda () (help 'friction)))))
 
 (define-syntax-rule (shown expression) (with-output-to-string (lambda () expression)))
+(test-assert "what is not imported is shown with its module"
+  (string-match "^.lerp (.|\n)*\\(use-modules \\(timewarp vectors\\)\\) imports it"
+                (shown (help 'lerp))))
 (test-equal "a subject needs no quote" (shown (help 'sensors)) (shown (help sensors)))
 (test-equal "nor does a part of names" (shown (help 'friction)) (shown (help friction)))
 (test-equal "nor does syntax" (shown (help 'define-scene-parameter))
