@@ -96,6 +96,7 @@ GroupRecord GroupRecord::stretch_of(int member, double from) const {
     stretch.times_.push_back(time(i));
     Writer(stretch.nodes_, node_numbers).put(member_node(i, member), node_numbers);
     if (i < steps()) Writer(stretch.steps_, step_numbers).put(member_step(i, member), step_numbers);
+    stretch.keep_bounds();
   }
   return stretch;
 }
@@ -135,11 +136,26 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
     step.put(d3 + first + 12 * p, 12);
     step.put(d4 + first + 12 * p, 12);
   }
-  if (!with_sides_) return;
-  for (const LaneVec& side : system.sides()) {
-    double numbers[pack_side];
-    std::memcpy(numbers, &side, sizeof side);
-    step.put(numbers, pack_side);
+  if (with_sides_)
+    for (const LaneVec& side : system.sides()) {
+      double numbers[pack_side];
+      std::memcpy(numbers, &side, sizeof side);
+      step.put(numbers, pack_side);
+    }
+  keep_bounds();
+}
+
+void GroupRecord::keep_bounds() {
+  constexpr int block = BoundsTree::block;
+  if (steps() == 0 || steps() % block != 0) return;
+  kept_bounds_.resize(static_cast<std::size_t>(members_));
+  for (int member = 0; member < members_; ++member) {
+    BoundsTree& kept = kept_bounds_[static_cast<std::size_t>(member)];
+    const int first = block * static_cast<int>(kept.size());
+    MotionBounds sum;
+    for (int i = first; i < first + block; ++i)
+      add_step_bounds(i, member, time(i), time(i + 1), sum);
+    kept.append(sum);
   }
 }
 
@@ -271,8 +287,17 @@ MotionBounds GroupRecord::bounds(int member, double from, double to) const {
   MotionBounds result;
   // steps of positive overlap, at least one
   const int last = step_to(to), first = std::min(std::max(step_from(from), 0), last);
-  for (int i = from < to ? first : last; i <= last; ++i)
+  // of whole blocks between the first and the last one
+  constexpr int block = BoundsTree::block;
+  const int first_block = first / block + 1, last_block = last / block;
+  const bool has_blocks = from < to && first_block < last_block;
+  if (has_blocks)
+    kept_bounds_[static_cast<std::size_t>(member)].add(
+        static_cast<std::size_t>(first_block), static_cast<std::size_t>(last_block), result);
+  for (int i = from < to ? first : last; i <= last; ++i) {
+    if (has_blocks && i == first_block * block) i = last_block * block;
     add_step_bounds(i, member, from, to, result);
+  }
   // rounding of the interpolant
   const double largest =
       std::max(result.path.lo.cwiseAbs().maxCoeff(), result.path.hi.cwiseAbs().maxCoeff());

@@ -9,12 +9,16 @@
 // dense output of the method, but with continuous rates, so that pose rates and bounds on their
 // change suffice for certificates across nodes.
 //
+// An arc may have thousands of steps (bodies that swing on springs), and certificates ask for the
+// bounds of all that is left of it at each of theirs: those of full blocks of steps are kept.
+//
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
+#include "integrate/bounds-tree.h"
 #include "integrate/group-system.h"
 
 namespace tw {
@@ -115,12 +119,15 @@ class GroupRecord {
   const double* member_node(int node, int member) const;
   const double* member_step(int step, int member) const;
   void add_step_bounds(int step, int member, double from, double to, MotionBounds& bounds) const;
+  // After each step: where a block is complete.
+  void keep_bounds();
 
   int members_ = 0, packs_ = 0, rows_ = 0;  // rows: of stretches, then of bends
   bool with_sides_ = false;
   std::size_t node_size_ = 0, step_size_ = 0;
   std::vector<double> times_, nodes_, steps_;
   std::vector<LaneVec> first_sides_;
+  std::vector<BoundsTree> kept_bounds_;  // of each member, by blocks of steps
 };
 
 }  // namespace tw
