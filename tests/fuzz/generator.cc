@@ -56,8 +56,8 @@ struct Placed {
   }
 };
 
-bool overlap_deep(const Placed& x, const Placed& y) {
-  constexpr double touch = 1e-3;  // of the lesser width
+// `touch`: of the lesser width.
+bool overlap_deep(const Placed& x, const Placed& y, double touch) {
   const double allowed = touch * std::min(least_width(x.parts), least_width(y.parts));
   return std::any_of(x.parts.begin(), x.parts.end(), [&](const Part& a) {
     return std::any_of(y.parts.begin(), y.parts.end(), [&](const Part& b) {
@@ -87,9 +87,11 @@ void leave_out_overlapping(DescribedScene& scene) {
     bool blocked = false;
     for (std::size_t k = i; k < end; ++k) {
       const DescribedBody& body = scene.bodies[k];
+      // links are not let go where they were put, and may not overlap at all
+      const double touch = body.hanging ? 1e-7 : 1e-3;
       Placed fresh(body);
       for (std::size_t j = 0; j < kept.size() && body.dynamic(); ++j)
-        blocked = blocked || (!body.joined_to(kept[j]) && overlap_deep(there[j], fresh));
+        blocked = blocked || (!body.joined_to(kept[j]) && overlap_deep(there[j], fresh, touch));
       kept.push_back(body);
       there.push_back(std::move(fresh));
     }

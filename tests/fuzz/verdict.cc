@@ -85,7 +85,7 @@ void judge_findings(Verdict& verdict, const Judges& judges) {
     add(f.depth > depth_bound, Fault::deep);
   }
   if (judges.energy) add(f.rise > energy_bound, Fault::energy);
-  if (judges.progress) add(f.out_of_time || f.pace > pace_bound, Fault::slow);
+  if (judges.progress) add(f.out_of_time || f.pace > judges.pace, Fault::slow);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ const char* name_of(Fault fault);
 
 struct Judges {
   bool depth = true, energy = true, progress = true, hash = true;
+  double pace = pace_bound;
 };
 
 struct Verdict {
