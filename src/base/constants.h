@@ -245,6 +245,8 @@ inline constexpr double free_run_share = 1e-2;
 // row of balls that touch strikes it once for each of them.
 inline constexpr std::uint32_t pinned_strikes = 32;
 inline constexpr double undiminished = 0.99;
+// What many impulses leave over is settled at once, to this share of it.
+inline constexpr double settled_share = 1e-6;
 
 }  // namespace tw::answer
 
@@ -254,9 +256,11 @@ inline constexpr int most_stop_impulses = 200;
 
 // Impulses of one impact between two bodies, and of one that is passed on through a group; where
 // the two may strike each other again meanwhile, a body that is a thousand times as heavy as what
-// it comes down on needs thousands.  Counted where something still approaches then
-// (impulses_given_up).
+// it comes down on needs thousands.  What approaches still in a group then is settled at once, or,
+// where it cannot be, counted (impulses_given_up).
 inline constexpr int most_impulses = 200, most_passed_on = 700, most_struck_again = 20000;
+// Contacts that are settled at once: the work goes with the fourth power.
+inline constexpr std::size_t most_settled = 128;
 // Impacts of a pair at one instant, slower than this share of the fusion speed: rounding, they
 // fuse.
 inline constexpr double grazing = 1e-5;

@@ -85,16 +85,19 @@ void ImpulseSolver::apply(std::uint32_t slot, const Vec3& impulse, const Vec3& w
 }
 
 void ImpulseSolver::strike(const ImpulseContact& c) {
+  const Vec3 u = relative_velocity(c);
+  exchange(c, impact_impulse(compliance(c), c.normal, u, c.restitution, c.friction));
+}
+
+void ImpulseSolver::exchange(const ImpulseContact& c, const Vec3& impulse) {
   const ImpulseSlot& a = slots_[c.a];
   const ImpulseSlot& b = slots_[c.b];
-  const Vec3 u = relative_velocity(c);
-  const Vec3 impulse = impact_impulse(compliance(c), c.normal, u, c.restitution, c.friction);
   if (!a.moves()) work_of_held_ += impulse.dot(a.velocity_at(c.point));
   if (!b.moves()) work_of_held_ -= impulse.dot(b.velocity_at(c.point));
   const double along = impulse.dot(c.normal);
   if (along > largest_impulse_) {
     largest_impulse_ = along;
-    largest_approach_ = -u.dot(c.normal);
+    largest_approach_ = -approach(c);
     largest_ = c;
   }
   normal_impulse_ += along;
@@ -121,7 +124,7 @@ ImpulseResult ImpulseSolver::solve(std::span<const ImpulseContact> contacts, dou
       return result;
     }
     const ImpulseContact& c = *next.contact;
-    if (slots_[c.a].answer == Answer::border || slots_[c.b].answer == Answer::border) {
+    if (reaches_border(c)) {
       result.stopped_at = &c;
       return result;
     }

@@ -14,7 +14,13 @@
 //
 // Of all contacts the one that approaches fastest beyond what it bears gets the impulse of the
 // impact law, then again the fastest, until none is left: energy never grows on the way, but
-// nothing bounds how many it takes, so there is a limit, and what is left over then is told.
+// nothing bounds how many it takes, so there is a limit, and what is left over then is told.  A
+// light body between a heavy one and the floor takes as many as the one is heavier.  What is left
+// over can be settled at once: with A the changes of approach by unit impulses along the normals
+// and u the velocities along them, the impulses are the l >= 0 with
+//   A l + u + bears >= 0,  l.(A l + u + bears) = 0,
+// which leave the least kinetic energy of all velocities at which nothing approaches faster than it
+// bears; without restitution and friction.
 //
 // All in the world frame.
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -85,6 +91,11 @@ class ImpulseSolver {
   ImpulseResult solve(std::span<const ImpulseContact> contacts, double negligible,
                       int most_impulses);
 
+  // All that is left over, at once, unless it is between walls that move against each other.
+  // Contacts at a border are left out, and what approaches at one of them afterwards is told as by
+  // `solve`.
+  ImpulseResult settle(std::span<const ImpulseContact> contacts);
+
   // ---- what all impulses so far add up to ----
   // On a joined slot: the impulse, N s, and its moment about x, N m s.
   const Vec6& received(std::uint32_t slot) const { return received_[slot]; }
@@ -112,6 +123,11 @@ class ImpulseSolver {
   Mat3 cross_compliance(std::uint32_t of, std::uint32_t on, const Vec3& where) const;
   Mat3 compliance(const ImpulseContact& c) const;
   void apply(std::uint32_t slot, const Vec3& impulse, const Vec3& where);
+  void exchange(const ImpulseContact& c, const Vec3& impulse);
+  bool held_as_one(std::span<const ImpulseContact* const> contacts, double differ) const;
+  bool reaches_border(const ImpulseContact& c) const {
+    return slots_[c.a].answer == Answer::border || slots_[c.b].answer == Answer::border;
+  }
 
   std::vector<ImpulseSlot> slots_;
   std::vector<Block> blocks_;   // of joined slots

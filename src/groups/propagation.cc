@@ -18,10 +18,14 @@ bool touches(const NewContact& c) {
 
 // Beyond the depth where it hardens no more a spring bears any speed: it stops what comes within
 // sqrt(d0/g)/2000.  Impulses on a body that is squeezed there would go to and fro between the walls
-// without end, and leave it with a velocity that it does not have.
+// without end, and leave it with a velocity that it does not have.  Not so among unequal masses,
+// whose contacts harden within a tenth of that: the heavy press the light as deep by mere weight,
+// and a blow on them would drive the light through the floor.
 double borne_by(const Scene& scene, const NewContact& c) {
   const ContactConstants& law = c.contact.law;
-  if (-c.gap > answer::hardest_ratio * law.hardening) return never;
+  const double hardening =
+      std::max(law.hardening, answer::hardening_depths * answer::depth_share * law.size);
+  if (-c.gap > answer::hardest_ratio * hardening) return never;
   const double slow = fusion_speed(scene, scene.body(c.tag.reference), scene.body(c.tag.other));
   return borne_speed(slow, law.depth, scene.gravity_scale());
 }
@@ -65,7 +69,8 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
     if (solver.slot(slot).moves()) joints.add(*work.successor_of(ids[slot]), slot);
   joints.join();
-  const ImpulseResult result = solver.solve(touching_now, 0, most);
+  ImpulseResult result = solver.solve(touching_now, 0, most);
+  if (result.left_over > 0) result = solver.settle(touching_now);
   if (const ImpulseContact* at = result.stopped_at) {
     std::vector<ProcessId> at_border;
     for (const std::uint32_t slot : {at->a, at->b})

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace tw {
 namespace {
@@ -356,6 +357,68 @@ TEST(ImpulseSolver, rods_with_a_joint_between_them_keep_it_closed) {
           .norm(),
       0, 1e-13);
   EXPECT_NEAR(0.5 * u.dot(M * u) + 0.5 * solver.slot(flying).v.squaredNorm(), flew, 1e-12);
+}
+
+// A heavy ball comes down on a light one on the floor: n impulses leave ((M - m)/(M + m))^n of the
+// speed, settled it stands still, and each contact has got what stops it.
+TEST(ImpulseSolver, what_is_left_over_is_settled_at_once) {
+  for (const double heavy : {1e3, 1e6, 1e9}) {
+    ImpulseSolver solver;
+    solver.add(ground());
+    solver.add(ball(1, 0.5, Vec3(0, 0, 0.5), Vec3::Zero()));
+    solver.add(ball(heavy, 0.5, Vec3(0, 0, 1.5), Vec3(0, 0, -2)));
+    const ImpulseContact contacts[] = {{0, 1, Vec3::UnitZ(), Vec3::Zero(), 0, 0.3},
+                                       {1, 2, Vec3::UnitZ(), Vec3(0, 0, 1), 0, 0.3}};
+    EXPECT_GT(solver.solve(contacts, 0, 100).left_over, 0);
+    const ImpulseResult result = solver.settle(contacts);
+    EXPECT_EQ(result.left_over, 0);
+    EXPECT_EQ(result.stopped_at, nullptr);
+    for (const std::uint32_t i : {1u, 2u}) EXPECT_NEAR(solver.slot(i).v.norm(), 0, 2e-6);
+    EXPECT_NEAR(solver.normal_impulse(), 4 * heavy, 2e-6 * heavy);
+  }
+}
+
+// What is borne is left, what parts is not pulled, and momentum and energy are as they must be.
+TEST(ImpulseSolver, settling_leaves_the_least_energy) {
+  ImpulseSolver solver;
+  for (int i = 0; i < 4; ++i)
+    solver.add(ball(std::pow(10, i), 0.5, Vec3(i, 0.1 * i * i, 0), Vec3(3 - i, 0.2 * i, 0)));
+  solver.add(ball(1, 0.5, Vec3(4, 1.6, 0), Vec3(5, 0, 0)));
+  std::vector<ImpulseContact> contacts;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const Vec3 way = solver.slot(i + 1).x - solver.slot(i).x;
+    contacts.push_back({i, i + 1, way.normalized(), solver.slot(i).x + 0.5 * way, 0, 0, 0.01});
+  }
+  const Vec3 p = momentum(solver), L = angular_momentum(solver);
+  const double before = energy(solver);
+  EXPECT_EQ(solver.settle(contacts).left_over, 0);
+  EXPECT_NEAR((momentum(solver) - p).norm(), 0, 1e-11 * p.norm());
+  EXPECT_NEAR((angular_momentum(solver) - L).norm(), 0, 1e-11 * L.norm());
+  EXPECT_LT(energy(solver), before);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(solver.approach(contacts[i]), -0.01, 1e-7) << i;
+  EXPECT_GT(solver.approach(contacts[3]), 1);
+}
+
+TEST(ImpulseSolver, does_not_settle_between_walls_that_come_together) {
+  ImpulseSolver solver;
+  solver.add({Vec3::Zero(), Vec3(1, 0, 0)});
+  solver.add(ball(1, 0.5, Vec3(0.5, 0, 0), Vec3::Zero()));
+  solver.add({Vec3(1, 0, 0), Vec3(-1, 0, 0)});
+  const ImpulseContact contacts[] = {{0, 1, Vec3::UnitX(), Vec3::Zero()},
+                                     {1, 2, Vec3::UnitX(), Vec3(1, 0, 0)}};
+  EXPECT_EQ(solver.settle(contacts).left_over, 1);
+  EXPECT_EQ(solver.slot(1).v, Vec3::Zero());
+}
+
+TEST(ImpulseSolver, settling_stops_at_a_border) {
+  ImpulseSolver solver;
+  solver.add(ImpulseSlot::border({}));
+  solver.add(ball(1, 0.5, Vec3(0.5, 0, 0), Vec3::Zero()));
+  solver.add(ball(1, 0.5, Vec3(1.5, 0, 0), Vec3(-1, 0, 0)));
+  const ImpulseContact contacts[] = {{0, 1, Vec3::UnitX(), Vec3::Zero()},
+                                     {1, 2, Vec3::UnitX(), Vec3(1, 0, 0)}};
+  const ImpulseResult result = solver.settle(contacts);
+  EXPECT_EQ(result.stopped_at, &contacts[0]);
 }
 
 }  // namespace
