@@ -56,6 +56,24 @@ TEST(Overlap, of_cylinders_is_that_of_the_closed_form) {
   expect_overlap(cylinder(1, 2e-3), ball(1), {1.9, 0, 0}, 0.1);
 }
 
+// Of any shape, pressed by d along n on an edge or a corner of a cube: along n it overlaps by d.
+TEST(Overlap, of_ellipsoids_on_edges_and_corners_is_no_more_than_they_are_pressed) {
+  Draft draft("ellipsoids", 1);
+  const Solid cube = box({2, 2, 2});
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 edges = Vec3(1, 1, 1) + draft.vector(0.9);
+    Vec3 n = draft.direction().cwiseAbs();
+    if (i % 2) n.y() = 0;
+    n.normalize();
+    const Quat q = draft.attitude();
+    const Vec3 local = q.conjugate() * -n, semi = 0.5 * edges;
+    const Vec3 lowest = semi.cwiseAbs2().cwiseProduct(local) / semi.cwiseProduct(local).norm();
+    const double d = 1e-3;
+    const Vec3 at = Vec3(1, i % 2 ? 0.3 : 1, 1) - d * n - q * lowest;
+    EXPECT_LE(overlap_at(cube, ellipsoid(edges), at, q), 1.001 * d) << i;
+  }
+}
+
 TEST(Overlap, with_a_half_space_is_what_lies_behind_it) {
   const Quat q = rotation_by({0, pi / 4, 0});
   const Solid floor = half_space({0, 0, 1}, 1);

@@ -61,7 +61,6 @@ const MendedSeed mended[] = {
     {"called", 103, "of a small cart and what it drove on equations were solved in SI units"},
     {"chains", 123, "a joint came to lean on a stop that it had passed unseen"},
     {"thin", 14032, "a blow on a plate drove the light rod under it into the floor"},
-    {"round", 13033, "a heavy body struck a light one at a wall with more than 700 impulses"},
 };
 
 }  // namespace

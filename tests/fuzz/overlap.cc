@@ -218,9 +218,14 @@ class LeastOverlap {
         try_axis(other.map(corner) - nearest_rim_point(round, other.map(corner)));
         continue;
       }
+      if (kind == SolidKind::ellipsoid) try_axis(outward(round, way));
       for (const Vec3& edge : other.part.edges) {
         const Vec3 u = other.turned(edge);
         try_axis(way - u * u.dot(way));
+        if (kind != SolidKind::ellipsoid) continue;
+        // the point of the edge's line that is nearest in the metric of the ellipsoid
+        const Vec3 m = outward(round, u);
+        try_axis(outward(round, way - u * (m.dot(way) / m.dot(u))));
       }
     }
     const Vec3 between = other.center() - center;
@@ -265,6 +270,14 @@ class LeastOverlap {
     if (overlap >= least_) return;
     least_ = overlap;
     best_ = n;
+  }
+  // The normal of the ellipsoid, of that size about its centre, on which x lies (from the centre).
+  static Vec3 outward(const Placed& ellipsoid, const Vec3& x) {
+    const Solid& solid = ellipsoid.part.solid;
+    const Quat& q = solid.placement.q;
+    const Vec3 local = q.conjugate() * (ellipsoid.frame.R.transpose() * x);
+    const Vec3 semi = solid.edges / solid.edges.maxCoeff();
+    return ellipsoid.turned(q * local.cwiseQuotient(semi.cwiseAbs2()));
   }
   static Vec3 axis_of(const Placed& cylinder) {
     return cylinder.turned(cylinder.part.solid.placement.q * Vec3::UnitZ());
