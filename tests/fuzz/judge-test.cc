@@ -56,22 +56,18 @@ TEST(Overlap, of_cylinders_is_that_of_the_closed_form) {
   expect_overlap(cylinder(1, 2e-3), ball(1), {1.9, 0, 0}, 0.1);
 }
 
-// Of any shape, pressed by d along n on an edge or a corner of a cube: along n it overlaps by d.
-TEST(Overlap, of_ellipsoids_on_edges_and_corners_is_no_more_than_they_are_pressed) {
-  Draft draft("ellipsoids", 1);
-  const Solid cube = box({2, 2, 2});
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3 edges = Vec3(1, 1, 1) + draft.vector(0.9);
-    Vec3 n = draft.direction().cwiseAbs();
-    if (i % 2) n.y() = 0;
-    n.normalize();
-    const Quat q = draft.attitude();
-    const Vec3 local = q.conjugate() * -n, semi = 0.5 * edges;
-    const Vec3 lowest = semi.cwiseAbs2().cwiseProduct(local) / semi.cwiseProduct(local).norm();
-    const double d = 1e-3;
-    const Vec3 at = Vec3(1, i % 2 ? 0.3 : 1, 1) - d * n - q * lowest;
-    EXPECT_LE(overlap_at(cube, ellipsoid(edges), at, q), 1.001 * d) << i;
-  }
+// round:13033: from the axes made for balls the search ended in a local least, 1.18.
+TEST(Overlap, of_an_ellipsoid_on_an_edge_is_what_the_separation_says) {
+  const Vec3 widths(178.9, 88.4, 88.4), axes(105.15, 37.77, 65.48);
+  const Pose at{{139.48566841, -57.95974686, 61.78291696},
+                {-0.44714073, 0.30924165, -0.56949897, 0.61652712}};
+  const Pose there{{225.24990582, -47.36728270, 20.53664024},
+                   {-0.37928351, 0.54869900, 0.57286704, -0.47633683}};
+  const double ours =
+      -separation(*make_box(widths), Frame(at), *make_ellipsoid(0.5 * axes), Frame(there)).distance;
+  EXPECT_LT(ours, 0.1);
+  EXPECT_LE(overlap(part(box(widths)), Frame(at), part(ellipsoid(axes)), Frame(there), 0),
+            1.001 * ours);
 }
 
 TEST(Overlap, with_a_half_space_is_what_lies_behind_it) {
