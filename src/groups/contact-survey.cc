@@ -118,7 +118,8 @@ double contact_work(const Scene& scene, const State& state, double until) {
     each_contact(pair, [&](std::uint32_t c) { all.push_back({static_cast<int>(c), counts}); });
   }
   if (!any) return 0;
-  return group.arc->work_on(static_cast<int>(state.member), all, group.arc->start().time,
+  return group.arc->work_on(static_cast<int>(state.member), all,
+                            std::max(group.arc->start().time, state.key.time),
                             std::min(until, state.trajectory().end()));
 }
 

@@ -49,8 +49,8 @@ double elastic_energy(const Scene& scene, const StateOf& state_of, double when);
 // rest, and what is squeezed is told by itself.
 double deepest_contact(const Scene& scene, const StateOf& state_of, double when);
 
-// The work that kinematic bodies do through contacts on the body of `state`, from the start of its
-// arc to `until`, J: with that of impulses what an energy balance needs.
+// The work that kinematic bodies do through contacts on the body of `state`, from the state to
+// `until` along its arc, J: with that of impulses what an energy balance needs.
 double contact_work(const Scene& scene, const State& state, double until);
 
 }  // namespace tw

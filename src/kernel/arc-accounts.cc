@@ -27,6 +27,7 @@ Effort count_steps(Counters& counters, const Trajectory& trajectory) {
 double integrated_length(const State& state, double until) {
   const double length = until - state.key.time;
   if (!state.trajectory().stepped()) return length;
+  if (!state.starts_arc()) return 0;
   const Effort effort = state.trajectory().effort();
   return (state.group ? effort.length : std::min(effort.length, length)) + effort.forgotten;
 }
@@ -51,12 +52,14 @@ StateGraph::OnRelease count_discarded(Simulation& simulation) {
 StateGraph::OnRelease count_used(Simulation& simulation) {
   return [&simulation](State& state) {
     Counters& counters = simulation.present.counters;
-    if (!simulation.body_of(state.process).dynamic() || !state.starts_arc()) return;
+    if (!simulation.body_of(state.process).dynamic()) return;
     const State* next = state.next;
-    while (next && !next->starts_arc()) next = next->next;
     if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
-    if (state.trajectory().stepped())
-      counters.rollback_length += count_steps(counters, state.trajectory()).forgotten;
+    if (state.trajectory().stepped()) {
+      if (state.starts_arc())
+        counters.rollback_length += count_steps(counters, state.trajectory()).forgotten;
+      while (next && !next->starts_arc()) next = next->next;
+    }
     if (next || state.trajectory().stepped())
       counters.integration_length += integrated_length(state, next ? next->key.time : never);
   };

@@ -260,7 +260,7 @@ void Bodies::bury(Body& body, const BodyState& last) {
     graph.free_before(graph.tail(body.process), count_used(sim_));
     const State& tail = *graph.tail(body.process);
     present.counters.kinematic_work += kinematic_work_of(sim_, tail, present.time);
-    present.counters.integration_length += present.time - tail.arc_time;
+    present.counters.integration_length += integrated_length(tail, present.time);
   }
   graph.clear(body.process);
   body.info.kind = BodyKind::fixed;

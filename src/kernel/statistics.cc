@@ -82,13 +82,14 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
     }
     if (!body->dynamic()) continue;
     for (const State* s = graph.head(body->process); s; s = s->next) {
-      if (!s->starts_arc() || s->key.time > present.time) continue;
+      if (s->key.time > present.time) break;
       const State* next = s->next;
-      while (next && !next->starts_arc()) next = next->next;
-      const double until = std::min(present.time, next ? next->key.time : present.time);
-      kinematic_work += kinematic_work_of(simulation, *s, until);
-      length += integrated_length(*s, until);
-      if (s->trajectory().stepped()) {
+      const auto until = [&] { return std::min(present.time, next ? next->key.time : never); };
+      kinematic_work += kinematic_work_of(simulation, *s, until());
+      const bool stepped = s->trajectory().stepped();
+      while (stepped && next && !next->starts_arc()) next = next->next;
+      length += integrated_length(*s, until());
+      if (stepped && s->starts_arc()) {
         const Effort effort = s->trajectory().effort();
         steps += effort.steps;
         if (effort.implicit) implicit += effort.steps;
