@@ -52,11 +52,25 @@ Result reach(const DescribedCallback& callback, double, Targets targets) {
   return std::nullopt;
 }
 
+Result lean(const DescribedCallback& callback, double, Targets targets) {
+  StateView& view = *targets[0];
+  const BodyId other = targets[1]->body();
+  const long turn = count_up(view) % 3;
+  Vec3 felt = Vec3::Zero();
+  if (turn == 1)
+    felt = view.pull(other, PullKind::springs).force + view.pull(other, PullKind::holds).force;
+  if (turn == 2) felt = view.sensed_motion().proper_acceleration(Vec3::Zero());
+  const double length = felt.norm();
+  view.set_applied_force(length > 0 ? Vec3(-callback.torque / length * felt) : Vec3::Zero());
+  return std::nullopt;
+}
+
 Result perform(const DescribedCallback& callback, double when, Targets targets) {
   switch (callback.deed) {
     case Deed::turn: return turn(callback, when, targets);
     case Deed::feel: return feel(callback, when, targets);
     case Deed::grip: return grip(callback, when, targets);
+    case Deed::lean: return lean(callback, when, targets);
     case Deed::reach: break;
   }
   return reach(callback, when, targets);

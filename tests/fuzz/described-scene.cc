@@ -22,8 +22,9 @@ bool DescribedScene::has(const std::string& body) const {
 }
 
 bool DescribedScene::driven() const {
-  return std::any_of(callbacks.begin(), callbacks.end(),
-                     [](const DescribedCallback& c) { return c.deed == Deed::reach; });
+  return std::any_of(callbacks.begin(), callbacks.end(), [](const DescribedCallback& c) {
+    return c.deed == Deed::reach || c.deed == Deed::lean;
+  });
 }
 
 Solid ball(double radius) {

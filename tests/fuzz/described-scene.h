@@ -93,13 +93,15 @@ struct DescribedBond {
 //   feel    where the first target has contacts, every other time its spin turns round
 //   grip    holds the two targets together, or lets go, at times drawn at random
 //   reach   turns the first joint's torque round, where that of the last link is beyond a limit
-enum class Deed { turn, feel, grip, reach };
+//   lean    pushes the first target against what springs and the hold to the second do to it, or
+//           against what its accelerometer reads, or not, in turn
+enum class Deed { turn, feel, grip, reach, lean };
 
 struct DescribedCallback {
   Deed deed = Deed::turn;
   std::vector<std::string> targets;  // of bodies, by name
   double start = 0, period = 0;      // s
-  double torque = 0;                 // N m or N: reach
+  double torque = 0;                 // N m or N: reach; N, at most: lean
 };
 
 // Where centres of dynamic bodies stay, in the frame of a body.

@@ -38,6 +38,8 @@ constexpr Kind table[] = {
     {"bonds", "bodies that springs and holds tie to each other and to posts fall into a pit",
      draw_bonds},
     {"called", "bodies and carts that callbacks and sensors turn, hold and drive", draw_called},
+    {"sensed", "as bonds; callbacks push against what springs, holds and accelerometers feel",
+     draw_sensed},
 };
 
 // Which the seeds take in turn; the others are asked for by name, so that what is known of a seed

@@ -306,4 +306,13 @@ void draw_called(Draft& draft) {
   draft.last(8);
 }
 
+void draw_sensed(Draft& draft) {
+  draw_bonds(draft);
+  const double g = draft.speed * draft.speed / draft.size;
+  for (const DescribedBond& bond : draft.scene.bonds) {
+    draft.scene.callbacks.push_back(callback(draft, Deed::lean, {bond.b, bond.a}));
+    draft.scene.callbacks.back().torque = typical_mass(draft) * g * draft.log_uniform(0.01, 0.5);
+  }
+}
+
 }  // namespace tw::fuzz

@@ -33,5 +33,6 @@ void draw_hills(Draft& draft);
 void draw_chains(Draft& draft);
 void draw_bonds(Draft& draft);
 void draw_called(Draft& draft);
+void draw_sensed(Draft& draft);
 
 }  // namespace tw::fuzz

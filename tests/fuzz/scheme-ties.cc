@@ -67,6 +67,7 @@ const char* name_of(Deed deed) {
     case Deed::turn: return "turn";
     case Deed::feel: return "feel";
     case Deed::grip: return "grip";
+    case Deed::lean: return "lean";
     case Deed::reach: break;
   }
   return "reach";
@@ -99,6 +100,16 @@ const char* const deeds_text = R"((define (count-up! view)
            (new (vector-copy torques)))
       (vector-set! new last (if (zero? (modulo count 3)) 0. pushed))
       (set! (joint-torques view) new))))
+(define (lean period torque)
+  (lambda (time view other)
+    (let* ((turn (modulo (count-up! view) 3))
+           (felt (case turn
+                   ((1) (v+ (spring-force view other) (hold-force view other)))
+                   ((2) (rotate (orientation view) (accelerometer view)))
+                   (else #(0 0 0))))
+           (length (norm felt)))
+      (set! (applied-force view)
+            (if (> length 0) (v* (- (/ torque length)) felt) #(0 0 0))))))
 (on-collision! #t #t
   (lambda (collision . views)
     (for-each count-up! views)))
