@@ -55,6 +55,7 @@ std::optional<Eigen::VectorXd> solve_nonnegative(const Eigen::MatrixXd& A, const
     free.push_back(next);
     for (;;) {
       const Eigen::VectorXd goal = without_bounds(A, q, free);
+      if (!goal.allFinite()) return std::nullopt;
       if (goal.minCoeff() > 0) {
         x(free) = goal;
         break;

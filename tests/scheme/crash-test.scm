@@ -58,7 +58,7 @@
 
 ;; ---- recursions without end ----
 
-;; of CPU, in programs that have ended: other programs may be busy
+;; of CPU, in programs that have ended: other programs may be busy, and slow it down to a third
 (define (seconds)
   (let ((spent (times)))
     (/ (+ (tms:cutime spent) (tms:cstime spent)) internal-time-units-per-second 1.0)))
@@ -67,7 +67,7 @@
   (let ((start (seconds)))
     (apply fails-with name
            (string-append pattern "a procedure calls itself without end.*; expected") lines)
-    (test-assert (format #f "~a: ~a s" name (- (seconds) start)) (< (- (seconds) start) 2))))
+    (test-assert (format #f "~a: ~a s" name (- (seconds) start)) (< (- (seconds) start) 6))))
 
 (overflows "a callback that calls itself" "^crash.scm:3:.*"
            "(define (f x) (+ 1 (f x)))"
