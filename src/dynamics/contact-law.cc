@@ -36,10 +36,23 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
   return c;
 }
 
+namespace {
+
+// k(d)/k
+double hardness(const ContactConstants& law, double depth) {
+  if (!(depth > 0 && law.hardening > 0)) return 1;
+  const double ratio = depth / law.hardening;
+  return 1 + std::min(ratio * ratio, answer::hardening_cap);
+}
+
+}  // namespace
+
 double spring_force(const ContactConstants& law, double share, double depth) {
-  if (!(depth > 0)) return 0;
-  const double ratio = law.hardening > 0 ? depth / law.hardening : 0;
-  return share * law.k * depth * (1 + std::min(ratio * ratio, answer::hardening_cap));
+  return depth > 0 ? share * law.k * depth * hardness(law, depth) : 0;
+}
+
+double friction_grip(const ContactConstants& law, double depth) {
+  return std::sqrt(hardness(law, depth));
 }
 
 double spring_energy(const ContactConstants& law, double share, double depth) {

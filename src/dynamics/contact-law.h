@@ -8,14 +8,17 @@
 // at most; nor do the two slide or turn in each other any faster: beside friction there is
 //   T = -c u,  Q = -C (w_b - w_a),  c = 101 k tau (1 - e),  C = c d size/2
 // where d size/2 is the square of the half width of two balls' overlap.  `anchored` friction
-// carries a tangential stretch xi, in the frame of the reference body:
-//   F* = -kt xi - ct u,   F = F* cut to mu N,   xi' = (-F - kt xi)/ct
-// so that xi' = u while the contact sticks and xi relaxes to the cone while it slides.  `smooth`:
+// carries a tangential stretch xi, in the frame of the reference body, and hardens as the normal
+// spring does, with the grip y = sqrt(1 + min((d/dh)^2, 100)):
+//   F* = -y (kt xi + ct u),   F = F* cut to mu N,   xi' = (-F - y kt xi)/ct
+// so that xi' = y u while the contact sticks and xi relaxes to the cone while it slides.  Its
+// energy is kt xi^2/2 whatever y is: F.u + kt xi.xi' <= 0, it gives what it took, however deep it
+// was when it took it, and what swings in depth under a steady pull does not creep.  `smooth`:
 //   F = -mu N (2/pi) atan(|u|/v0) u/|u|,  v0 = 1e-4 m/s    (the paper's law).
 // Rolling and spinning are resisted by a torque on b in the same manner, with a bend beta (a
 // rotation vector, in the frame of the reference body) and the angular velocity w = w_b - w_a:
-//   M* = -K beta - C w,   M = M* with its part across n cut to rho_r N, that along n to rho_s N,
-//   beta' = (-M - K beta)/C,   K = kt (size/2)^2,   C = ct (size/2)^2
+//   M* = -y (K beta + C w), M = M* with its part across n cut to rho_r N, that along n to rho_s N,
+//   beta' = (-M - y K beta)/C,   K = kt (size/2)^2,   C = ct (size/2)^2
 // with rho the lengths of the pair: as if the stretch held it at a lever of half the width.
 //
 // Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley,
@@ -62,5 +65,7 @@ double spring_force(const ContactConstants& law, double share, double depth);   
 double spring_energy(const ContactConstants& law, double share, double depth);  // J
 // The depth that presses with `force` >= 0, m.
 double spring_depth(const ContactConstants& law, double share, double force);
+// y: a stretch or bend holds this much harder than at the surface.
+double friction_grip(const ContactConstants& law, double depth);
 
 }  // namespace tw

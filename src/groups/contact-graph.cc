@@ -227,14 +227,16 @@ void preload(const Regrouping& work, std::vector<NewContact>& contacts, const Co
     compliance += contact_compliance(1 / s->body->mass, turning, middle - s->point.x);
   }
   const ContactConstants& law = first.contact.law;
-  const double cone = law.mu * pressing / n.dot(compliance * n);
+  const double load = pressing / n.dot(compliance * n), cone = law.mu * load;
   Vec3 force = along.norm() > 0
                    ? Vec3(along / along.normalized().dot(compliance * along.normalized()))
                    : Vec3(Vec3::Zero());
   const bool slides = law.ct * slip.norm() > cone;
   if (slides) force = cone * slip.normalized();
   if (slides || force.norm() > cone) force *= answer::preload_beyond * cone / force.norm();
-  const Vec3 stretch = force / law.kt * (straight ? 1 : -1);
+  // once it lies as deep as that load presses it
+  const double grip = friction_grip(law, spring_depth(law, 1, load));
+  const Vec3 stretch = force / (grip * law.kt) * (straight ? 1 : -1);
   for (std::uint32_t c = 0; c < pair.count; ++c) {
     NewContact& contact = contacts[pair.first + c];
     const Quat attitude = work.attitude(contact.tag.reference);

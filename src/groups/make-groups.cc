@@ -86,11 +86,13 @@ void change_law(NewContact& c, const ContactConstants& law) {
   if (!c.law_before) return;
   const ContactConstants& was = *c.law_before;
   if (was.k == law.k && was.hardening == law.hardening) return;
+  const double held = was.kt * friction_grip(was, contact.offset - c.gap);
   const double force = spring_force(was, contact.share, contact.offset - c.gap);
   if (force > 0) contact.offset = spring_depth(law, contact.share, force) + c.gap;
   if (!(law.kt > 0)) return;
-  contact.stretch *= was.kt / law.kt;
-  contact.bend *= was.kt / law.kt;
+  const double ratio = held / (law.kt * friction_grip(law, contact.offset - c.gap));
+  contact.stretch *= ratio;
+  contact.bend *= ratio;
 }
 
 // Springs and holds among the members, each once.

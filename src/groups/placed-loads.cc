@@ -319,7 +319,7 @@ double smaller_size(const Scene& scene, const ContactTag& tag) {
   return std::min(scene.body(tag.reference).least_width, scene.body(tag.other).least_width);
 }
 
-// Of the bend as far as friction holds it, J.
+// Of the bend as far as friction holds it, J; `load`: over the grip.
 double bend_energy_of(const GroupContact& c, const Vec3& n, double load) {
   const double k = c.share * c.law.kt * c.law.squared_lever();
   if (!(k > 0)) return 0;
@@ -334,8 +334,9 @@ double bend_energy_of(const GroupContact& c, const Vec3& n, double load) {
 double energy_of(const GroupContact& c, const Vec3& n, double gap) {
   const double depth = c.offset - gap;
   const double load = spring_force(c.law, c.share, depth);
-  const double cone = c.law.mu * load, kt = c.share * c.law.kt;
-  const double normal = spring_energy(c.law, c.share, depth) + bend_energy_of(c, n, load);
+  const double at_surface = load / friction_grip(c.law, depth);
+  const double cone = c.law.mu * at_surface, kt = c.share * c.law.kt;
+  const double normal = spring_energy(c.law, c.share, depth) + bend_energy_of(c, n, at_surface);
   if (c.law.law != FrictionLaw::anchored || !(kt > 0)) return normal;
   return normal + 0.5 * std::min(kt * c.stretch.squaredNorm(), cone * cone / kt);
 }
@@ -434,11 +435,12 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
     c.offset =
         s.load > 0 ? spring_depth(c.law, c.share, s.load) + looks.gap : std::min(looks.gap, 0.0);
     c.stretch = Vec3::Zero();
+    const double grip = friction_grip(c.law, c.offset - looks.gap);
     if (s.kt > 0) {
-      const Vec3 stretch = (balance.slides(s) ? answer::preload_beyond : 1) / -s.kt * s.friction;
-      c.stretch = into * stretch;
+      const double beyond = balance.slides(s) ? answer::preload_beyond : 1;
+      c.stretch = into * Vec3(-beyond / (grip * s.kt) * s.friction);
     }
-    if (s.turning.resists()) c.bend = into * Vec3(-1 / s.turning.k * s.turning.torque);
+    if (s.turning.resists()) c.bend = into * Vec3(-1 / (grip * s.turning.k) * s.turning.torque);
     work.tally.placed_energy += energy_of(c, into * looks.normal, looks.gap);
   }
 }

@@ -46,19 +46,24 @@ void set_smooth(const ContactPack& pack, const PackState& s, PackLinear& o) {
   o.sticking = LaneMask{};
   o.tau = lanes(0);
   o.inverse_ct = lanes(0);
+  o.harder = o.relaxing = {lanes(0), lanes(0), lanes(0)};
 }
 
-void set_anchored(const ContactPack& pack, const PackState& s, PackLinear& o) {
+// `tightening` = y'/y, 1/m
+void set_anchored(const ContactPack& pack, const PackState& s, Lanes tightening, PackLinear& o) {
   const Lanes zero = lanes(0);
-  o.drag = -pack.ct;
-  o.bend = pack.kt * s.s + pack.ct * s.vr;
+  o.drag = -s.ct;
+  o.bend = s.kt * s.s + s.ct * s.vr;
   o.q = s.scale;
   o.sticking = ~s.slipping;
   o.c0 = s.scale;
   o.c1 = s.slipping ? -s.scale : zero;
   o.m = (s.slipping ? pack.mu : zero) * o.e;
   o.inverse_ct = lanes(1) / pack.ct;
-  o.tau = pack.kt * o.inverse_ct;
+  o.tau = s.kt * o.inverse_ct;
+  // what slips pulls no harder along e, whatever F* does
+  o.harder = (s.slipping ? zero : tightening) * s.target;
+  o.relaxing = (tightening * s.kt) * s.s;
 }
 
 // T = -c u with c = c1 (1 - r1/r): dc/dd = (c1 - c)/d
@@ -156,9 +161,10 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   // force
   Lanes dN = normal_change(o, dp, dv);
   if constexpr (runs(feature)) dN = dN + dot(o.h, turned);
-  out.friction = friction_change<flat>(o, dN, dn, dv);
-  const LaneVec rest = out.friction - pack.ct * sides.stretch;
-  out.f = dN * o.n + out.friction + stretched(o, rest);
+  const Lanes deeper = -dot(o.n, dp);
+  const LaneVec friction = friction_change<flat>(o, dN, dn, dv) + deeper * o.harder;
+  out.stretching = friction + deeper * o.relaxing;
+  out.f = dN * o.n + friction + stretched(o, out.stretching - pack.ct * sides.stretch);
   if constexpr (!flat) out.f = out.f + o.N * dn;
   if (o.deep) {
     out.f = out.f + drag_change<flat>(o, dp, dn, dv);
@@ -169,9 +175,10 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
     const ResistanceLinear& r = o.resistance;
     LaneVec dw = b.w;
     if constexpr (!grounded) dw = dw - a.w - cross(a.th, o.dw);
-    out.resistance = dN * r.m + change_by_turn(r, dw);
-    if constexpr (!flat) out.resistance = out.resistance + change_by_normal(r, dn);
-    LaneVec torque = with_bend(r, out.resistance) - bent(r, r.c * sides.bend);
+    LaneVec torque = dN * r.m + deeper * r.harder + change_by_turn(r, dw);
+    if constexpr (!flat) torque = torque + change_by_normal(r, dn);
+    out.bending = torque + deeper * r.relaxing;
+    torque = torque + bent(r, out.bending - r.c * sides.bend);
     if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
     out.torque = o.deep ? out.torque + torque : torque;
   }
@@ -196,19 +203,23 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   o.inverse_length = s.inverse_length;
   o.e = (lanes(1) / max(s.target_length, lanes(1e-300))) * s.target;
   o.t = cross(o.n, o.e);
+
+  // y'/y = (d/dh^2)/h below the cap
+  const Lanes zero = lanes(0), one = lanes(1);
+  const Lanes ratio = s.depth * pack.inverse_hardening, squared = ratio * ratio;
+  const LaneMask hardens = squared < lanes(answer::hardening_cap);
+  const Lanes tightening =
+      (s.depth > zero) & hardens ? ratio * pack.inverse_hardening / (s.grip * s.grip) : zero;
   if (pack.law == FrictionLaw::anchored)
-    set_anchored(pack, s, o);
+    set_anchored(pack, s, tightening, o);
   else
     set_smooth(pack, s, o);
   o.vbend = dot(o.n, o.bend);
 
   // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2); beyond the cap K b is constant
   // and dN/dd = K' = k (1 + cap)
-  const Lanes zero = lanes(0), one = lanes(1);
-  const Lanes ratio = s.depth * pack.inverse_hardening, squared = ratio * ratio;
-  const Lanes slope = squared < lanes(answer::hardening_cap)
-                          ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
-                          : lanes(1 + answer::hardening_cap);
+  const Lanes slope = hardens ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
+                              : lanes(1 + answer::hardening_cap);
   const Lanes by_depth = s.N > zero ? pack.k * slope : zero;
   o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
@@ -224,7 +235,8 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   o.m1 = o.m2 = o.h0 = o.h1 = o.h2 = zero;
   set_drag(pack, s, o);
   o.turns = s.turns;
-  if (pack.bend >= 0) linearise_resistance(pack.resistance, s.resistance, s.n, o.resistance);
+  if (pack.bend >= 0)
+    linearise_resistance(pack.resistance, s.resistance, s.n, tightening, o.resistance);
 }
 
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
@@ -256,8 +268,8 @@ void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyCh
   chosen(pack, linear, changes, sides, out);
 }
 
-LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& friction) {
-  const LaneVec y = stretch_side - o.inverse_ct * friction;
+LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& stretching) {
+  const LaneVec y = stretch_side - o.inverse_ct * stretching;
   return o.h0 * y + (o.h1 * dot(o.n, y)) * o.n + (o.h2 * dot(o.t, y)) * o.t;
 }
 
@@ -284,9 +296,10 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
     else if constexpr (!flat)
       dn = turn_normal(pack, o, unit[i]);
     const Lanes dNp = normal_change(o, unit[i], none), dNv = normal_change(o, none, unit[i]);
-    const LaneVec Fp = friction_change<flat>(o, dNp, dn, none);
+    const Lanes deeper = -dot(o.n, unit[i]);
+    const LaneVec Fp = friction_change<flat>(o, dNp, dn, none) + deeper * o.harder;
     const LaneVec Fv = friction_change<flat>(o, dNv, none, unit[i]);
-    p[i] = dNp * o.n + Fp + stretched(o, Fp);
+    p[i] = dNp * o.n + Fp + stretched(o, Fp + deeper * o.relaxing);
     if constexpr (!flat) p[i] = p[i] + o.N * dn;
     v[i] = dNv * o.n + Fv + stretched(o, Fv);
     if constexpr (running) {
@@ -312,9 +325,9 @@ TW_LANES LaneMat normal_turn(const ContactPack& pack, const PackLinear& o) {
          (pack.feature == ContactFeature::line ? project - outer(o.l, o.l) : project);
 }
 
-// dM by dN, dw' and dn', bends eliminated.  What n.df has of dn' alone, -f.dn', is taken off.
+// dM by dN, dd, dw' and dn', bends eliminated.  What n.df has of dn' alone, -f.dn', is taken off.
 struct Resisting {
-  LaneVec m;
+  LaneVec m, by_depth;
   LaneMat by_turn, by_normal;
 };
 
@@ -325,6 +338,7 @@ TW_LANES void set_resisting(const PackLinear& o, Resisting& r) {
   const LaneVec unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   LaneVec turn[3], normal[3];
   r.m = with_bend(s, s.m);
+  r.by_depth = s.harder + bent(s, s.harder + s.relaxing);
   for (int i = 0; i < 3; ++i) {
     turn[i] = with_bend(s, change_by_turn(s, unit[i]));
     if constexpr (!flat)
@@ -422,12 +436,13 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     if constexpr (!flat) sb_v = (-sign * inverse) * turn;
     const LaneMat s_v[2] = {sa_v, sb_v}, s_L[2] = {sa_th * P, sb_th * P};
 
-    // dM, with dN = n.df + f.dn'
+    // dM, with dN = n.df + f.dn' and dd = -n.dp
     LaneMat resist_v, resist_L;
     if (pack.bend >= 0) {
       const auto load_of = [&](const LaneMat& df) { return transposed_times(df, o.n); };
-      resist_v = outer(resisting.m, load_of(f_v));
-      LaneMat resist_th = outer(resisting.m, load_of(f_th_in_a));
+      const LaneMat by_depth = outer(resisting.by_depth, -o.n);
+      resist_v = outer(resisting.m, load_of(f_v)) + (sign * inverse) * by_depth;
+      LaneMat resist_th = outer(resisting.m, load_of(f_th_in_a)) + by_depth * dp_th;
       if constexpr (!flat) {
         const LaneMat n_v = (sign * inverse) * n_p;
         LaneMat n_th = n_p * dp_th;

@@ -8,7 +8,8 @@
 //   dv' = dv_b - dv_a + dw_b x s_b - dw_a x s_a + (w_b - w_a) x (dp - radius_b dn' + dth_a x s_a)
 //         - w_b x (dx_b - dx_a) + v_r x dth_a
 //   dN  = g.dp - K b (n.dv'),   g = -(dN/dd) n - K b Nn v_r,   K = N/(1 + b d')
-//   dF* = -ct (dv' - n n.dv') + (kt s + ct v_r).n dn' + n (kt s + ct v_r).dn'      (anchored)
+//   dF* = -y (ct (dv' - n n.dv') - (kt s + ct v_r).n dn' - n (kt s + ct v_r).dn')
+//         + (y'/y) F* dd,  dd = -n.dp      (anchored)
 //   dF  = m dN + (c0 + c1 e e^T) dF*,  e = F*/|F*|
 //         sticking: m = 0, c0 = 1, c1 = 0;  slipping: m = mu e, c0 = q, c1 = -q, q = mu N/|F*|
 //   df  = n dN + N dn' + dF + dT + dth_a x f
@@ -25,10 +26,10 @@
 // Where it rolls over the surface roll dom adds to dp likewise.
 // smooth: m = F/N, and du instead of dF* with the derivative of the atan law in c0, c1.
 //
-// The stretch z (world frame) has z' = -(F + kt z)/ct; dF/dz is -kt q t t^T when slipping, with
-// t = n x e, and -kt (1 - n n^T) when sticking.  With sigma = 1/(gamma h) and tau = kt/ct its stage
-// equation gives
-//   dz = H (r_z - dF/ct),  H = h0 + h1 n n^T + h2 t t^T, and dF becomes dF + W (dF - ct r_z),
+// The stretch z (world frame) has z' = -(F + y kt z)/ct; dF/dz is -y kt q t t^T when slipping, with
+// t = n x e, and -y kt (1 - n n^T) when sticking.  With sigma = 1/(gamma h), tau = y kt/ct and
+// dR = dF + y' kt z dd its stage equation gives
+//   dz = H (r_z - dR/ct),  H = h0 + h1 n n^T + h2 t t^T, and dF becomes dF + W (dR - ct r_z),
 //   W = m1 (1 - n n^T) + m2 t t^T,
 //   sticking: m1 = tau/sigma, m2 = 0;  slipping: m1 = 0, m2 = tau q/(sigma + tau (1 - q)).
 //
@@ -53,13 +54,14 @@ struct BodyWrench {
 struct PackLinear {
   LaneMat Ra;
   LaneVec n, l, ra, rb, sa, sb, wb, dw, vr, f,
-      bend;  // dw = w_b - w_a; bend = kt s + ct v_r, or v_r
+      bend;  // dw = w_b - w_a; bend = y (kt s + ct v_r), or v_r
   LaneVec e, t, m, g;
   RunningPoint running;
   LaneMat roll;
   LaneVec h;
   Lanes N, kb, inverse_length, vbend;  // vbend = n.bend
-  Lanes c0, c1, q, drag;               // drag = -ct (anchored), 1 (smooth)
+  Lanes c0, c1, q, drag;               // drag = -y ct (anchored), 1 (smooth)
+  LaneVec harder, relaxing;            // dF and dR - dF by dd
   Lanes inverse_ct, tau;
   LaneMask sticking;
   bool deep, turns;
@@ -71,12 +73,12 @@ struct PackLinear {
   Lanes m1, m2, h0, h1, h2;     // by the step
 };
 
-// Changes of the force on b, of the raw friction and the raw M (stretches and bends held) and of
-// the two arms.
+// Changes of the force on b, of the dR of the stretches and of the bends, both held, and of the two
+// arms.
 struct PackChange {
-  LaneVec f, friction, sa, sb;
-  LaneVec resistance;  // set where the pack has bends
-  LaneVec torque;      // dQ + dM; set where it turns
+  LaneVec f, stretching, sa, sb;
+  LaneVec bending;  // set where the pack has bends
+  LaneVec torque;   // dQ + dM; set where it turns
 };
 
 // The derivative at a state; stretches and bends are held until set_stage_rate is called.
@@ -94,9 +96,9 @@ struct PackSides {
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
                  const PackSides& sides, bool outside_changes, PackChange& out);
 
-// The raw friction change alone gives the stretch: H (r_z - dF/ct), world frame.
+// dR alone gives the stretch: H (r_z - dR/ct), world frame.
 LaneVec solve_stretch(const PackLinear& linear, const LaneVec& stretch_side,
-                      const LaneVec& friction_change);
+                      const LaneVec& stretching);
 
 // 6 x 6 blocks of the derivative of the wrenches (f, torque about the centre) on body Y by (v, L)
 // of body X, where the stage equations give dx = v/sigma, dth = P L, dw = V L.  Of [Y][X], a = 0

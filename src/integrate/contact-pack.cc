@@ -157,13 +157,14 @@ TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVe
   o.gap = sign * length - pack.radius_a - pack.radius_b;
 }
 
-// N = max(0, k d (1 + min((d/dh)^2, cap)) (1 - b vn)), b less beyond the cap
+// N = max(0, k d h (1 - b vn)), h = 1 + min((d/dh)^2, cap), b less beyond the cap; y = sqrt(h)
 TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes depth = o.depth = pack.offset - o.gap, ratio = depth * pack.inverse_hardening;
   const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
   const Lanes ease = min(one, lanes(answer::hardest_ratio) / max(ratio, lanes(1e-300)));
   o.damping = ease * pack.damping;
+  o.grip = depth > zero ? sqrt(hard) : one;
   const Lanes damped = one - o.damping * o.vn;
   const LaneMask pressed = (depth > zero) & (damped > zero);
   o.stiffness = pressed ? pack.k * depth * hard : zero;
@@ -171,17 +172,19 @@ TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   o.N = pressed ? o.N : zero;
 }
 
-// F* = -kt s_t - ct u, cut to mu N
+// F* = -y (kt s_t + ct u), cut to mu N
 TW_LANES void set_anchored_friction(const ContactPack& pack, PackState& o) {
   const LaneVec st = o.s - dot(o.n, o.s) * o.n;
-  o.target = -(pack.kt * st) - pack.ct * o.u;
+  o.kt = o.grip * pack.kt;
+  o.ct = o.grip * pack.ct;
+  o.target = -(o.kt * st) - o.ct * o.u;
   o.target_length = sqrt(dot(o.target, o.target));
   const Lanes limit = pack.mu * o.N;
   o.slipping = o.target_length >= limit;
   o.scale = o.slipping ? limit / max(o.target_length, lanes(1e-300)) : lanes(1);
   o.F = o.scale * o.target;
-  // xi' = R_a^T (-F - kt s)/ct
-  o.stretch_rate = transposed_times(o.Ra, (lanes(-1) / pack.ct) * (o.F + pack.kt * o.s));
+  // xi' = R_a^T (-F - y kt s)/ct
+  o.stretch_rate = transposed_times(o.Ra, (lanes(-1) / pack.ct) * (o.F + o.kt * o.s));
 }
 
 // F = -mu N (2/pi) atan(|u|/v0)/|u| u
@@ -219,7 +222,7 @@ TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
 }
 
 TW_LANES void add_resistance(const ContactPack& pack, const LaneVec& bend, PackState& o) {
-  evaluate_resistance(pack.resistance, o.Ra, o.n, o.N, o.wb - o.wa, bend, o.resistance);
+  evaluate_resistance(pack.resistance, o.Ra, o.n, o.N, o.grip, o.wb - o.wa, bend, o.resistance);
   o.torque = o.turns ? o.torque + o.resistance.torque : o.resistance.torque;
   o.turns = true;
 }
@@ -376,11 +379,11 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
   Lanes all = normal;
   if (pack.bend >= 0)
-    all += bend_energy(pack.resistance, state.n, state.resistance.z, state.stiffness);
+    all += bend_energy(pack.resistance, state.n, state.resistance.z, state.stiffness / state.grip);
   if (pack.law != FrictionLaw::anchored) return all;
   // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back
   const LaneVec st = state.s - dot(state.n, state.s) * state.n;
-  const Lanes cone = pack.mu * state.stiffness;
+  const Lanes cone = pack.mu * state.stiffness / state.grip;
   const Lanes tiny = lanes(1e-300);
   return all + half * min(pack.kt * dot(st, st), cone * cone / max(pack.kt, tiny));
 }

@@ -88,6 +88,8 @@ struct PackState {
   LaneMat roll;          // tangent plane: the point runs by roll dom when b turns by dom against a
   Lanes gap, depth, vn;  // depth = offset - gap
   Lanes damping;         // b at this depth
+  Lanes grip;            // y at this depth
+  Lanes kt, ct;          // y kt, y ct; anchored
   Lanes N, stiffness;    // stiffness = N/(1 - b vn)
   LaneVec target;        // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;  // F = scale target

@@ -88,10 +88,10 @@ void GroupSystem::set_time_slope(double time, double step, const double* y, cons
     PackChange change;
     change_pack(pack, linear, s.changes.data(), {}, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());
-    store(transposed_times(linear.Ra, -(linear.inverse_ct * change.friction)),
+    store(transposed_times(linear.Ra, -(linear.inverse_ct * change.stretching)),
           time_slope + stretch_row(p));
     if (pack.bend >= 0)
-      store(transposed_times(linear.Ra, -(linear.resistance.inverse_c * change.resistance)),
+      store(transposed_times(linear.Ra, -(linear.resistance.inverse_c * change.bending)),
             time_slope + bend_row(pack));
   }
   for (int i = 0; i < members_; ++i) {
@@ -305,12 +305,11 @@ void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
     PackChange change;
     change_pack(pack, linear, s.changes.data(), sides, false, change);
     if (anchored)
-      store(transposed_times(linear.Ra, solve_stretch(linear, sides.stretch, change.friction)),
+      store(transposed_times(linear.Ra, solve_stretch(linear, sides.stretch, change.stretching)),
             stage + stretch_row(p));
     if (bends)
-      store(
-          transposed_times(linear.Ra, solve_bend(linear.resistance, sides.bend, change.resistance)),
-          stage + bend_row(pack));
+      store(transposed_times(linear.Ra, solve_bend(linear.resistance, sides.bend, change.bending)),
+            stage + bend_row(pack));
   }
 }
 

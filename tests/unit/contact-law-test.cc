@@ -68,5 +68,17 @@ TEST(ContactLaw, depth_of_a_force_is_the_inverse_of_the_force_and_the_energy_its
   EXPECT_EQ(spring_energy(c, 1, -1e-3), 0);
 }
 
+// Tangential springs are kt at the surface, and keep their share of the normal one as it hardens.
+TEST(ContactLaw, grip_is_the_root_of_how_much_harder_the_spring_is) {
+  const ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
+  EXPECT_EQ(friction_grip(c, -1e-3), 1);
+  EXPECT_EQ(friction_grip(c, 0), 1);
+  EXPECT_DOUBLE_EQ(friction_grip(c, c.hardening), std::sqrt(2));
+  for (const double ratio : {0.3, 3.0, 9.9, 10.1, 40.0}) {
+    const double depth = ratio * c.hardening, y = friction_grip(c, depth);
+    EXPECT_NEAR(y * y, spring_force(c, 1, depth) / (c.k * depth), 1e-12 * y * y) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace tw

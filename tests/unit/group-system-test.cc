@@ -78,7 +78,8 @@ GroupMember random_member(Draw& draw) {
 }
 
 // Four members and two outside bodies (one moving); contacts of the kind between random pairs,
-// loaded by about .02 m, in the regime by choice of mu and the velocity scale of friction.
+// loaded by about .02 m, in the regime by choice of mu and the velocity scale of friction, and far
+// from the border between sticking and slipping, where differences see both.
 GroupStart random_group(Draw& draw, const Case& kind) {
   GroupStart start;
   start.time = 1;
@@ -103,8 +104,12 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     c.law.size = 0.5;
     c.law.kt = 0.8 * c.law.k;
     c.law.ct = draw.in(5, 10);
-    c.law.mu = kind.regime == Regime::sticking ? 1000 : 0.4;
+    const bool sticks =
+        kind.regime == Regime::sticking || (kind.regime == Regime::deep && draw.in(0, 1) < 0.5);
+    c.law.mu = sticks ? 1000 : 0.04;
     c.law.law = kind.law;
+    // as deep as the springs of friction still harden, or not
+    if (kind.regime == Regime::deep && draw.in(0, 1) < 0.5) c.law.hardening = 0.006;
     const bool flat =
         c.feature == ContactFeature::plane || c.feature == ContactFeature::tangent_plane;
     // held, or cut to what the lengths allow
