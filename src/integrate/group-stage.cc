@@ -158,7 +158,8 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
   std::fill(total, total + members_, 0.0);
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
-    const Lanes slope = sqrt(dot(s.linear[index(p)].g, s.linear[index(p)].g));
+    // whether what just touches presses already is rounding
+    const Lanes slope = max(pack.k, sqrt(dot(s.linear[index(p)].g, s.linear[index(p)].g)));
     for (int i = 0; i < pack.count; ++i)
       for (const int body : {pack.a[i], pack.b[i]})
         if (body < members_) total[body] += slope[i];

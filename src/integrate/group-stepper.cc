@@ -101,9 +101,9 @@ GroupScratch& GroupStepper::scratch() const {
   return shared;
 }
 
-// A step for a group of which nothing is known.  Loaded contacts oscillate at about omega, omega^2
-// = the largest sum of |dN/dd| over a member's mass; the jerk j = dv'/dt then makes an error of
-// about omega^2 j h^4/answer::first_step_error in v.
+// A step for a group of which nothing is known.  Contacts oscillate at about omega, omega^2 = the
+// largest sum of |dN/dd|, or of k where they touch at most, over a member's mass; the jerk j =
+// dv'/dt then makes an error of about omega^2 j h^4/answer::first_step_error in v.
 double GroupStepper::first_step(GroupScratch& s) const {
   const double squared = system_.squared_frequency(s);
   const double left = start_.end - start_.time;
@@ -301,11 +301,12 @@ bool GroupStepper::implicit_step() {
 
   Rejection last_one;
   for (bool rejected = false;; rejected = true) {
-    // the last step lands on the end, the one before leaves no sliver
+    // the last step lands on the end, the one before leaves no sliver; rounding decides neither
+    // where steps are halves of what is left
     const bool last = h >= left * (1 - 1e-6);
     if (last)
       h = left;
-    else if (2 * h > left)
+    else if (2 * h > left * (1 + 1e-6))
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);

@@ -78,8 +78,8 @@ class GroupSystem {
   // bases of multibodies move.  After linearise, which gave `slope`, before factor.
   void set_time_slope(double time, double step, const double* y, const double* slope,
                       GroupScratch& scratch, double* time_slope) const;
-  // Largest over members of the sum of |dN/dd| of its contacts over its mass, 1/s^2, as linearised
-  // last.
+  // Largest over members of the sum of |dN/dd| of its contacts, or of k where that is more, over
+  // its mass, 1/s^2, as linearised last.
   double squared_frequency(GroupScratch& scratch) const;
   // For a step h, sigma = 1/(gamma h).  False: singular.
   bool factor(double sigma, GroupScratch& scratch);
