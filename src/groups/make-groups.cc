@@ -266,10 +266,24 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
     group.next_check = std::min(group.next_check, before->next_check_at(now));
 }
 
+// Whether a callback set a velocity or tied two: what is stiff gives way to that within a small
+// part of a step, and steps that pass over it end right but are wrong in their middles.
+bool is_jerked(const Regrouping& work, const Group& group) {
+  return std::any_of(group.members.begin(), group.members.end(), [&](ProcessId member) {
+    const Successor& successor = *work.successor_of(member);
+    const State& was = work.before.state(member);
+    const PoseTwist before = was.trajectory().at(work.now());
+    const auto &tied = bonds_of(successor.data.forces), &tied_before = bonds_of(was.forces);
+    return successor.point.v != before.v || successor.point.w != before.w ||
+           !std::equal(tied.begin(), tied.end(), tied_before.begin(), tied_before.end());
+  });
+}
+
 // The step to be tried first: that which the arc before would have gone on with, if the same bodies
 // go on much as they did.
-double first_step_of(const Regrouping& work, const Group* before) {
+double first_step_of(const Regrouping& work, const Group& group, const Group* before) {
   if (!before || (!finds_contacts(work.cause) && work.cause != Cause::callback)) return 0;
+  if (work.cause == Cause::callback && is_jerked(work, group)) return 0;
   // an arc that began at this very instant need not have been integrated
   return before->arc->start().time < work.now() ? before->arc->next_step() : before->first_step;
 }
@@ -290,7 +304,7 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   for (const ProcessId member : members)
     group->placed_at = std::max(group->placed_at, placed_at(work.before.state(member)));
 
-  group->first_step = first_step_of(work, before);
+  group->first_step = first_step_of(work, *group, before);
   const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };
   if (work.rests[place_of(members.front())])
     lay_to_rest(work, *group);
