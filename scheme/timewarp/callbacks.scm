@@ -41,8 +41,8 @@ after a rollback."
   "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,
 'fission (with the collision), 'frame (with the frame) or 'squeezed (with the squeezing: a body
 that has nowhere to go, once each time that it begins).  A body is squeezed when two contacts push
-it against each other, each deeper than 2 % of its least width, and what does not give way stands
-behind both; until none is deeper than 1 %."
+it against each other, by their normal forces or by friction, one of them deeper than 2 % of its
+least width, and what does not give way stands behind both; until no two push it so at 1 %."
   (%require-outside-callbacks "observe!")
   (let ((world (current-world))
         (place (caller-place)))

@@ -92,9 +92,9 @@ inline constexpr std::size_t most_placed = 4096;
 // A pair that carries less in their balance than this share of the lighter one's weight carries
 // nothing.
 inline constexpr double carried_share = 1e-6;
-// A body is squeezed from this overlap on either side on, over its least width: heaps stay below a
-// tenth of it.
-inline constexpr double squeezed_share = 0.02;
+// A body is squeezed from this overlap on, over its least width: heaps stay below a tenth of it. Of
+// the two forces on it the lesser one is at least this share of the other.
+inline constexpr double squeezed_share = 0.02, squeezed_force_share = 0.1;
 
 // ---- motion by a procedure ----
 // It is sampled in spans of this length on a grid from time 0, s: so far ahead of what is asked it

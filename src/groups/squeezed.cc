@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/constants.h"
+#include "dynamics/contact-law.h"
 
 namespace tw {
 namespace {
@@ -13,12 +14,32 @@ namespace {
 // One contact as the body sees it that it pushes.
 struct Push {
   BodyId body = 0, by = 0;
-  Vec3 along = Vec3::Zero();  // unit, world: the force on the body
+  Vec3 normal = Vec3::Zero();  // into the body, unit, world
+  Vec3 force = Vec3::Zero();   // on it, world, N
   Vec3 point = Vec3::Zero();
   double depth = 0;  // m
 };
 
-bool opposes(const Push& x, const Push& y) { return x.along.dot(y.along) < -0.5; }
+// Of its springs, on the other body, N.  A body in a corner with friction is held by forces that
+// are opposite where the normals are not.
+Vec3 spring_force_of(const NewContact& c, const Quat& reference) {
+  const GroupContact& contact = c.contact;
+  const ContactConstants& law = c.law_before ? *c.law_before : contact.law;
+  const double depth = contact.offset - c.gap, load = spring_force(law, contact.share, depth);
+  if (!(load > 0) || law.law != FrictionLaw::anchored) return load * c.normal;
+  const double hold = contact.share * law.kt * friction_grip(law, depth);
+  const Vec3 stretch = reference * contact.stretch;
+  const Vec3 pull = -hold * (stretch - stretch.dot(c.normal) * c.normal);
+  const double cone = law.mu * load, most = pull.norm();
+  return load * c.normal + (most > cone ? cone / most : 1) * pull;
+}
+
+// The cosine of the angle between them; 0 where they are not of like size.
+double alike(const Push& x, const Push& y) {
+  const double one = x.force.norm(), two = y.force.norm();
+  if (std::min(one, two) < answer::squeezed_force_share * std::max(one, two)) return 0;
+  return x.force.dot(y.force) / (one * two);
+}
 
 // Two that push a body against each other.
 struct Squeeze {
@@ -26,20 +47,23 @@ struct Squeeze {
 
   explicit operator bool() const { return one; }
   double depth() const { return std::max(one->depth, two->depth); }
-  double both_depth() const { return std::min(one->depth, two->depth); }
 };
 
-// Of all successors with new arcs, those that could keep somebody squeezed; by body.
+// Of all successors with new arcs, by body; none where no contact is deep enough.
 class Pushes {
  public:
   explicit Pushes(const Regrouping& work) : work_(work) {
+    if (std::none_of(work.contacts.begin(), work.contacts.end(),
+                     [this](const NewContact& c) { return is_deep(c); }))
+      return;
     for (const ContactPair& pair : work.pairs)
       each_contact(pair, [&](std::uint32_t c) {
         const NewContact& contact = work.contacts[c];
         if (!(contact.gap < 0)) return;
         const ContactTag& tag = contact.tag;
-        add({tag.other, tag.reference, contact.normal, contact.point, -contact.gap});
-        add({tag.reference, tag.other, -contact.normal, contact.point, -contact.gap});
+        const Vec3 force = spring_force_of(contact, work.attitude(tag.reference));
+        add({tag.other, tag.reference, contact.normal, force, contact.point, -contact.gap});
+        add({tag.reference, tag.other, -contact.normal, -force, contact.point, -contact.gap});
       });
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Push& x, const Push& y) { return x.body < y.body; });
@@ -51,16 +75,16 @@ class Pushes {
                          [](const Push& x, const Push& y) { return x.body < y.body; });
     return {first, last};
   }
-  // The deepest two, each as deep as `least`, that push it against each other, `held` on both
-  // sides.
+  // The two that push it against each other, one as deep as `least` and `held` on both sides: those
+  // with the deepest.
   Squeeze squeeze(BodyId body, double least, bool held) const {
     const std::span<const Push> pushes = on(body);
     Squeeze deepest;
     for (std::size_t i = 0; i < pushes.size(); ++i)
       for (std::size_t j = i + 1; j < pushes.size(); ++j) {
         const Squeeze found{&pushes[i], &pushes[j]};
-        if (found.both_depth() < least || !opposes(pushes[i], pushes[j])) continue;
-        if (deepest && found.both_depth() <= deepest.both_depth()) continue;
+        if (found.depth() < least || alike(pushes[i], pushes[j]) > -0.5) continue;
+        if (deepest && found.depth() <= deepest.depth()) continue;
         if (held && !(is_held(pushes[i]) && is_held(pushes[j]))) continue;
         deepest = found;
       }
@@ -69,9 +93,13 @@ class Pushes {
 
  private:
   double width(BodyId body) const { return work_.scene().body(body).least_width; }
+  // Whether it could keep a body squeezed.
+  bool is_deep(const NewContact& c) const {
+    const double narrower = std::min(width(c.tag.reference), width(c.tag.other));
+    return -c.gap >= 0.5 * answer::squeezed_share * narrower;
+  }
   void add(const Push& push) {
-    if (!work_.changes(push.body)) return;
-    if (push.depth >= 0.5 * answer::squeezed_share * width(push.body)) all_.push_back(push);
+    if (work_.changes(push.body)) all_.push_back(push);
   }
   // Whether who pushes does not give way, seen from the body that is pushed.
   bool is_held(const Push& push) const {
@@ -84,7 +112,7 @@ class Pushes {
       if (std::find(seen.begin(), seen.end(), last.by) != seen.end()) continue;
       seen.push_back(last.by);
       for (const Push& behind : on(last.by))
-        if (behind.along.dot(last.along) > 0.5) open.push_back(&behind);
+        if (alike(behind, last) > 0.5) open.push_back(&behind);
     }
     return false;
   }
@@ -104,7 +132,7 @@ Collision report_of(const Regrouping& work, const Squeeze& squeeze) {
   row.body1 = first.by;
   row.body2 = second.by;
   row.point = deeper.point;
-  row.normal = first.along;
+  row.normal = first.normal;
   row.squeezed = deeper.body;
   row.depth = deeper.depth;
   row.depth_share = deeper.depth / work.scene().body(deeper.body).least_width;

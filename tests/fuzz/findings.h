@@ -23,6 +23,7 @@ struct Findings {
   double depth = 0;  // share of the smaller body's least width
   double depth_time = 0;
   int deep_a = -1, deep_b = -1;
+  double squeezed = 0;  // the same of pairs of whom one was told to be squeezed; not in depth
   bool not_finite = false;
   double lost_time = -1;  // s; negative: nobody
   int lost_body = -1;

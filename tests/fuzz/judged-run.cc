@@ -28,12 +28,15 @@ class JudgedRun {
       parts_.push_back(parts_of(body));
       widths_.push_back(least_width(parts_.back()));
     }
+    squeezed_.resize(parts_.size(), false);
   }
 
   void run() {
     world_.set_hash(true);
     world_.set_threads(1);  // its pace is that of one core
     fill(world_, scene_);
+    world_.add_collision_observer([this](const Collision& c) { squeezed_[c.squeezed] = true; },
+                                  CollisionKind::squeezed);
     look(0);
     for (int i = 1; i <= samples; ++i) {
       // to the bit where other schedules end
@@ -91,6 +94,10 @@ class JudgedRun {
           for (const Part& part_b : parts_[b]) {
             const double share =
                 overlap(part_a, frames_[a], part_b, frames_[b], shallow * width) / width;
+            if (squeezed_[a] || squeezed_[b]) {
+              f_.squeezed = std::max(f_.squeezed, share);
+              continue;
+            }
             if (share <= f_.depth) continue;
             f_.depth = share;
             f_.depth_time = when;
@@ -162,7 +169,7 @@ class JudgedRun {
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
   std::vector<Frame> frames_;
-  std::vector<bool> over_rim_;
+  std::vector<bool> over_rim_, squeezed_;
   double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
 };
 

@@ -9,7 +9,6 @@ namespace {
 
 const KnownFault table[] = {
     // beyond what make check-long runs; the causes were not looked into
-    {"drum", 560, Fault::energy, 0.0067, "a ball is jammed by friction between drum and end wall"},
     {"bonds", 22, Fault::slow, 0.18, "bodies on stiff springs that hardly damp"},
     {"bonds", 79, Fault::slow, 0.27, "springs pull hulls into each other: 4100 blows"},
     {"bonds", 124, Fault::slow, 0.19, "a union of 10 g on a stiff spring turns at 1800 rad/s"},
@@ -62,6 +61,11 @@ const MendedSeed mended[] = {
     {"thin", 14032, "a blow on a plate drove the light rod under it into the floor"},
     {"shaker", 14049,
      "work was not counted on arcs whose first state was committed before their end"},
+    {"drum", 560,
+     "a ball jammed between drum and end wall hung on friction as soft as for its weight"},
+    {"drum", 6080,
+     "a ball that friction jams where its normals are not opposite was not told squeezed"},
+    {"called", 16053, "a callback turned a held body back within a step fifty times too long"},
 };
 
 }  // namespace

@@ -135,7 +135,8 @@ std::string Verdict::line() const {
           number(" mu %-5.2g", scene.friction) + number(" e %-5.2g", scene.restitution) +
           (scene.accuracy > 1e-5 ? " acc 1e-4" : "") + number(" cpu %6.2f", f.cpu) +
           number(" pace %-8.2g", f.pace) + number(" depth %-8.2g", f.depth) +
-          number(" rise %-8.2g", f.rise);
+          number(" rise %-8.2g", f.rise) +
+          (f.squeezed > depth_bound ? number(" squeezed %.2g", f.squeezed) : "");
   const auto body = [&](int i) {
     return i < 0 ? "?" : scene.bodies[static_cast<std::size_t>(i)].name;
   };

@@ -110,6 +110,38 @@ TEST(SqueezeTold, not_of_a_soft_cube_under_a_heavy_one) {
   EXPECT_GT(number_of(world.statistics(), "max_penetration"), 0.02 * width);
 }
 
+// A wedge of 70 degrees that closes on a ball by 8 % of its width: its normals are 110 degrees
+// apart. With enough friction the forces are opposite and it has nowhere to go; else it slips out.
+TEST(SqueezeTold, of_a_ball_that_friction_holds_in_a_wedge) {
+  for (const double friction : {2.0, 0.1}) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    set_contact_for_all(world, 0, friction);
+    const double slope = 35 * pi / 180;
+    const Vec3 left(std::cos(slope), 0, std::sin(slope));
+    const BodyId wall = add_wall(world, left, -0.5 * width);
+    BodyDef jaw;
+    jaw.shape = make_box({0.2, 1, 1});
+    const Quat leaning = rotation_by({0, slope, 0});
+    const Vec3 at = (0.5 * width + 0.1) * Vec3(std::cos(slope), 0, -std::sin(slope));
+    jaw.motion =
+        make_keyframes({{0, at, leaning}, {1, at - Vec3(0.08 * width, 0, 0), leaning}}, false);
+    const BodyId moving = world.add_body(jaw);
+    const BodyId ball = add_ball(world, 0.5 * width, Vec3::Zero(), Vec3::Zero());
+    const std::vector<Told> told = record(world, 1);
+    if (friction < 1) {
+      EXPECT_TRUE(told.empty());
+      EXPECT_GT(world.state(ball).position.z(), 0.05 * width);
+      continue;
+    }
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].body, ball);
+    EXPECT_EQ(told[0].one, std::min(wall, moving));
+    EXPECT_EQ(told[0].two, std::max(wall, moving));
+    EXPECT_LT(world.state(ball).position.z(), 0.01 * width);
+  }
+}
+
 TEST(SqueezeTold, the_same_whatever_the_schedule) {
   const auto told = [](const Schedule& schedule) {
     World world;
