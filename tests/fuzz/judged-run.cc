@@ -28,15 +28,19 @@ class JudgedRun {
       parts_.push_back(parts_of(body));
       widths_.push_back(least_width(parts_.back()));
     }
-    squeezed_.resize(parts_.size(), false);
+    told_.resize(parts_.size(), never);
   }
+
+  // However it ends.
+  ~JudgedRun() { settle_depths(never); }
 
   void run() {
     world_.set_hash(true);
     world_.set_threads(1);  // its pace is that of one core
     fill(world_, scene_);
-    world_.add_collision_observer([this](const Collision& c) { squeezed_[c.squeezed] = true; },
-                                  CollisionKind::squeezed);
+    world_.add_collision_observer(
+        [this](const Collision& c) { told_[c.squeezed] = std::min(told_[c.squeezed], c.time); },
+        CollisionKind::squeezed);
     look(0);
     for (int i = 1; i <= samples; ++i) {
       // to the bit where other schedules end
@@ -94,17 +98,39 @@ class JudgedRun {
           for (const Part& part_b : parts_[b]) {
             const double share =
                 overlap(part_a, frames_[a], part_b, frames_[b], shallow * width) / width;
-            if (squeezed_[a] || squeezed_[b]) {
-              f_.squeezed = std::max(f_.squeezed, share);
-              continue;
-            }
-            if (share <= f_.depth) continue;
-            f_.depth = share;
-            f_.depth_time = when;
-            f_.deep_a = static_cast<int>(a);
-            f_.deep_b = static_cast<int>(b);
+            if (share > depth_bound)
+              deep_.push_back({share, when, a, b});
+            else
+              note_depth({share, when, a, b});
           }
       }
+    settle_depths(when);
+  }
+
+  struct Overlap {
+    double share, when;
+    std::size_t a, b;
+  };
+  void note_depth(const Overlap& overlap) {
+    if (overlap.share <= f_.depth) return;
+    f_.depth = overlap.share;
+    f_.depth_time = overlap.when;
+    f_.deep_a = static_cast<int>(overlap.a);
+    f_.deep_b = static_cast<int>(overlap.b);
+  }
+  // Of each deep overlap, once who is squeezed must have been told (at checks: some samples later),
+  // whose it is.
+  void settle_depths(double now) {
+    const double late = 3 * scene_.duration / samples;
+    std::erase_if(deep_, [&](const Overlap& overlap) {
+      if (std::min(told_[overlap.a], told_[overlap.b]) <= overlap.when + late) {
+        f_.squeezed = std::max(f_.squeezed, overlap.share);
+        return true;
+      }
+      if (now <= overlap.when + late) return false;
+      note_depth(overlap);
+      return true;
+    });
   }
 
   void note_room(double when) {
@@ -169,7 +195,9 @@ class JudgedRun {
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
   std::vector<Frame> frames_;
-  std::vector<bool> over_rim_, squeezed_;
+  std::vector<bool> over_rim_;
+  std::vector<double> told_;   // s: that they are squeezed
+  std::vector<Overlap> deep_;  // of who may be squeezed
   double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
 };
 

@@ -16,6 +16,8 @@
 namespace tw::fuzz {
 
 constexpr int samples = 60;
+// Of the smaller body's least width; deeper than that is a fault.
+constexpr double depth_bound = 0.02;
 
 // Looks at the scene `samples` times; stops when the loop has used `budget` seconds of CPU.
 void run_judged(const DescribedScene& scene, double budget, Findings& findings);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "fuzz/generator.h"
+#include "fuzz/judged-run.h"
 #include "fuzz/known-seeds.h"
 #include "fuzz/verdict.h"
 #include "support/known-fault.h"

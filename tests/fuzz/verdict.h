@@ -13,10 +13,10 @@ namespace tw::fuzz {
 enum class Fault { crash, error, not_finite, lost, deep, energy, slow, hash };
 constexpr int fault_count = 8;
 
-// What may be at most, and is a fault beyond: shares of the least width, of the energy at play;
+// What may be at most, and is a fault beyond, beside depth_bound: a share of the energy at play;
 // seconds of CPU per time unit and body.  Real time over 50 for a hundred bodies of a metre, whose
 // time unit is 0.32 s, is a pace of 0.16.
-constexpr double depth_bound = 0.02, energy_bound = 1e-3, pace_bound = 0.16;
+constexpr double energy_bound = 1e-3, pace_bound = 0.16;
 
 const char* name_of(Fault fault);
 
