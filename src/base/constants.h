@@ -68,6 +68,10 @@ inline constexpr double stiff_ratio = 8;
 inline constexpr double joint_step_share = 0.05;
 // Of a step of bodies that springs alone tie together: ten swings of two err by about the accuracy.
 inline constexpr double spring_step_share = 0.1;
+// They are followed by an explicit method while the other's steps would be shorter than this,
+// radians of the fastest swing, and damping is slower than so many times that; each step in no more
+// than so many cubics.
+inline constexpr double explicit_swing = 1, most_explicit_damping = 3, most_parts = 1000;
 // Looser steps than this are made by a method of order 5.
 inline constexpr double loose_steps = 1e-5;
 // Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 1 mm/s

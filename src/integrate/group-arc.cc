@@ -83,7 +83,7 @@ struct GroupArc::Data {
 };
 
 int GroupArc::Data::strongest_contact() const {
-  GroupScratch& s = stepper.scratch();
+  GroupScratch& s = system.scratch();
   set_bodies(record.reached(), s);
   int strongest = -1;
   double largest = -1;
@@ -296,7 +296,7 @@ Vec3 GroupArc::bend(int contact, double time) const {
 const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
   thread_local KeptPack kept;
   if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;
-  GroupScratch& s = stepper.scratch();
+  GroupScratch& s = system.scratch();
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(number)];
   // contacts of one pair stand beside each other: their bodies once
   for (const auto& slots : {pack.a, pack.b})
@@ -352,7 +352,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   if (kept.state.turns) result.torque = (is_b ? 1 : -1) * lane(kept.state.torque);
   if (!c.counts) return result;
   const int other = is_b ? pack.a[i] : pack.b[i];
-  GroupScratch& s = stepper.scratch();
+  GroupScratch& s = system.scratch();
   system.set_outside_slot(other, at, s.bodies);
   const BodyKinematics& body = s.bodies[static_cast<std::size_t>(other)];
   const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
@@ -420,7 +420,7 @@ double GroupArc::work_on(int member, std::span<const WorkingContact> contacts, d
 double GroupArc::elastic_energy(double time, const std::vector<bool>& counted) const {
   const Data& d = *data_;
   const double at = d.at(time);
-  GroupScratch& s = d.stepper.scratch();
+  GroupScratch& s = d.system.scratch();
   d.set_bodies(at, s);
   double energy = 0;
   PackState state;

@@ -177,6 +177,31 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
   return largest;
 }
 
+GroupSystem::SpringRates GroupSystem::spring_rates() const {
+  std::vector<SpringRates> total(index(members_));
+  const auto add = [&](int member, const WrenchDerivative& by) {
+    const Member& m = member_[index(member)];
+    const auto rate = [&](const Mat6& of) {
+      return of.topLeftCorner<3, 3>().norm() * m.inverse_mass +
+             of.bottomRightCorner<3, 3>().norm() * m.inverse_moments.maxCoeff();
+    };
+    total[index(member)].squared_frequency += rate(by.by_pose);
+    total[index(member)].damping += rate(by.by_twist);
+  };
+  for (const HeldPair& pair : bonds_) {
+    add(pair.given.a, pair.derivative.of[0][0]);
+    add(pair.given.b, pair.derivative.of[1][1]);
+  }
+  SpringRates largest;
+  for (int i = 0; i < members_; ++i) {
+    if (member_[index(i)].forces) add(i, member_[index(i)].forced);
+    const SpringRates& of = total[index(i)];
+    largest.squared_frequency = std::max(largest.squared_frequency, of.squared_frequency);
+    largest.damping = std::max(largest.damping, of.damping);
+  }
+  return largest;
+}
+
 void GroupSystem::set_body_stage(Member& m, double sigma) const {
   Mat3 stage = -m.W - 0.5 * cross_matrix(m.w);
   stage.diagonal().array() += sigma;

@@ -8,17 +8,10 @@
 #include <utility>
 
 #include "base/constants.h"
-#include "integrate/joint-equations.h"
 #include "integrate/rodas4.h"
-#include "integrate/runge-kutta.h"
 
 namespace tw {
 namespace {
-
-// Rows of numbers are combined four at a time, and are as long as that needs (scratch).
-constexpr std::size_t in_fours(std::size_t size) {
-  return (size + lane_count - 1) / lane_count * lane_count;
-}
 
 TW_LANES Lanes load(const double* from) {
   Lanes four;
@@ -52,21 +45,7 @@ class Rejection {
 
 GroupStepper::GroupStepper(const GroupStart& start)
     : start_(start), system_(start), record_(start, system_), next_step_(start.first_step) {
-  const bool alone = start.joint_tolerance > 0 && start.trees.size() == 1 &&
-                     start.contacts.empty() && start.bonds.empty() &&
-                     std::none_of(start.members.begin(), start.members.end(),
-                                  [](const GroupMember& m) { return m.forces != nullptr; }) &&
-                     start.members.size() == start.trees.front().members.size();
-  if (alone && is_nonstiff(start.trees.front(), start.joint_size, start.joint_rate)) {
-    const GroupTree& tree = start.trees.front();
-    std::vector<double> y(tree.state->u.size(), 0.0);
-    y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());
-    explicit_ = std::make_unique<Solution>(
-        start.joint_tolerance > answer::loose_steps ? tsit5 : dop853,
-        std::make_unique<JointEquations>(tree, start.end, start.joint_tolerance, start.joint_size,
-                                         start.joint_rate),
-        start.time, std::move(y), tree.state->q);
-  }
+  start_alone();
   for (const GroupTree& tree : start.trees)
     joints_.emplace_back(*tree.multibody, start.time, start.end, tree.state->q, tree.state->u,
                          explicit_ ? explicit_->method().degree() : 3);
@@ -76,29 +55,10 @@ GroupCounts GroupStepper::counts() const {
   GroupCounts counts = counts_;
   if (explicit_) {
     const Solution::Counts& made = explicit_->counts();
-    return {made.steps, made.rejected, 0, made.evaluations};
+    return {made.steps, made.rejected, 0, counts.evaluations + made.evaluations};
   }
   counts.factorizations = system_.factorizations();
   return counts;
-}
-
-GroupScratch& GroupStepper::scratch() const {
-  thread_local GroupScratch shared;
-  const auto fit = [](auto& v, std::size_t size) {
-    if (v.size() < size) v.resize(size);
-  };
-  const std::size_t row = in_fours(system_.size());
-  const std::size_t slots = static_cast<std::size_t>(system_.contact_packs().slots);
-  fit(shared.bodies, slots);
-  fit(shared.changes, slots);
-  fit(shared.wrenches, slots);
-  fit(shared.linear, static_cast<std::size_t>(system_.packs()));
-  // a multibody may have more links than freedoms
-  fit(shared.right_side, std::max(system_.unknowns(), static_cast<std::size_t>(system_.members())));
-  for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
-    fit(*v, row);
-  for (std::vector<double>& v : shared.stage) fit(v, row);
-  return shared;
 }
 
 // A step for a group of which nothing is known.  Contacts oscillate at about omega, omega^2 = the
@@ -285,7 +245,7 @@ void GroupStepper::append_joints(double time, GroupScratch& s) {
 // one accepted step; false: failed
 bool GroupStepper::implicit_step() {
   if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
-  GroupScratch& s = scratch();
+  GroupScratch& s = system_.scratch();
   const double time = record_.reached(), left = start_.end - time;
   // outside bodies that do not move
   system_.set_outside(time, s.bodies);
@@ -326,37 +286,6 @@ bool GroupStepper::implicit_step() {
     if (!(time + 0.1 * h > time))
       return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
   }
-}
-
-// One step of the explicit method, the last one as far as the end.
-bool GroupStepper::explicit_step() {
-  if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
-  const double from = record_.reached();
-  if (!explicit_->extend(from) || !(explicit_->reached() > from))
-    return failure_ = explicit_->failure() ? explicit_->failure() : "no step", false;
-  const DenseStep& step = explicit_->at(from);
-  const double to = std::min(explicit_->reached(), start_.end);
-  const double share = (to - from) / (step.end() - step.start());
-  TreeInGroup& tree = *system_.trees().front();
-  const std::size_t n = static_cast<std::size_t>(tree.freedoms());
-  std::vector<double> powers = step.powers();
-  const std::size_t degree = powers.size() / (2 * n) - 1;
-  std::vector<double> end(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(n));
-  double scale = 1;
-  for (std::size_t k = 1; k <= degree; ++k) {
-    scale *= share;
-    for (std::size_t e = 0; e < 2 * n; ++e) powers[2 * n * k + e] *= scale;
-    for (std::size_t e = 0; e < n; ++e) end[e] += powers[2 * n * k + e];
-  }
-  joints_.front().joints(from, joint_positions_, joint_velocities_);
-  tree.set_positions(joint_positions_);
-  joints_.front().append(to, powers, tree.displaced(end.data()));
-  GroupScratch& s = scratch();
-  record_.load_last(system_, s.trial.data());
-  std::fill_n(s.stage[4].data(), system_.size(), 0.0);
-  record_.append(to, system_, s.trial.data(), s.stage[4].data(), s.stage[4].data());
-  next_step_ = 0;
-  return true;
 }
 
 }  // namespace tw

@@ -1,4 +1,5 @@
-// Steps of RODAS4 through a contact group, and their record.
+// Steps through a contact group, and their record: of RODAS4, or, where nothing touches and an
+// explicit method takes longer ones, of that.
 //
 // Error of a step: RMS over members of dx and radius dtheta over the position tolerance, dv and
 // radius dw over the velocity tolerance; stretches are not weighed.  A rejected step's successor
@@ -21,7 +22,11 @@ class GroupStepper {
   explicit GroupStepper(const GroupStart& start);
 
   // One accepted step.  False: it stopped for the reason that `failure` gives.
-  bool step() { return explicit_ ? explicit_step() : implicit_step(); }
+  bool step() {
+    if (!chosen_) choose_method();
+    if (!explicit_) return implicit_step();
+    return joints_.empty() ? spring_step() : tree_step();
+  }
   const char* failure() const { return failure_; }
 
   const GroupSystem& system() const { return system_; }
@@ -29,12 +34,15 @@ class GroupStepper {
   const JointRecord& joints(int tree) const { return joints_[static_cast<std::size_t>(tree)]; }
   double next_step() const { return next_step_; }
   GroupCounts counts() const;
-  // Of this thread, fitted to the system.
-  GroupScratch& scratch() const;
 
  private:
   bool implicit_step();
-  bool explicit_step();
+  void start_alone();
+  void choose_method();
+  bool extend_explicit(double from);
+  bool tree_step();
+  int parts_of(const DenseStep& step, double from, double to) const;
+  bool spring_step();
   double first_step(GroupScratch& s) const;
   template <int i>
   bool set_stage(double h, GroupScratch& s);
@@ -50,7 +58,8 @@ class GroupStepper {
   GroupRecord record_;
   std::vector<JointRecord> joints_;  // of each multibody
   std::vector<double> joint_positions_, joint_velocities_;
-  std::unique_ptr<Solution> explicit_;  // of a multibody that touches nothing
+  std::unique_ptr<Solution> explicit_;  // of a multibody that touches nothing, of springs
+  bool chosen_ = false;
   GroupCounts counts_;
   double next_step_;
   const char* failure_ = nullptr;

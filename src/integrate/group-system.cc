@@ -22,6 +22,11 @@ std::vector<std::pair<int, int>> member_pairs(const GroupStart& start) {
   return pairs;
 }
 
+// Rows of numbers are combined four at a time, and are as long as that needs (scratch).
+constexpr std::size_t in_fours(std::size_t size) {
+  return (size + lane_count - 1) / lane_count * lane_count;
+}
+
 }  // namespace
 
 GroupSystem::GroupSystem(const GroupStart& start)
@@ -70,6 +75,25 @@ GroupSystem::GroupSystem(const GroupStart& start)
   }
   sides_.reserve(packs_.packs.size());
   for (const ContactPack& pack : packs_.packs) sides_.push_back(starting_side(pack, bodies.data()));
+}
+
+GroupScratch& GroupSystem::scratch() const {
+  thread_local GroupScratch shared;
+  const auto fit = [](auto& v, std::size_t size) {
+    if (v.size() < size) v.resize(size);
+  };
+  const std::size_t row = in_fours(size_);
+  const std::size_t slots = index(packs_.slots);
+  fit(shared.bodies, slots);
+  fit(shared.changes, slots);
+  fit(shared.wrenches, slots);
+  fit(shared.linear, index(packs()));
+  // a multibody may have more links than freedoms
+  fit(shared.right_side, std::max(unknowns(), index(members())));
+  for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})
+    fit(*v, row);
+  for (std::vector<double>& v : shared.stage) fit(v, row);
+  return shared;
 }
 
 Vec3 GroupSystem::angular_velocity(int member, const Quat& q, const Vec3& L) const {

@@ -81,11 +81,21 @@ class GroupSystem {
   // Largest over members of the sum of |dN/dd| of its contacts, or of k where that is more, over
   // its mass, 1/s^2, as linearised last.
   double squared_frequency(GroupScratch& scratch) const;
+  // Of springs, holds and other forces, contacts apart: the largest over members of the sums of
+  // |dF/dx|/m + |dT/dth|/I, 1/s^2, and of |dF/dv|/m + |dT/dw|/I, 1/s, I the least moment; as
+  // linearised last.
+  struct SpringRates {
+    double squared_frequency = 0, damping = 0;
+  };
+  SpringRates spring_rates() const;
   // For a step h, sigma = 1/(gamma h).  False: singular.
   bool factor(double sigma, GroupScratch& scratch);
   // In place: right side to stage.  Leaves the changes of x, theta, v, w in the scratch.  False:
   // singular.
   bool solve(GroupScratch& scratch, double* stage);
+
+  // Of this thread, fitted to the system.
+  GroupScratch& scratch() const;
 
   Vec3 angular_velocity(int member, const Quat& q, const Vec3& L) const;
   // Kinematics of slots at one instant from poses and momenta.

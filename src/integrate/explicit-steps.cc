@@ -1,0 +1,159 @@
+// Steps of explicit methods through what touches nothing: a multibody, bodies on springs.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "integrate/bond-equations.h"
+#include "integrate/group-rows.h"
+#include "integrate/group-stepper.h"
+#include "integrate/joint-equations.h"
+#include "integrate/runge-kutta.h"
+#include "math/rotation-vector.h"
+
+namespace tw {
+
+using namespace rows;
+
+// A multibody that touches nothing is followed by an explicit method where nothing at its joints is
+// stiff.
+void GroupStepper::start_alone() {
+  const bool alone = start_.joint_tolerance > 0 && start_.trees.size() == 1 &&
+                     start_.contacts.empty() && start_.bonds.empty() &&
+                     std::none_of(start_.members.begin(), start_.members.end(),
+                                  [](const GroupMember& m) { return m.forces != nullptr; }) &&
+                     start_.members.size() == start_.trees.front().members.size();
+  if (alone && is_nonstiff(start_.trees.front(), start_.joint_size, start_.joint_rate)) {
+    const GroupTree& tree = start_.trees.front();
+    std::vector<double> y(tree.state->u.size(), 0.0);
+    y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());
+    explicit_ = std::make_unique<Solution>(
+        start_.joint_tolerance > answer::loose_steps ? tsit5 : dop853,
+        std::make_unique<JointEquations>(tree, start_.end, start_.joint_tolerance,
+                                         start_.joint_size, start_.joint_rate),
+        start_.time, std::move(y), tree.state->q);
+  }
+}
+
+// Bodies on springs by one where they swing widely.
+void GroupStepper::choose_method() {
+  chosen_ = true;
+  if (explicit_ || !is_tied_by_springs(start_, system_)) return;
+  GroupScratch& s = system_.scratch();
+  system_.set_outside(start_.time, s.bodies);
+  record_.load_last(system_, s.state.data());
+  system_.linearise(start_.time, s.state.data(), s, s.slope.data());
+  counts_.evaluations += 2;
+  if (!swings_widely(start_, system_, s, s.state.data(), s.slope.data(), s.trial.data())) return;
+  std::vector<double> y(s.state.begin(), s.state.begin() + static_cast<long>(system_.size()));
+  std::vector<double> chart;
+  for (const GroupMember& m : start_.members)
+    chart.insert(chart.end(), {m.q.w(), m.q.x(), m.q.y(), m.q.z()});
+  explicit_ = std::make_unique<Solution>(dop853, std::make_unique<BondEquations>(start_, system_),
+                                         start_.time, std::move(y), std::move(chart));
+}
+
+bool GroupStepper::extend_explicit(double from) {
+  if (explicit_->extend(from) && explicit_->reached() > from) return true;
+  failure_ = explicit_->failure() ? explicit_->failure() : "no step";
+  return false;
+}
+
+// Of a multibody that touches nothing: one step, the last one as far as the end.
+bool GroupStepper::tree_step() {
+  if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
+  const double from = record_.reached();
+  if (!extend_explicit(from)) return false;
+  const DenseStep& step = explicit_->at(from);
+  const double to = std::min(explicit_->reached(), start_.end);
+  const double share = (to - from) / (step.end() - step.start());
+  TreeInGroup& tree = *system_.trees().front();
+  const std::size_t n = static_cast<std::size_t>(tree.freedoms());
+  std::vector<double> powers = step.powers();
+  const std::size_t degree = powers.size() / (2 * n) - 1;
+  std::vector<double> end(powers.begin(), powers.begin() + static_cast<std::ptrdiff_t>(n));
+  double scale = 1;
+  for (std::size_t k = 1; k <= degree; ++k) {
+    scale *= share;
+    for (std::size_t e = 0; e < 2 * n; ++e) powers[2 * n * k + e] *= scale;
+    for (std::size_t e = 0; e < n; ++e) end[e] += powers[2 * n * k + e];
+  }
+  joints_.front().joints(from, joint_positions_, joint_velocities_);
+  tree.set_positions(joint_positions_);
+  joints_.front().append(to, powers, tree.displaced(end.data()));
+  GroupScratch& s = system_.scratch();
+  record_.load_last(system_, s.trial.data());
+  std::fill_n(s.stage[4].data(), system_.size(), 0.0);
+  record_.append(to, system_, s.trial.data(), s.stage[4].data(), s.stage[4].data());
+  next_step_ = 0;
+  return true;
+}
+
+// Cubics of the record follow a polynomial of degree 7 in parts.  The error of a cubic with the
+// values and rates of its ends is largest near its middle and falls with the fourth power of its
+// length: in tolerances, from a few parts on.
+int GroupStepper::parts_of(const DenseStep& step, double from, double to) const {
+  constexpr int tried = 4;
+  const double h = (to - from) / tried;
+  double worst = 0;
+  for (int i = 0; i < tried; ++i) {
+    const double t0 = from + i * h, t1 = i + 1 < tried ? t0 + h : to, middle = 0.5 * (t0 + t1);
+    const auto error = [&](int value, int rate, bool is_rate) -> double {
+      const auto slope = [&](double t) -> Vec3 {
+        return is_rate ? step.vector_rate(rate, t) : step.vector(rate, t);
+      };
+      const Vec3 cubic = 0.5 * (step.vector(value, t0) + step.vector(value, t1)) +
+                         0.125 * (t1 - t0) * (slope(t0) - slope(t1));
+      return (cubic - step.vector(value, middle)).norm();
+    };
+    for (int m = 0; m < system_.members(); ++m) {
+      const GroupMember& member = start_.members[index(m)];
+      const int at = 12 * m;
+      const double turning = member.radius / member.moments.minCoeff();
+      worst = std::max({worst, error(at, at + 6, false) / start_.position_tolerance,
+                        error(at + 3, at + 3, true) * member.radius / start_.position_tolerance,
+                        error(at + 6, at + 6, true) / start_.velocity_tolerance,
+                        error(at + 9, at + 9, true) * turning / start_.velocity_tolerance});
+    }
+  }
+  const double parts = std::ceil(tried * std::sqrt(std::sqrt(worst)));
+  return static_cast<int>(std::clamp(parts, 1.0, answer::most_parts));
+}
+
+// Of bodies on springs: one step, the last one as far as the end.
+bool GroupStepper::spring_step() {
+  if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
+  const double from = record_.reached();
+  if (!extend_explicit(from)) return false;
+  const DenseStep& step = explicit_->at(from);
+  const double to = std::min(explicit_->reached(), start_.end);
+  const int parts = parts_of(step, from, to);
+  GroupScratch& s = system_.scratch();
+  for (int i = 1; i <= parts; ++i) {
+    const double t0 = record_.reached(), t1 = i < parts ? from + (to - from) * i / parts : to;
+    record_.load_last(system_, s.state.data());
+    const double h = t1 - t0;
+    double *y1 = s.trial.data(), *d3 = s.stage[4].data(), *d4 = s.stage[5].data();
+    for (int m = 0; m < system_.members(); ++m) {
+      const int at = 12 * m;
+      const double* chart = step.chart() + 4 * m;
+      const Quat q =
+          short_rotation(step.vector(at + 3, t1)) * Quat(chart[0], chart[1], chart[2], chart[3]);
+      vec(y1 + at) = step.vector(at, t1);
+      vec(y1 + at + 3) = turn_between(system_.attitude(m), q);
+      // (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) with the rates of both ends
+      for (const int row : {at + 6, at + 9}) {
+        const Vec3 end = step.vector(row, t1), change = end - vec(s.state.data() + row);
+        const Vec3 first = h * step.vector_rate(row, t0) - change;
+        vec(y1 + row) = end;
+        vec(d3 + row) = first;
+        vec(d4 + row) = change - first - h * step.vector_rate(row, t1);
+      }
+    }
+    record_.append(t1, system_, y1, d3, d4);
+  }
+  next_step_ = 0;
+  return true;
+}
+
+}  // namespace tw
