@@ -66,7 +66,7 @@ same: its links pass through each other), a material, or #t for all."
 
 (define (enable-collisions! a b)
   "Let A and B collide again; each is a body, a multibody (for each of its links), a material, or #t
-for all."
+for all.  Between runs it is an error if two that passed through each other until now overlap."
   (set-contact! a b '((collide? . #t))))
 
 ;; ---- contacts at present ----

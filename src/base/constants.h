@@ -90,6 +90,8 @@ inline constexpr double depth_slack = 1e-12;
 inline constexpr double stepped_slack = 1e-10;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
+// And by this where they begin to collide: what rests is four times less deep.
+inline constexpr double enabled_depth = 1e-3;
 // What is placed touching starts loaded in groups of at most so many members: to find the forces
 // takes about as long as a hundred steps of theirs.
 inline constexpr std::size_t most_placed = 4096;

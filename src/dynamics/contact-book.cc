@@ -18,6 +18,13 @@ void ContactBook::add(const ContactSide& a, const ContactSide& b, const ContactS
   }
 }
 
+ContactTable ContactBook::table_with(const ContactSide& a, const ContactSide& b,
+                                     const ContactSettings& settings) const {
+  ContactTable table = table_;
+  table.add(a, b, settings);
+  return table;
+}
+
 void ContactBook::add_body(const Body& body) {
   bodies_.push_back(body.contact);
   classes_.push_back(class_of(static_cast<BodyId>(classes_.size())));

@@ -22,6 +22,14 @@ class ContactBook {
  public:
   // Errors: a value out of its range, with the keyword and the range.
   void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
+  // The rules as they would be with another one, and what `between` would give by them.
+  ContactTable table_with(const ContactSide& a, const ContactSide& b,
+                          const ContactSettings& settings) const;
+  ContactParameters between(const ContactTable& table, BodyId a, BodyId b) const {
+    return table.look_up(bodies_[a], bodies_[b]);
+  }
+  // Whether a rule with that side is about a body.
+  bool names(const ContactSide& side, BodyId id) const { return side_matches(side, bodies_[id]); }
   // A body has come into the world; numbers are dense, from 0.
   void add_body(const Body& body);
   // Of two bodies that have come into the world; stays valid until the next add.  Several threads

@@ -7,7 +7,6 @@
 
 #include "base/constants.h"
 #include "base/hash.h"
-#include "collision/separation.h"
 #include "groups/birth-group.h"
 #include "integrate/standing.h"
 #include "kernel/active-pairs.h"
@@ -180,13 +179,59 @@ void Bodies::claim_newborn() {
   sim_.present.newborn.clear();
 }
 
-void Bodies::require_no_overlap(const Body& a, const Body& b) const {
-  if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !sim_.scene.may_collide(a, b))
-    return;
+Separation Bodies::separation_of(const Body& a, const Body& b) const {
   const auto frame = [&](const Body& body) {
     return state_at(sim_, body.id(), sim_.present.time)->trajectory().frame(sim_.present.time);
   };
-  const Separation s = separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
+  return separation(*a.shape_P, frame(a), *b.shape_P, frame(b));
+}
+
+// What collides rests deeper in each other than what may be placed, so only pairs that did not
+// collide until now are looked at, and they may be as deep as what rests.
+void Bodies::check_enabled(const ContactSide& a, const ContactSide& b,
+                           const ContactSettings& settings) {
+  const Scene& scene = sim_.scene;
+  if (!settings.collide.value_or(false) || !scene.may_disable()) return;
+  const ContactTable rules = scene.contacts.table_with(a, b, settings);
+  // who has come since the last run is looked at when the next one begins
+  const std::vector<BodyId>& newborn = sim_.present.newborn;
+  const auto is_newborn = [&](BodyId id) {
+    return std::find(newborn.begin(), newborn.end(), id) != newborn.end();
+  };
+  const auto named = [&](const ContactSide& side) {
+    std::vector<const Body*> all;
+    for (const auto& body : scene.bodies)
+      if (body->shape_P && !body->info.removed && !is_newborn(body->id()) &&
+          scene.contacts.names(side, body->id()))
+        all.push_back(body.get());
+    return all;
+  };
+  const double now = sim_.present.time;
+  const auto box = [&](const Body& body) {
+    return swept_bounds(body, state_at(sim_, body.id(), now)->trajectory(), now, now);
+  };
+  const std::vector<const Body*> ones = named(a), others = named(b);
+  for (const Body* one : ones)
+    for (const Body* other : others) {
+      if (one == other || !(one->dynamic() || other->dynamic())) continue;
+      if (scene.are_neighbours(*one, *other)) continue;
+      if (scene.contacts.between(one->id(), other->id()).collide) continue;
+      if (!scene.contacts.between(rules, one->id(), other->id()).collide) continue;
+      if (!one->unbounded && !other->unbounded && !box(*one).overlaps(box(*other))) continue;
+      const double depth = -separation_of(*one, *other).distance;
+      const double allowed = answer::enabled_depth * std::min(one->least_width, other->least_width);
+      if (depth > allowed)
+        throw UserError(one->info.name + " and " + other->info.name + " overlap by " + show(depth) +
+                        " m at " + show(now) + " s, so they cannot collide from now on; expected " +
+                        "bodies that at most touch (" + show(allowed) + " m): move one of them " +
+                        "away first, or enable their collisions later");
+    }
+}
+
+void Bodies::require_no_overlap(const Body& a, const Body& b) const {
+  if (!a.shape_P || !b.shape_P || !(a.dynamic() || b.dynamic()) || !sim_.scene.may_collide(a, b))
+    return;
+  const Separation s = separation_of(a, b);
   const double allowed = answer::start_depth * std::min(a.least_width, b.least_width);
   if (std::abs(s.distance) <= allowed)
     sim_.present.together.note(a.id(), b.id(), sim_.present.time);

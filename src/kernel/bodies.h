@@ -12,6 +12,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "collision/separation.h"
+#include "dynamics/contact-parameters.h"
 #include "kernel/definitions.h"
 
 namespace tw {
@@ -39,6 +41,8 @@ class Bodies {
   void claim_newborn();
   // After the body was placed elsewhere: UserError if it overlaps another.
   void check_overlaps(const Body& body);
+  // Before a rule lets pairs collide that passed through each other: UserError if two overlap.
+  void check_enabled(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
 
  private:
   const Body* carrier_of(const MultibodyDef& def) const;
@@ -49,6 +53,8 @@ class Bodies {
   // `born_as`: whose id its birth has.
   void enter(std::unique_ptr<Body> body, const BodyDef& def, BodyId born_as);
   void require_no_overlap(const Body& a, const Body& b) const;
+  // At the present time.
+  Separation separation_of(const Body& a, const Body& b) const;
   void bury(Body& body, const BodyState& last);
 
   Simulation& sim_;

@@ -20,6 +20,7 @@ namespace tw {
 void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
                          const ContactSettings& settings) {
   simulation.require_between_runs("contact parameters were set");
+  if (simulation.present.begun) bodies.check_enabled(a, b, settings);
   simulation.scene.contacts.add(a, b, settings);
   if (!simulation.present.begun) return;
   discontinuities.restart_future();

@@ -49,6 +49,31 @@
 (test-assert "a ball bounces off the ground" (> (fall #f) 0.5))
 (test-assert "unless collisions are disabled" (close? (fall #t) -2.905 1e-12))
 
+;; Two that passed through each other collide again: not while one is within the other.
+(in-world ()
+  (let ((one (add-body! #:name "one" #:shape (sphere 0.5) #:position #(0 0 10) #:velocity #(1 0 0)))
+        (two (add-body! #:name "two" #:shape (sphere 0.5) #:position #(0.5 0 10) #:velocity #(1 0 0))))
+    (disable-collisions! one two)
+    (run! #:until 0.1)
+    (test-message "who overlap cannot begin to collide"
+      "one and two overlap by 0.5 m at 0.1 s, so they cannot collide from now on; expected .* move one"
+      (enable-collisions! one two))
+    (test-equal "and still pass" #f (third (contact-parameters one two)))
+    (enable-collisions! one 'rubber)
+    (set! (position two) #(5 0 10))
+    (enable-collisions! one two)
+    (test-equal "once they are apart they may" #t (third (contact-parameters one two)))))
+
+;; What rests lies as deep as its weight presses it.
+(in-world ()
+  (let ((floor (ground)) (box (add-body! #:shape (box 0.2 0.2 0.2) #:position #(0 0 0.11))))
+    (run! #:until 1)
+    (disable-collisions! box floor)
+    (enable-collisions! box floor)
+    (run! #:until 2)
+    (test-assert "off and on again at rest changes nothing"
+      (close? (vector-ref (position box) 2) 0.1 1e-4))))
+
 ;; ---- contacts at present ----
 
 (in-world ()
