@@ -18,6 +18,7 @@ struct Push {
   Vec3 force = Vec3::Zero();   // on it, world, N
   Vec3 point = Vec3::Zero();
   double depth = 0;  // m
+  double side = 0;   // N: of all forces on the body within 60 degrees of this one
 };
 
 // Of its springs, on the other body, N.  A body in a corner with friction is held by forces that
@@ -34,11 +35,17 @@ Vec3 spring_force_of(const NewContact& c, const Quat& reference) {
   return load * c.normal + (most > cone ? cone / most : 1) * pull;
 }
 
-// The cosine of the angle between them; 0 where they are not of like size.
-double alike(const Push& x, const Push& y) {
-  const double one = x.force.norm(), two = y.force.norm();
-  if (std::min(one, two) < answer::squeezed_force_share * std::max(one, two)) return 0;
-  return x.force.dot(y.force) / (one * two);
+// The cosine of the angle between them; 0 where there is no force.
+double cosine(const Push& x, const Push& y) {
+  const double sizes = x.force.norm() * y.force.norm();
+  return sizes > 0 ? x.force.dot(y.force) / sizes : 0;
+}
+
+// More than 120 degrees apart, and neither side is small beside the other, however many points it
+// has.
+bool oppose(const Push& x, const Push& y) {
+  return cosine(x, y) < -0.5 &&
+         std::min(x.side, y.side) >= answer::squeezed_force_share * std::max(x.side, y.side);
 }
 
 // Two that push a body against each other.
@@ -67,6 +74,12 @@ class Pushes {
       });
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Push& x, const Push& y) { return x.body < y.body; });
+    for (Push& push : all_) {
+      Vec3 sum = Vec3::Zero();
+      for (const Push& beside : on(push.body))
+        if (cosine(push, beside) > 0.5) sum += beside.force;
+      push.side = sum.norm();
+    }
   }
   bool empty() const { return all_.empty(); }
   std::span<const Push> on(BodyId body) const {
@@ -83,7 +96,7 @@ class Pushes {
     for (std::size_t i = 0; i < pushes.size(); ++i)
       for (std::size_t j = i + 1; j < pushes.size(); ++j) {
         const Squeeze found{&pushes[i], &pushes[j]};
-        if (found.depth() < least || alike(pushes[i], pushes[j]) > -0.5) continue;
+        if (found.depth() < least || !oppose(pushes[i], pushes[j])) continue;
         if (deepest && found.depth() <= deepest.depth()) continue;
         if (held && !(is_held(pushes[i]) && is_held(pushes[j]))) continue;
         deepest = found;
@@ -112,7 +125,7 @@ class Pushes {
       if (std::find(seen.begin(), seen.end(), last.by) != seen.end()) continue;
       seen.push_back(last.by);
       for (const Push& behind : on(last.by))
-        if (alike(behind, last) > 0.5) open.push_back(&behind);
+        if (cosine(behind, last) > 0.5) open.push_back(&behind);
     }
     return false;
   }

@@ -142,6 +142,33 @@ TEST(SqueezeTold, of_a_ball_that_friction_holds_in_a_wedge) {
   }
 }
 
+// However many points hold the other side.
+TEST(SqueezeTold, of_balls_between_a_plate_and_the_floor_each) {
+  for (const int side : {2, 5}) {
+    World world;
+    set_contact_for_all(world, 0, 0.5);
+    add_wall(world, Vec3::UnitZ(), 0);
+    for (int i = 0; i < side; ++i)
+      for (int j = 0; j < side; ++j)
+        add_ball(world, 0.5 * width, {0.25 * i, 0.25 * j, 0.5 * width}, Vec3::Zero());
+    const double half = 0.125 * (side - 1);
+    add_box(world, {0.25 * side, 0.25 * side, 0.1}, {half, half, width + 0.05});
+    BodyDef ram;
+    ram.shape = make_box({0.1, 0.1, 0.2});
+    const Vec3 top(half, half, width + 0.1 + 0.1);
+    ram.motion = make_keyframes(
+        {{0, top + Vec3(0, 0, 0.001), {}}, {1, top - Vec3(0, 0, 0.12 * width), {}}}, false);
+    world.add_body(ram);
+    std::vector<BodyId> bodies;
+    for (const Told& one : record(world, 1)) bodies.push_back(one.body);
+    std::sort(bodies.begin(), bodies.end());
+    const auto balls = static_cast<std::size_t>(side * side);
+    for (BodyId ball = 1; ball <= balls; ++ball)
+      EXPECT_TRUE(std::binary_search(bodies.begin(), bodies.end(), ball))
+          << ball << " of " << balls;
+  }
+}
+
 TEST(SqueezeTold, the_same_whatever_the_schedule) {
   const auto told = [](const Schedule& schedule) {
     World world;
