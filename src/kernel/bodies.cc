@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "base/hash.h"
+#include "dynamics/contact-scales.h"
 #include "groups/birth-group.h"
 #include "integrate/standing.h"
 #include "kernel/active-pairs.h"
@@ -187,7 +188,8 @@ Separation Bodies::separation_of(const Body& a, const Body& b) const {
 }
 
 // What collides rests deeper in each other than what may be placed, so only pairs that did not
-// collide until now are looked at, and they may be as deep as what rests.
+// collide until now are looked at, and they may be as deep as where their springs are hardest,
+// twenty times as deep as the lighter one's weight presses it.
 void Bodies::check_enabled(const ContactSide& a, const ContactSide& b,
                            const ContactSettings& settings) {
   const Scene& scene = sim_.scene;
@@ -219,7 +221,8 @@ void Bodies::check_enabled(const ContactSide& a, const ContactSide& b,
       if (!scene.contacts.between(rules, one->id(), other->id()).collide) continue;
       if (!one->unbounded && !other->unbounded && !box(*one).overlaps(box(*other))) continue;
       const double depth = -separation_of(*one, *other).distance;
-      const double allowed = answer::enabled_depth * std::min(one->least_width, other->least_width);
+      const ContactConstants law = contact_scales(scene, *one, *other, {}).law;
+      const double allowed = answer::hardest_ratio * law.hardening;
       if (depth > allowed)
         throw UserError(one->info.name + " and " + other->info.name + " overlap by " + show(depth) +
                         " m at " + show(now) + " s, so they cannot collide from now on; expected " +
