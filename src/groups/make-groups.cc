@@ -266,6 +266,16 @@ void set_check_times(const Regrouping& work, const Group* before, double border_
     group.next_check = std::min(group.next_check, before->next_check_at(now));
 }
 
+// Springs and holds to whatever it is.
+std::vector<const Bond*> ties_of(const ForcesPtr& forces) {
+  std::vector<const Bond*> ties;
+  for (const BondPtr& bond : bonds_of(forces)) ties.push_back(bond.get());
+  if (forces)
+    for (const ForceLawPtr& law : forces->laws())
+      if (law->bond()) ties.push_back(law->bond());
+  return ties;
+}
+
 // Whether a callback set a velocity or tied two: what is stiff gives way to that within a small
 // part of a step, and steps that pass over it end right but are wrong in their middles.
 bool is_jerked(const Regrouping& work, const Group& group) {
@@ -273,9 +283,8 @@ bool is_jerked(const Regrouping& work, const Group& group) {
     const Successor& successor = *work.successor_of(member);
     const State& was = work.before.state(member);
     const PoseTwist before = was.trajectory().at(work.now());
-    const auto &tied = bonds_of(successor.data.forces), &tied_before = bonds_of(was.forces);
     return successor.point.v != before.v || successor.point.w != before.w ||
-           !std::equal(tied.begin(), tied.end(), tied_before.begin(), tied_before.end());
+           ties_of(successor.data.forces) != ties_of(was.forces);
   });
 }
 
