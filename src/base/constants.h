@@ -69,9 +69,12 @@ inline constexpr double joint_step_share = 0.05;
 // Of a step of bodies that springs alone tie together: ten swings of two err by about the accuracy.
 inline constexpr double spring_step_share = 0.1;
 // They are followed by an explicit method while the other's steps would be shorter than this,
-// radians of the fastest swing, and damping is slower than so many times that; each step in no more
-// than so many cubics.
+// radians of the fastest swing there is, and damping is slower than so many times that; asked again
+// after so many steps.  Each step in no more than so many cubics, and with this share of the error:
+// it is fifty times as long.
 inline constexpr double explicit_swing = 1, most_explicit_damping = 3, most_parts = 1000;
+inline constexpr double explicit_share = 0.2;
+inline constexpr std::uint64_t steps_between_choices = 16;
 // Looser steps than this are made by a method of order 5.
 inline constexpr double loose_steps = 1e-5;
 // Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 1 mm/s
@@ -90,8 +93,6 @@ inline constexpr double depth_slack = 1e-12;
 inline constexpr double stepped_slack = 1e-10;
 // Bodies may overlap by this share of the smaller size when they come into the world: touching.
 inline constexpr double start_depth = 1e-6;
-// And by this where they begin to collide: what rests is four times less deep.
-inline constexpr double enabled_depth = 1e-3;
 // What is placed touching starts loaded in groups of at most so many members: to find the forces
 // takes about as long as a hundred steps of theirs.
 inline constexpr std::size_t most_placed = 4096;

@@ -37,11 +37,13 @@ void BondEquations::slope(double time, const double* y, const double* chart, dou
 }
 
 void BondEquations::tolerances(const double*, const double*, double* allowed) const {
+  const double far = answer::explicit_share * start_.position_tolerance;
+  const double fast = answer::explicit_share * start_.velocity_tolerance;
   for (const GroupMember& m : start_.members) {
-    std::fill_n(allowed, 3, start_.position_tolerance);
-    std::fill_n(allowed + theta_at, 3, start_.position_tolerance / m.radius);
-    std::fill_n(allowed + v_at, 3, start_.velocity_tolerance);
-    std::fill_n(allowed + L_at, 3, start_.velocity_tolerance * m.moments.minCoeff() / m.radius);
+    std::fill_n(allowed, 3, far);
+    std::fill_n(allowed + theta_at, 3, far / m.radius);
+    std::fill_n(allowed + v_at, 3, fast);
+    std::fill_n(allowed + L_at, 3, fast * m.moments.minCoeff() / m.radius);
     allowed += 12;
   }
 }
@@ -64,49 +66,85 @@ void BondEquations::recentre(double* y, double* slope, double* chart) const {
 }
 
 bool is_tied_by_springs(const GroupStart& start, const GroupSystem& system) {
-  const auto holds = [](const GroupBond& tied) { return tied.bond->holds; };
+  const auto holds = [](const Bond* bond) { return bond && bond->holds; };
+  for (const GroupBond& tied : start.bonds)
+    if (holds(tied.bond.get())) return false;
+  for (const GroupMember& m : start.members)
+    if (m.forces)
+      for (const ForceLawPtr& law : m.forces->laws())
+        if (holds(law->bond())) return false;
   return !start.bonds.empty() && start.contacts.empty() && start.trees.empty() &&
-         !system.moved_from_outside() &&
-         std::none_of(start.bonds.begin(), start.bonds.end(), holds);
+         !system.moved_from_outside();
 }
 
-// With the fastest swing omega RODAS4 takes steps of
-//   h omega = (C tolerance/V)^(1/4)
-// through one whose velocity has the amplitude V (first_step of group-stepper.cc).  V follows from
-// how the ends of springs accelerate against each other and how that changes: what hangs still, or
-// falls, does neither.
+namespace {
+
+// The length of a spring, or what it is long as a vector where it has no rest length: how fast its
+// change changes, m/s^2.
+class Stretching {
+ public:
+  Stretching(const GroupSystem& system, const double* y, const double* slope)
+      : system_(system), y_(y), slope_(slope) {}
+
+  // l'' = u.(a_b - a_a) + |v_across|^2/l: nothing where two turn about each other, or fall.
+  Vec3 operator()(const GroupBond& tied) const {
+    const Point a = point(tied.a, tied.bond->arm_a), b = point(tied.b, tied.bond->arm_b);
+    const Vec3 d = b.x - a.x, change = b.a - a.a;
+    const double l = d.norm();
+    if (tied.bond->spring.rest == 0 || l == 0) return change;
+    const Vec3 u = d / l, v = b.v - a.v;
+    return Vec3::UnitX() * (u.dot(change) + (v - u.dot(v) * u).squaredNorm() / l);
+  }
+
+ private:
+  struct Point {
+    Vec3 x, v, a;
+  };
+  Point point(int body, const Vec3& arm) const {
+    const double *y = y_ + 12 * body, *slope = slope_ + 12 * body;
+    const Quat q = short_rotation(vec(y + theta_at)) * system_.attitude(body);
+    const Vec3 r = q * arm, L = vec(y + L_at), w = system_.angular_velocity(body, q, L);
+    const Vec3 turning = system_.angular_velocity(body, q, vec(slope + L_at) - w.cross(L));
+    return {vec(y) + r, vec(y + v_at) + w.cross(r),
+            vec(slope + v_at) + turning.cross(r) + w.cross(w.cross(r))};
+  }
+
+  const GroupSystem& system_;
+  const double *y_, *slope_;
+};
+
+}  // namespace
+
+// RODAS4 takes steps of
+//   h = (C tolerance/V)^(1/4)/omega
+// through a swing of frequency omega whose velocity has the amplitude V (first_step of
+// group-stepper.cc), the explicit method steps of about a radian of the fastest swing there is,
+// whether anything swings so or not.  V follows from l'' and how it changes: one of the two is
+// large at any phase.
 bool swings_widely(const GroupStart& start, const GroupSystem& system, GroupScratch& scratch,
-                   const double* y, const double* slope, double* other) {
+                   double time, const double* y, const double* slope, double* other) {
   const GroupSystem::SpringRates rates = system.spring_rates();
-  const double omega = std::sqrt(rates.squared_frequency);
-  if (rates.damping > answer::most_explicit_damping * omega) return false;
-  if (!(omega > 0)) return true;
+  const double fastest = std::sqrt(rates.squared_frequency);
+  if (!(fastest > 0) || rates.damping > answer::most_explicit_damping * fastest) return false;
 
   // slopes a part of a swing later
-  const double h = 1e-3 / omega;
+  const double h = 1e-3 / fastest;
   std::vector<double> later(system.size());
   for (std::size_t e = 0; e < system.size(); ++e) later[e] = y[e] + h * slope[e];
-  system.set_outside(start.time, scratch.bodies);
-  system.evaluate(start.time, later.data(), scratch, other);
-  double widest = 0;
-  const auto note = [&](const Vec3& now, const Vec3& then) {
-    widest = std::max({widest, now.norm() / omega, (then - now).norm() / (h * omega * omega)});
-  };
-  const auto acceleration = [&](const double* of, int body, const Vec3& arm) -> Vec3 {
-    const GroupMember& m = start.members[index(body)];
-    const Vec3 turning = vec(of + 12 * body + L_at) / m.moments.minCoeff();
-    return vec(of + 12 * body + v_at) + turning.cross(m.q * arm);
-  };
-  for (const auto& [a, b, bond] : start.bonds)
-    note(acceleration(slope, b, bond->arm_b) - acceleration(slope, a, bond->arm_a),
-         acceleration(other, b, bond->arm_b) - acceleration(other, a, bond->arm_a));
-  for (int i = 0; i < system.members(); ++i) {
-    const GroupMember& m = start.members[index(i)];
-    const Vec3 arm = Vec3::UnitX() * m.radius;
-    if (m.forces) note(acceleration(slope, i, arm), acceleration(other, i, arm));
+  system.set_outside(time, scratch.bodies);
+  system.evaluate(time, later.data(), scratch, other);
+  const Stretching now(system, y, slope), then(system, later.data(), other);
+  double shortest = never;
+  for (std::size_t i = 0; i < start.bonds.size(); ++i) {
+    const double squared = system.squared_frequency_of(static_cast<int>(i));
+    if (!(squared > 0)) continue;
+    const double omega = std::sqrt(squared);
+    const Vec3 first = now(start.bonds[i]), change = then(start.bonds[i]) - first;
+    const double widest = std::max(first.norm() / omega, change.norm() / (h * squared));
+    const double fourth = answer::first_step_error * start.velocity_tolerance / widest;
+    shortest = std::min(shortest, std::sqrt(std::sqrt(fourth)) / omega);
   }
-  const double fourth = answer::first_step_error * start.velocity_tolerance / widest;
-  return std::sqrt(std::sqrt(fourth)) < answer::explicit_swing;
+  return shortest * fastest < answer::explicit_swing;
 }
 
 }  // namespace tw

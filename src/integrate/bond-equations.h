@@ -35,9 +35,9 @@ class BondEquations final : public Equations {
 bool is_tied_by_springs(const GroupStart& start, const GroupSystem& system);
 
 // Whether such a group swings so widely on its springs, and they damp so little, that an explicit
-// method takes longer steps than RODAS4.  `y`: the state at the start, `slope` its rate there, both
-// as linearised last; `other` is overwritten.
+// method takes longer steps than RODAS4.  `y`: a state at `time`, `slope` its rate there, both as
+// linearised last; `other` is overwritten.
 bool swings_widely(const GroupStart& start, const GroupSystem& system, GroupScratch& scratch,
-                   const double* y, const double* slope, double* other);
+                   double time, const double* y, const double* slope, double* other);
 
 }  // namespace tw

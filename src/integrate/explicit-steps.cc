@@ -35,26 +35,38 @@ void GroupStepper::start_alone() {
   }
 }
 
-// Bodies on springs by one where they swing widely.
+// Whether bodies on springs swing widely at the last node; their state there is in the scratch.
+bool GroupStepper::swings_here() {
+  GroupScratch& s = system_.scratch();
+  const double time = record_.reached();
+  system_.set_outside(time, s.bodies);
+  record_.load_last(system_, s.state.data());
+  system_.linearise(time, s.state.data(), s, s.slope.data());
+  counts_.evaluations += 2;
+  return swings_widely(start_, system_, s, time, s.state.data(), s.slope.data(), s.trial.data());
+}
+
+// Bodies on springs by an explicit method where they swing widely.
 void GroupStepper::choose_method() {
   chosen_ = true;
-  if (explicit_ || !is_tied_by_springs(start_, system_)) return;
-  GroupScratch& s = system_.scratch();
-  system_.set_outside(start_.time, s.bodies);
-  record_.load_last(system_, s.state.data());
-  system_.linearise(start_.time, s.state.data(), s, s.slope.data());
-  counts_.evaluations += 2;
-  if (!swings_widely(start_, system_, s, s.state.data(), s.slope.data(), s.trial.data())) return;
-  std::vector<double> y(s.state.begin(), s.state.begin() + static_cast<long>(system_.size()));
-  std::vector<double> chart;
+  if (explicit_ || !is_tied_by_springs(start_, system_) || !swings_here()) return;
+  const double* at_start = system_.scratch().state.data();
+  std::vector<double> y(at_start, at_start + system_.size()), chart;
   for (const GroupMember& m : start_.members)
     chart.insert(chart.end(), {m.q.w(), m.q.x(), m.q.y(), m.q.z()});
   explicit_ = std::make_unique<Solution>(dop853, std::make_unique<BondEquations>(start_, system_),
                                          start_.time, std::move(y), std::move(chart));
 }
 
-bool GroupStepper::extend_explicit(double from) {
-  if (explicit_->extend(from) && explicit_->reached() > from) return true;
+// Once they swing no longer, RODAS4 goes on from the last node.
+void GroupStepper::leave_explicit() {
+  counts_ = counts();
+  explicit_.reset();
+  next_step_ = 0;
+}
+
+bool GroupStepper::extend_explicit(double from, double latest) {
+  if (explicit_->extend(from, latest) && explicit_->reached() > from) return true;
   failure_ = explicit_->failure() ? explicit_->failure() : "no step";
   return false;
 }
@@ -120,13 +132,14 @@ int GroupStepper::parts_of(const DenseStep& step, double from, double to) const 
   return static_cast<int>(std::clamp(parts, 1.0, answer::most_parts));
 }
 
-// Of bodies on springs: one step, the last one as far as the end.
+// Of bodies on springs: one step.  The last one ends where the arc does: within a step polynomials
+// err by more than at its end.
 bool GroupStepper::spring_step() {
   if (record_.numbers() > guard::most_arc_numbers) return failure_ = "too many steps", false;
   const double from = record_.reached();
-  if (!extend_explicit(from)) return false;
+  if (!extend_explicit(from, start_.end)) return false;
   const DenseStep& step = explicit_->at(from);
-  const double to = std::min(explicit_->reached(), start_.end);
+  const double to = explicit_->reached();
   const int parts = parts_of(step, from, to);
   GroupScratch& s = system_.scratch();
   for (int i = 1; i <= parts; ++i) {
@@ -153,6 +166,8 @@ bool GroupStepper::spring_step() {
     record_.append(t1, system_, y1, d3, d4);
   }
   next_step_ = 0;
+  if (explicit_->counts().steps % answer::steps_between_choices == 0 && !swings_here())
+    leave_explicit();
   return true;
 }
 

@@ -1,5 +1,6 @@
 // The motion of a contact group between two discontinuities: bodies coupled by contact forces,
-// integrated implicitly, with dense output.
+// integrated implicitly, with dense output.  (What swings widely on springs alone, and a multibody
+// that touches nothing, is integrated explicitly: bond-equations.h, joint-equations.h.)
 //
 // Unknowns per body: x (centre of mass), theta (rotation vector from the step's start, R =
 // exp(theta) R0), v, L (world angular momentum, so that no gyroscopic term appears); per anchored

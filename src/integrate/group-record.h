@@ -2,8 +2,8 @@
 //
 // Per node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12), per pack
 // that resists rolling the bends (12).  Per step and member theta and theta' at its end (6) and D3,
-// D4 of rodas4.h for v, L (12), per row of stretches or bends D3, D4 (24), and where some contact
-// is not of the plane kind the normals at the step's start (12).
+// D4 for v, L (12; of rodas4.h or explicit-steps.cc), per row of stretches or bends D3, D4 (24),
+// and where some contact is not of the plane kind the normals at the step's start (12).
 //
 // Positions and rotation vectors are the cubics with the nodes' values and rates: order 3 as the
 // dense output of the method, but with continuous rates, so that pose rates and bounds on their

@@ -177,16 +177,24 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
   return largest;
 }
 
+// |dF/d.|/m + |dT/d.|/I
+double GroupSystem::rate_of(int member, const Mat6& derivative) const {
+  const Member& m = member_[index(member)];
+  return derivative.topLeftCorner<3, 3>().norm() * m.inverse_mass +
+         derivative.bottomRightCorner<3, 3>().norm() * m.inverse_moments.maxCoeff();
+}
+
+double GroupSystem::squared_frequency_of(int bond) const {
+  const HeldPair& pair = bonds_[index(bond)];
+  return rate_of(pair.given.a, pair.derivative.of[0][0].by_pose) +
+         rate_of(pair.given.b, pair.derivative.of[1][1].by_pose);
+}
+
 GroupSystem::SpringRates GroupSystem::spring_rates() const {
   std::vector<SpringRates> total(index(members_));
   const auto add = [&](int member, const WrenchDerivative& by) {
-    const Member& m = member_[index(member)];
-    const auto rate = [&](const Mat6& of) {
-      return of.topLeftCorner<3, 3>().norm() * m.inverse_mass +
-             of.bottomRightCorner<3, 3>().norm() * m.inverse_moments.maxCoeff();
-    };
-    total[index(member)].squared_frequency += rate(by.by_pose);
-    total[index(member)].damping += rate(by.by_twist);
+    total[index(member)].squared_frequency += rate_of(member, by.by_pose);
+    total[index(member)].damping += rate_of(member, by.by_twist);
   };
   for (const HeldPair& pair : bonds_) {
     add(pair.given.a, pair.derivative.of[0][0]);

@@ -53,11 +53,12 @@ GroupStepper::GroupStepper(const GroupStart& start)
 
 GroupCounts GroupStepper::counts() const {
   GroupCounts counts = counts_;
-  if (explicit_) {
-    const Solution::Counts& made = explicit_->counts();
-    return {made.steps, made.rejected, 0, counts.evaluations + made.evaluations};
-  }
   counts.factorizations = system_.factorizations();
+  if (!explicit_) return counts;
+  const Solution::Counts& made = explicit_->counts();
+  counts.steps += made.steps;
+  counts.rejected += made.rejected;
+  counts.evaluations += made.evaluations;
   return counts;
 }
 

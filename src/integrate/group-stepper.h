@@ -38,8 +38,10 @@ class GroupStepper {
  private:
   bool implicit_step();
   void start_alone();
+  bool swings_here();
   void choose_method();
-  bool extend_explicit(double from);
+  void leave_explicit();
+  bool extend_explicit(double from, double latest = never);
   bool tree_step();
   int parts_of(const DenseStep& step, double from, double to) const;
   bool spring_step();

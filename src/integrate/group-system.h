@@ -88,6 +88,8 @@ class GroupSystem {
     double squared_frequency = 0, damping = 0;
   };
   SpringRates spring_rates() const;
+  // The same frequency of one bond, of both its bodies.
+  double squared_frequency_of(int bond) const;
   // For a step h, sigma = 1/(gamma h).  False: singular.
   bool factor(double sigma, GroupScratch& scratch);
   // In place: right side to stage.  Leaves the changes of x, theta, v, w in the scratch.  False:
@@ -156,6 +158,7 @@ class GroupSystem {
     void tidy();
   };
   void make_coupled();
+  double rate_of(int member, const Mat6& derivative) const;
   void set_body_stage(Member& member, double sigma) const;
   bool factor_coupled(GroupScratch& scratch);
   bool solve_coupled(GroupScratch& scratch, double* stage);

@@ -35,8 +35,8 @@ Solution::Solution(const RungeKutta& method, std::unique_ptr<const Equations> eq
             "the start of a solution has another size than its equations");
 }
 
-bool Solution::extend(double time) {
-  while (!(time < reached_) && !failure_) step();
+bool Solution::extend(double time, double latest) {
+  while (!(time < reached_) && !failure_) step(latest);
   return !failure_ || time <= reached_;
 }
 

@@ -34,8 +34,9 @@ class Solution {
   Solution(const RungeKutta& method, std::unique_ptr<const Equations> equations, double start,
            std::vector<double> y, std::vector<double> chart = {});
 
-  // Makes steps until one ends beyond `time`.  False: it stopped before; see failure().
-  bool extend(double time);
+  // Makes steps until one ends beyond `time`, none beyond `latest` > time.  False: it stopped
+  // before; see failure().
+  bool extend(double time, double latest = never);
   // Ends a step at `time` >= start, as who stands there and knows no further does: steps that
   // reach beyond are forgotten, and the next starts there.  What it gives depends on who asked.
   void halt(double time);

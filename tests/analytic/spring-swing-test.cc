@@ -28,6 +28,13 @@ void tie(GroupStart& start, int a, int b, const Vec3& arm_a, const Vec3& arm_b,
   start.bonds.push_back({a, b, std::make_shared<Bond>(bond)});
 }
 
+// A contact that is never made lets RODAS4 go through the same motion.
+GroupStart by_rodas4(GroupStart start) {
+  add_ball_contact(start, -1, 0, 0.1, constants(1, 0.2, 0.5));
+  start.contacts.back().point_a = Vec3(0, 0, -1000);
+  return start;
+}
+
 // Two balls of 1 and 3 kg on a spring of rest length 0 that swing 0.1 m against each other while
 // both fall.
 GroupStart two_balls(double stiffness, double damping, double end) {
@@ -77,8 +84,7 @@ TEST(SpringSwing, stays_within_its_bounds_and_is_the_same_in_pieces) {
   EXPECT_EQ(whole.counts().factorizations, 0u);
 }
 
-// A contact that is never made lets RODAS4 go through the same motion: a thrown chain of spinning
-// boxes, held at their corners.
+// A thrown chain of spinning boxes, held at their corners.
 TEST(SpringSwing, of_spinning_boxes_is_what_rodas4_makes_of_it) {
   GroupStart start = floating(0.2);
   start.position_tolerance = 1e-8;
@@ -94,11 +100,7 @@ TEST(SpringSwing, of_spinning_boxes_is_what_rodas4_makes_of_it) {
     if (i > 0)
       tie(start, i - 1, i, {0.05, 0.04, 0}, {-0.05, 0, 0.03}, {2000, 0.5, i == 2 ? 0.0 : 0.15});
   }
-  GroupStart by_rodas = start;
-  const ContactConstants law = constants(1, 0.2, 0.5);
-  add_ball_contact(by_rodas, -1, 0, 0.1, law);
-  by_rodas.contacts.back().point_a = Vec3(0, 0, -1000);
-  CompleteArc ours(start), theirs(by_rodas);
+  CompleteArc ours(start), theirs(by_rodas4(start));
   EXPECT_EQ(ours.counts().factorizations, 0u);
   EXPECT_GT(theirs.counts().factorizations, 0u);
   EXPECT_LT(3 * ours.counts().steps, theirs.counts().steps);
@@ -121,6 +123,31 @@ TEST(SpringSwing, what_hardly_swings_takes_long_steps) {
     EXPECT_GT(arc.counts().factorizations, 0u) << damping;
     EXPECT_LT(arc.counts().steps, 200u) << damping;
   }
+}
+
+// A stiff strut that nothing makes swing, beside a spring that swings: explicit steps would be as
+// short as the strut's own swing, RODAS4's are not.
+TEST(SpringSwing, beside_a_stiff_strut_at_rest_is_left_to_rodas4) {
+  GroupStart start = two_balls(100, 0, 1);
+  start.position_tolerance = 1e-7;
+  start.velocity_tolerance = 1e-6;
+  start.members.push_back(ball(1, 0.02, {-0.3, 0, 0}, {0, 0, -g}));
+  tie(start, 0, 2, Vec3::Zero(), Vec3::Zero(), {1e8, 4000, 0.3});
+  CompleteArc ours(start), theirs(by_rodas4(start));
+  EXPECT_GT(ours.counts().factorizations, 0u);
+  EXPECT_LT(ours.counts().steps, theirs.counts().steps + 100);
+  EXPECT_LT(ours.counts().steps, 1000u);
+}
+
+// What is damped within the arc is left to the other method from there on.
+TEST(SpringSwing, that_dies_away_goes_on_in_long_steps) {
+  const double stiffness = 67500;
+  CompleteArc arc(two_balls(stiffness, 100, 20));
+  EXPECT_GT(arc.counts().factorizations, 0u);
+  EXPECT_LT(arc.counts().steps, 600u);
+  const GroupSample a = arc.evaluate(0, 20), b = arc.evaluate(1, 20);
+  EXPECT_NEAR(b.x.x() - a.x.x(), 0, 1e-7);
+  EXPECT_NEAR(0.25 * a.x.z() + 0.75 * b.x.z(), -0.5 * g * 400, 1e-7);
 }
 
 }  // namespace

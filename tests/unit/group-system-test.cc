@@ -49,7 +49,7 @@ class Slide : public Trajectory {
   }
 };
 
-enum class Regime { sticking, slipping, apart, deep };  // deep: where it hardens no more
+enum class Regime { sticking, slipping, apart, deep };  // deep: where it hardens, or no more
 
 struct Case {
   ContactFeature feature;
