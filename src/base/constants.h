@@ -71,7 +71,7 @@ inline constexpr double spring_step_share = 0.1;
 // They are followed by an explicit method while the other's steps would be shorter than this,
 // radians of the fastest swing there is, and damping is slower than so many times that; asked again
 // after so many steps.  Each step in no more than so many cubics, and with this share of the error:
-// it is fifty times as long.
+// then what is read errs by no more than by the other's.
 inline constexpr double explicit_swing = 1, most_explicit_damping = 3, most_parts = 1000;
 inline constexpr double explicit_share = 0.2;
 inline constexpr std::uint64_t steps_between_choices = 16;
@@ -99,8 +99,8 @@ inline constexpr std::size_t most_placed = 4096;
 // A pair that carries less in their balance than this share of the lighter one's weight carries
 // nothing.
 inline constexpr double carried_share = 1e-6;
-// A body is squeezed from this overlap on, over its least width: heaps stay below a tenth of it. Of
-// the two forces on it the lesser one is at least this share of the other.
+// A body is squeezed from this overlap on, over its least width: heaps stay below a tenth of it.
+// The lesser of the forces on its two sides is at least this share of the other.
 inline constexpr double squeezed_share = 0.02, squeezed_force_share = 0.1;
 
 // ---- motion by a procedure ----

@@ -284,7 +284,8 @@ bool is_jerked(const Regrouping& work, const Group& group) {
     const State& was = work.before.state(member);
     const PoseTwist before = was.trajectory().at(work.now());
     return successor.point.v != before.v || successor.point.w != before.w ||
-           ties_of(successor.data.forces) != ties_of(was.forces);
+           (successor.data.forces != was.forces &&
+            ties_of(successor.data.forces) != ties_of(was.forces));
   });
 }
 

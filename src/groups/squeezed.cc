@@ -18,7 +18,6 @@ struct Push {
   Vec3 force = Vec3::Zero();   // on it, world, N
   Vec3 point = Vec3::Zero();
   double depth = 0;  // m
-  double side = 0;   // N: of all forces on the body within 60 degrees of this one
 };
 
 // Of its springs, on the other body, N.  A body in a corner with friction is held by forces that
@@ -39,13 +38,6 @@ Vec3 spring_force_of(const NewContact& c, const Quat& reference) {
 double cosine(const Push& x, const Push& y) {
   const double sizes = x.force.norm() * y.force.norm();
   return sizes > 0 ? x.force.dot(y.force) / sizes : 0;
-}
-
-// More than 120 degrees apart, and neither side is small beside the other, however many points it
-// has.
-bool oppose(const Push& x, const Push& y) {
-  return cosine(x, y) < -0.5 &&
-         std::min(x.side, y.side) >= answer::squeezed_force_share * std::max(x.side, y.side);
 }
 
 // Two that push a body against each other.
@@ -74,12 +66,6 @@ class Pushes {
       });
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Push& x, const Push& y) { return x.body < y.body; });
-    for (Push& push : all_) {
-      Vec3 sum = Vec3::Zero();
-      for (const Push& beside : on(push.body))
-        if (cosine(push, beside) > 0.5) sum += beside.force;
-      push.side = sum.norm();
-    }
   }
   bool empty() const { return all_.empty(); }
   std::span<const Push> on(BodyId body) const {
@@ -110,6 +96,20 @@ class Pushes {
   bool is_deep(const NewContact& c) const {
     const double narrower = std::min(width(c.tag.reference), width(c.tag.other));
     return -c.gap >= 0.5 * answer::squeezed_share * narrower;
+  }
+  // Of all forces on the body within 60 degrees of this one, N.
+  double side(const Push& push) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Push& beside : on(push.body))
+      if (cosine(push, beside) > 0.5) sum += beside.force;
+    return sum.norm();
+  }
+  // More than 120 degrees apart, and neither side is small beside the other, however many points it
+  // has.
+  bool oppose(const Push& x, const Push& y) const {
+    if (!(cosine(x, y) < -0.5)) return false;
+    const double one = side(x), two = side(y);
+    return std::min(one, two) >= answer::squeezed_force_share * std::max(one, two);
   }
   void add(const Push& push) {
     if (work_.changes(push.body)) all_.push_back(push);

@@ -17,20 +17,10 @@ namespace {
 
 constexpr int theta_at = 3, v_at = 6, L_at = 9;
 
-Quat chart_attitude(const double* chart) { return Quat(chart[0], chart[1], chart[2], chart[3]); }
-
-void set_chart(const Quat& q, double* chart) {
-  chart[0] = q.w();
-  chart[1] = q.x();
-  chart[2] = q.y();
-  chart[3] = q.z();
-}
-
 }  // namespace
 
 void BondEquations::slope(double time, const double* y, const double* chart, double* slope) const {
-  for (int i = 0; i < system_.members(); ++i)
-    system_.set_attitude(i, chart_attitude(chart + 4 * i));
+  for (int i = 0; i < system_.members(); ++i) system_.set_attitude(i, quat(chart + 4 * i));
   GroupScratch& scratch = system_.scratch();
   system_.set_outside(time, scratch.bodies);
   system_.evaluate(time, y, scratch, slope);
@@ -57,8 +47,8 @@ double BondEquations::longest_step(const double*, const double* slope, const dou
 
 void BondEquations::recentre(double* y, double* slope, double* chart) const {
   for (int i = 0; i < system_.members(); ++i, y += 12, slope += 12, chart += 4) {
-    const Quat q = (short_rotation(vec(y + theta_at)) * chart_attitude(chart)).normalized();
-    set_chart(q, chart);
+    const Quat q = (short_rotation(vec(y + theta_at)) * quat(chart)).normalized();
+    store(q, chart);
     vec(y + theta_at).setZero();
     // theta' = w where theta = 0
     vec(slope + theta_at) = system_.angular_velocity(i, q, vec(y + L_at));

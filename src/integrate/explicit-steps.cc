@@ -51,9 +51,9 @@ void GroupStepper::choose_method() {
   chosen_ = true;
   if (explicit_ || !is_tied_by_springs(start_, system_) || !swings_here()) return;
   const double* at_start = system_.scratch().state.data();
-  std::vector<double> y(at_start, at_start + system_.size()), chart;
-  for (const GroupMember& m : start_.members)
-    chart.insert(chart.end(), {m.q.w(), m.q.x(), m.q.y(), m.q.z()});
+  std::vector<double> y(at_start, at_start + system_.size()), chart(4 * start_.members.size());
+  for (std::size_t i = 0; i < start_.members.size(); ++i)
+    store(start_.members[i].q, chart.data() + 4 * i);
   explicit_ = std::make_unique<Solution>(dop853, std::make_unique<BondEquations>(start_, system_),
                                          start_.time, std::move(y), std::move(chart));
 }
@@ -149,9 +149,7 @@ bool GroupStepper::spring_step() {
     double *y1 = s.trial.data(), *d3 = s.stage[4].data(), *d4 = s.stage[5].data();
     for (int m = 0; m < system_.members(); ++m) {
       const int at = 12 * m;
-      const double* chart = step.chart() + 4 * m;
-      const Quat q =
-          short_rotation(step.vector(at + 3, t1)) * Quat(chart[0], chart[1], chart[2], chart[3]);
+      const Quat q = short_rotation(step.vector(at + 3, t1)) * quat(step.chart() + 4 * m);
       vec(y1 + at) = step.vector(at, t1);
       vec(y1 + at + 3) = turn_between(system_.attitude(m), q);
       // (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) with the rates of both ends

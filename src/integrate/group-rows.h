@@ -21,6 +21,14 @@ TW_LANES void store(const LaneVec& v, double* p) { std::memcpy(p, &v, sizeof v);
 inline Eigen::Map<Vec3> vec(double* p) { return Eigen::Map<Vec3>(p); }
 inline Eigen::Map<const Vec3> vec(const double* p) { return Eigen::Map<const Vec3>(p); }
 
+inline Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
+inline void store(const Quat& q, double* p) {
+  p[0] = q.w();
+  p[1] = q.x();
+  p[2] = q.y();
+  p[3] = q.z();
+}
+
 inline void store_rotation(const Mat3& m, double* R) {
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) R[3 * r + c] = m(r, c);

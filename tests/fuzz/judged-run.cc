@@ -90,7 +90,8 @@ class JudgedRun {
   }
 
   void note_depths(double when) {
-    deep_now_.assign(parts_.size(), false);
+    std::vector<bool> deep_now(parts_.size(), false);
+    std::vector<Overlap> found;
     for (std::size_t a = 0; a < parts_.size(); ++a)
       for (std::size_t b = a + 1; b < parts_.size(); ++b) {
         if (!scene_.bodies[a].dynamic() && !scene_.bodies[b].dynamic()) continue;
@@ -100,20 +101,20 @@ class JudgedRun {
           for (const Part& part_b : parts_[b]) {
             const double share =
                 overlap(part_a, frames_[a], part_b, frames_[b], shallow * width) / width;
-            if (share > 0.5 * depth_bound) deep_now_[a] = deep_now_[b] = true;
+            if (share > 0.5 * depth_bound) deep_now[a] = deep_now[b] = true;
             if (share > depth_bound)
-              deep_.push_back({share, when, a, b});
+              found.push_back({share, when, a, b});
             else
               note_depth({share, when, a, b});
           }
       }
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      deep_since_[i] = deep_now_[i] ? std::min(deep_since_[i], when) : never;
-    for (Overlap& overlap : deep_)
-      if (overlap.when == when) {
-        overlap.since_a = deep_since_[overlap.a];
-        overlap.since_b = deep_since_[overlap.b];
-      }
+      deep_since_[i] = deep_now[i] ? std::min(deep_since_[i], when) : never;
+    for (Overlap& overlap : found) {
+      overlap.since_a = deep_since_[overlap.a];
+      overlap.since_b = deep_since_[overlap.b];
+      deep_.push_back(overlap);
+    }
     settle_depths(when);
   }
 
@@ -212,7 +213,7 @@ class JudgedRun {
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
   std::vector<Frame> frames_;
-  std::vector<bool> over_rim_, deep_now_;
+  std::vector<bool> over_rim_;
   std::vector<std::vector<double>> told_;  // of each body, s: that it is squeezed
   std::vector<double> deep_since_;         // of each body, s
   std::vector<Overlap> deep_;              // of who may be squeezed

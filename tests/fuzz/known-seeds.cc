@@ -66,8 +66,8 @@ const MendedSeed mended[] = {
      "a ball jammed between drum and end wall hung on friction as soft as for its weight"},
     {"drum", 6080,
      "a ball that friction jams where its normals are not opposite was not told squeezed"},
-    {"bonds", 22, "bodies swung on stiff springs by 500 implicit steps a swing"},
-    {"called", 16053, "a callback turned a held body back within a step fifty times too long"},
+    {"bonds", 22, "bodies swung on stiff springs by the implicit method"},
+    {"called", 16053, "a callback turned a held body back within a step that was far too long"},
 };
 
 }  // namespace

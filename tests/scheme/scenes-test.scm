@@ -147,6 +147,13 @@
     (every (lambda (k) (< (speed (format #f "ball-~a" k)) 1e-3)) (iota 4))))
 
 (in-world ()
+  (load-scene-named "gallery/newtons-cradle")
+  (scene #:accuracy 1e-8)
+  (run! #:until 0.6)
+  (test-assert "at a finer accuracy they stop as much better"
+    (every (lambda (k) (< (speed (format #f "ball-~a" k)) 1e-5)) (iota 4))))
+
+(in-world ()
   (load-scene-named "gallery/slope")
   (let ((start (at "sticks" 0)))
     (run! #:until 2)
