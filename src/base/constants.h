@@ -175,6 +175,10 @@ inline constexpr double contact_margin = 0.1;
 // to this times a power of two, s, so that the checks of all groups meet.
 inline constexpr double most_travel = 0.05, finest_check_times = 0.0175, check_unit = 1.0 / 480;
 inline constexpr int most_halvings = 5;
+// A check finds a contact as foreseen whose gap differs by at most this share of the static depth
+// from that which was followed, and that is at most this share of its size, or as much of a radian,
+// elsewhere.
+inline constexpr double foreseen_gap = 1e-3, foreseen_way = 1e-4;
 // Of what is more than this share^-2 times as wide as thick that size is this share of the
 // geometric mean of both.  (A coin of 1:150 had five times as many checks, and no smaller errors.)
 inline constexpr double thin_check_share = 0.5;

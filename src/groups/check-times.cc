@@ -28,7 +28,8 @@ double check_size(const Body& body) {
 
 }  // namespace
 
-double check_interval(const Regrouping& work, const std::vector<ProcessId>& members) {
+double check_interval(const Regrouping& work, const std::vector<ProcessId>& members,
+                      int doublings) {
   const double gravity = work.scene().gravity_scale();
   const double rate = work.scene().options.group_check_rate;
   const double unit = rate > 0 ? 1 / rate : answer::check_unit;
@@ -40,8 +41,9 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
     const double speed = body.surface_speed();
     const double root = std::sqrt(speed * speed + 2 * gravity * distance);
     const double finest = finest_check(work.scene(), *body.body);
-    interval = std::min(interval, std::clamp(on_lattice(unit, 2 * distance / (speed + root)),
-                                             finest, std::ldexp(finest, answer::most_halvings)));
+    const double asked = on_lattice(unit, 2 * distance / (speed + root));
+    interval = std::min(interval, std::clamp(std::ldexp(asked, doublings), finest,
+                                             std::ldexp(finest, answer::most_halvings)));
   }
   return interval;
 }

@@ -17,8 +17,10 @@
 
 namespace tw {
 
-// From now to the next check of a group of these, s: on the grid of checks.
-double check_interval(const Regrouping& work, const std::vector<ProcessId>& members);
+// From now to the next check of a group of these, s: on the grid of checks.  `doublings`: of what
+// their motion asks for, for a group that was as foreseen so many times in a row.
+double check_interval(const Regrouping& work, const std::vector<ProcessId>& members,
+                      int doublings = 0);
 
 // The shortest time between two checks that a member asks for, s: by its size, or as set.
 double finest_check(const Scene& scene, const Body& body);

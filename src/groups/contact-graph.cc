@@ -13,6 +13,7 @@
 #include "geometry/polyhedron.h"
 #include "groups/flush-ground.h"
 #include "groups/followed-contact.h"
+#include "groups/foreseen.h"
 
 namespace tw {
 namespace {
@@ -111,7 +112,7 @@ double released(double offset, double gap) {
 
 // Where a contact was before, and whether a new one is that.
 struct OldPoint {
-  Vec3 point, normal;
+  ContactForce followed;
   bool taken = false;
 };
 
@@ -122,8 +123,9 @@ void take_offset(const Group& before, const ContactPair& old, const std::vector<
   double nearest = never;
   for (std::uint32_t o = 0; o < old.count; ++o) {
     if (before.tags[old.first + o].parts != fresh.tag.parts) continue;
-    if (std::abs(there[o].normal.dot(fresh.normal)) < answer::same_normal) continue;
-    const double distance = (there[o].point - fresh.point).norm();
+    const ContactForce& followed = there[o].followed;
+    if (std::abs(followed.normal.dot(fresh.normal)) < answer::same_normal) continue;
+    const double distance = (followed.point - fresh.point).norm();
     if (distance >= nearest) continue;
     nearest = distance;
     const GroupContact& was = before.arc->start().contacts[old.first + o];
@@ -147,8 +149,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
   there.clear();
   if (pair.count > 0)
     each_contact(*old, [&](std::uint32_t c) {
-      const ContactForce f = arc.contact_force(static_cast<int>(c), now);
-      there.push_back({f.point, f.normal});
+      there.push_back({arc.contact_force(static_cast<int>(c), now)});
     });
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
     NewContact& fresh = contacts[c];
@@ -157,7 +158,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     for (std::uint32_t o = 0; o < old->count; ++o) {
       if (there[o].taken) continue;
       const ContactTag& tag = before.tags[old->first + o];
-      double distance = (there[o].point - fresh.point).norm();
+      double distance = (there[o].followed.point - fresh.point).norm();
       if (tag.feature == fresh.tag.feature && tag.parts == fresh.tag.parts) distance *= 0.5;
       if (distance >= nearest) continue;
       nearest = distance;
@@ -171,6 +172,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     const ContactTag& tag = before.tags[old->first + best];
     const GroupContact& was = arc.start().contacts[old->first + best];
     fresh.law_before = was.law;
+    fresh.foreseen = is_foreseen(fresh, there[best].followed, tag.reference, size);
     fresh.contact.offset = released(was.offset, fresh.gap);
     const Quat attitude = work.attitude(tag.reference),
                fresh_attitude = work.attitude(fresh.tag.reference);
@@ -183,8 +185,8 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     const ContactConstants& law = fresh.contact.law;
     if (!(law.rolling > 0 || law.spinning > 0)) continue;
     const Vec3 bend = attitude * arc.bend(number, now);
-    const double along = bend.dot(there[best].normal);
-    Vec3 across = bend - along * there[best].normal;
+    const double along = bend.dot(there[best].followed.normal);
+    Vec3 across = bend - along * there[best].followed.normal;
     if (tag.reference != fresh.tag.reference) across = -across;
     fresh.contact.bend =
         fresh_attitude.conjugate() * (turned_into(across, fresh.normal) + along * fresh.normal);

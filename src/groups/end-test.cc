@@ -147,9 +147,10 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   if (travel <= allowed) return group.next_check;
 
   const double start = group.arc->start().time, length = group.next_check - start;
-  const int looks =
-      static_cast<int>(std::clamp(std::ceil(travel / (answer::travel_unlooked * size)), 1.0,
-                                  static_cast<double>(answer::most_looks)));
+  // where checks are rarer than motion asks for, as often as they would be
+  const double unlooked = group.foreseen > 0 ? 2 * answer::most_travel : answer::travel_unlooked;
+  const int looks = static_cast<int>(std::clamp(std::ceil(travel / (unlooked * size)), 1.0,
+                                                static_cast<double>(answer::most_looks)));
   thread_local std::vector<double> gaps;  // at the last look
   gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
   double from = start, unseen_before = -1;

@@ -21,7 +21,7 @@ TEST(Lifetime, groups_of_the_past_go) {
       world.advance(0.05 * i);
       most = std::max(most, Group::alive() - before);
     }
-    EXPECT_GT(count_of(world.statistics(), "groups"), 200);
+    EXPECT_GT(count_of(world.statistics(), "groups"), 100);
     EXPECT_LE(most, 13);
   }
   EXPECT_EQ(Group::alive(), before);

@@ -1,0 +1,45 @@
+// What a check finds as it was foreseen.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include "groups/foreseen.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+
+namespace tw {
+
+bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId reference,
+                 double size) {
+  if (reference != fresh.tag.reference) return false;
+  const double off = (followed.normal - fresh.normal).norm();
+  return std::abs(followed.gap - fresh.gap) <=
+             answer::foreseen_gap * fresh.contact.law.gap_scale() &&
+         (followed.point - fresh.point).norm() <= answer::foreseen_way * size &&
+         off <= answer::foreseen_way;
+}
+
+int foreseen_in_a_row(const Regrouping& work, const Group& group, const Group& before) {
+  // what a callback changes goes on, as far as its contacts are concerned
+  if (work.cause == Cause::callback) return before.foreseen;
+  if (work.cause != Cause::check || before.at_rest || group.has_border || before.has_border ||
+      group.pairs.size() != before.pairs.size())
+    return 0;
+  // an arc that ended early
+  if (before.next_check < before.arc->start().end) return 0;
+  for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+    const ContactPair &now = group.pairs[i], &then = before.pairs[i];
+    if (now.id != then.id || now.count != then.count) return 0;
+    for (std::uint32_t c = now.first; c < now.first + now.count; ++c)
+      if (!work.contacts[c].foreseen) return 0;
+  }
+  // steps that are cut short by checks have errors far below their tolerance: so it stays
+  const double lasted = work.now() - before.arc->start().time;
+  const double goes_on_with = before.arc->next_step();
+  if (goes_on_with >= answer::most_step_change * lasted)
+    return std::min(before.foreseen + 1, answer::most_halvings);
+  return goes_on_with >= 0.5 * answer::most_step_change * lasted ? before.foreseen
+                                                                 : std::max(before.foreseen - 1, 0);
+}
+
+}  // namespace tw
