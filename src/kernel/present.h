@@ -40,7 +40,7 @@ struct Present {
   // What is below it is past: all that has happened at the present time where that is final, else
   // nothing but what was changed between runs.
   Key key() const {
-    if (due.inclusive) return {time, 0xffffffffu, KeyKind::edit, ~0ull};
+    if (due.inclusive) return {time, 0xffffffffu, KeyKind::impact, ~0ull};
     return {time, 0, KeyKind::early_edit, ~0ull};
   }
 };

@@ -24,9 +24,9 @@ enum class KeyKind : std::uint8_t {
   step,
   early_edit,  // between runs, where what happens at that instant is still to come
   callback,
+  edit,  // between runs, after what has happened at that instant, before what comes of other edits
   group_check,
-  impact,
-  edit  // between runs, after what has happened at that instant
+  impact
 };
 
 const char* kind_name(KeyKind kind);
@@ -36,7 +36,8 @@ std::uint64_t kind_code(KeyKind kind);
 struct Key {
   double time = 0;
   // 0 for birth, step, early_edit and callback; else 1 + the larger of those of the arcs that start
-  // exactly at `time`, else 1.
+  // exactly at `time`, else 1.  (What was put in touch between runs touches in microstep 1; what is
+  // set of it in the same pause comes before that.)
   std::uint32_t microstep = 0;
   KeyKind kind = KeyKind::birth;
   std::uint64_t id = 0;
@@ -58,7 +59,7 @@ inline bool is_edit(const Key& key) {
 }
 
 // After every key.
-inline constexpr Key last_key{never, 0xffffffffu, KeyKind::edit, ~0ull};
+inline constexpr Key last_key{never, 0xffffffffu, KeyKind::impact, ~0ull};
 
 // The id of a pair: smaller body id above, larger below.
 inline std::uint64_t pair_id(std::uint32_t a, std::uint32_t b) {

@@ -168,6 +168,26 @@ TEST(GroupEdits, velocity_of_a_member_wakes_its_group) {
   });
 }
 
+// What touches where it was put touches after all that was set of it in the same pause.
+TEST(GroupEdits, of_what_was_put_in_touch_in_the_same_pause_hold) {
+  constexpr double mu = 0.5, g = 9.81;
+  World world;
+  set_contact_for_all(world, 0, mu);
+  add_wall(world, Vec3::UnitZ(), 0);
+  world.advance(0.1);
+  const BodyId first = add_box(world, {1, 1, 1}, {0, 0, 0.5});
+  world.edit(first, [](StateView& view) { view.set_velocity({2, 0, 0}); });
+  world.advance(0.2);
+  EXPECT_NEAR(world.state(first).velocity.x(), 2 - mu * g * 0.1, 1e-3);
+  // a second one beside it, after which the first is set again
+  const BodyId second = add_box(world, {1, 1, 1}, world.state(first).position - Vec3(0, 1, 0));
+  world.edit(first, [](StateView& view) { view.set_velocity({3, 0, 0}); });
+  world.edit(second, [](StateView& view) { view.set_velocity({3, 0, 0}); });
+  world.advance(0.3);
+  for (const BodyId id : {first, second})
+    EXPECT_NEAR(world.state(id).velocity.x(), 3 - mu * g * 0.1, 2e-2);
+}
+
 TEST(GroupEdits, force_on_a_member_wakes_its_group) {
   expect_edit_wakes([](World& world, const Members& boxes) {
     world.edit(boxes[2], [](StateView& view) { view.set_applied_force({600, 0, 0}); });
