@@ -190,11 +190,15 @@ inline constexpr double slender = 0.25;
 // interval.
 inline constexpr double travel_unlooked = 0.25, least_arc = 0x1p-11;
 inline constexpr int most_looks = 4096;
+// At least so often where a contact's point runs along a line or a rim.
+inline constexpr double running_looks = 4;
 // Where blows follow each other an arc lasts no longer than so many times what the one before did,
 // and after the check that ends it so many times that.
 inline constexpr double patience_growth = 16;
 // Depth that may stay unrepresented to the end of an arc, share of the contact's static depth.
 inline constexpr double unseen_depth = 0.5;
+// A contact that is new and deeper than so many static depths starts without a load.
+inline constexpr double born_depth = 4;
 // An arc ends where a contact is deeper than so many times what there is, and so many static depths
 // more (of 120 thin scenes none was slow; 4 at 1.5 and 2, 6 at 1.2 and 1).
 inline constexpr double phantom_share = 2, phantom_depth = 4;
@@ -404,6 +408,10 @@ inline constexpr double same_point = 1e-5;
 inline constexpr double buried_margin = 2e-5;
 // How far from the surface normals are compared, and how far around a point a face is looked at.
 inline constexpr double probe = 0.01;
+// How steeply a neighbour is looked for beyond a side of a face, rad.
+inline constexpr double rises[] = {0, 0.5, 1, 1.4};
+// Where it is looked for between the border of a slit and what is in it.
+inline constexpr double between[] = {0.25, 0.5, 0.75};
 // Bodies may be sunk so deep: a check may find one that moved on into what no contact held, by as
 // far as anything moves between two checks.  What is nearer than this to a piece may overlap its
 // neighbours.

@@ -110,6 +110,28 @@ double released(double offset, double gap) {
                     : std::max(offset, std::min(gap, 0.0));
 }
 
+// How deep the contacts of the body are that it had before, at most, m.
+double deepest_before(const Regrouping& work, const Body& body) {
+  const Successor* successor = body.dynamic() ? work.successor_of(body.id()) : nullptr;
+  if (!successor || !successor->data.group) return 0;
+  const Group& group = *successor->data.group;
+  double depth = 0;
+  for (const std::uint32_t number : group.pairs_of(successor->data.member))
+    each_contact(group.pairs[number], [&](std::uint32_t c) {
+      depth = std::max(depth, -group.contact_at(c, work.now()).gap);
+    });
+  return depth;
+}
+
+// A contact that is found deeper than a load would press it, and than the two were in contact with
+// anything before, presses from there on: a spring that is born so deep would throw them apart.
+void start_unpressed(const Regrouping& work, const Body& a, const Body& b, NewContact& c) {
+  double allowed = answer::born_depth * c.contact.law.gap_scale();
+  if (-c.gap <= allowed) return;
+  allowed = std::max({allowed, deepest_before(work, a), deepest_before(work, b)});
+  c.contact.offset = std::min(0.0, c.gap + allowed);
+}
+
 // Where a contact was before, and whether a new one is that.
 struct OldPoint {
   ContactForce followed;
@@ -165,6 +187,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
       best = o;
     }
     if (best == old->count) {
+      start_unpressed(work, body_a, body_b, fresh);
       take_offset(before, *old, there, fresh);
       continue;
     }
@@ -174,6 +197,9 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     fresh.law_before = was.law;
     fresh.foreseen = is_foreseen(fresh, there[best].followed, tag.reference, size);
     fresh.contact.offset = released(was.offset, fresh.gap);
+    // of another side of the body
+    if (std::abs(there[best].followed.normal.dot(fresh.normal)) < answer::same_normal)
+      start_unpressed(work, body_a, body_b, fresh);
     const Quat attitude = work.attitude(tag.reference),
                fresh_attitude = work.attitude(fresh.tag.reference);
     const int number = static_cast<int>(old->first + best);
@@ -368,6 +394,8 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
     fresh.masses = before->pair->masses;
     match_old(work, look.contacts, fresh, *before);
   }
+  if (!before)
+    for (NewContact& c : look.contacts) start_unpressed(work, body_a, body_b, c);
   if (wants != Wanted::touching) preload(work, look.contacts, fresh, a, b);
 }
 

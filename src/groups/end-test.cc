@@ -66,6 +66,15 @@ struct PairOnArc {
       least = std::min(least, group.arc->contact_force(static_cast<int>(c), when).gap);
     return least;
   }
+  // Whether a contact's point runs along a line or a rim: it may be elsewhere soon, and back again.
+  bool runs() const {
+    const std::vector<GroupContact>& contacts = group.arc->start().contacts;
+    for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c)
+      if (contacts[c].feature == ContactFeature::crossing ||
+          contacts[c].feature == ContactFeature::rim)
+        return true;
+    return false;
+  }
   // How far any surface point may have moved, m.
   double travel() const {
     double sum = 0;
@@ -149,7 +158,8 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   const double start = group.arc->start().time, length = group.next_check - start;
   // where checks are rarer than motion asks for, as often as they would be
   const double unlooked = group.foreseen > 0 ? 2 * answer::most_travel : answer::travel_unlooked;
-  const int looks = static_cast<int>(std::clamp(std::ceil(travel / (unlooked * size)), 1.0,
+  const int looks = static_cast<int>(std::clamp(std::ceil(travel / (unlooked * size)),
+                                                along.runs() ? answer::running_looks : 1.0,
                                                 static_cast<double>(answer::most_looks)));
   thread_local std::vector<double> gaps;  // at the last look
   gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
@@ -166,9 +176,15 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
         end = std::min(end,
                        fast_touch(*group.arc, contact, from, to, first, last, scales.borne_speed));
     });
-    const double deepest = along.deepest(to, false);
+    double deepest = along.deepest(to, false), seen_to = to;
     if (answer::phantom_share * deepest - known > phantom)
       end = std::min(end, phantom_touch(along, from, to, phantom));
+    // what a phantom hides may have come to be before
+    if (end < to) {
+      seen_to = end;
+      known = std::min(along.represented(end), 0.0);
+      deepest = along.deepest(end, false);
+    }
     if (known - deepest > allowed) {
       if (a.fixed() || b.fixed()) {
         const Body& mover = a.dynamic() ? a : b;
@@ -179,7 +195,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
       }
       // what nobody saw when the arc began must not grow either
       if (unseen_before < 0) unseen_before = std::max(unseen_depth(along, start), 0.0);
-      end = std::min(end, unseen_touch(along, from, to, unseen_before + allowed));
+      end = std::min(end, unseen_touch(along, from, seen_to, unseen_before + allowed));
     }
     if (end < never) return std::min(end, group.next_check);
     from = to;

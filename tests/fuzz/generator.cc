@@ -33,6 +33,8 @@ constexpr Kind table[] = {
     {"hills", "bodies fall and roll on a height field between four walls", draw_hills},
     {"rolls", "what is round falls into a pit, where rolling and spinning are resisted",
      draw_rolls},
+    {"plates", "tips and others fall into a trough of plates that meet at their inner edges alone",
+     draw_plates},
     {"chains", "chains, stars and carts of links, hung or free, fall into a pit with others",
      draw_chains},
     {"bonds", "bodies that springs and holds tie to each other and to posts fall into a pit",

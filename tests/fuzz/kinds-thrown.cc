@@ -135,6 +135,69 @@ void draw_groove(Draft& draft) {
   draft.last(8);
 }
 
+// Something with a sharp end, within a ball of this diameter about the origin.
+static Solid pointed(Draft& draft, double d) {
+  const double b = 0.5 * d * draft.log_uniform(0.05, 0.7), h = 0.35 * d;
+  switch (draft.random.below(3)) {
+    case 0: return hull({{b, b, h}, {-b, b, h}, {0, -b, h}, {0, 0, -h}});
+    case 1: return hull({{b, -b, h}, {b, b, h}, {-b, b, h}, {-b, -b, h}, {0, 0, -h}});
+    default: return cone(b, 2 * h);
+  }
+}
+
+// Plates that meet at their inner edges alone: two of them in a V, or staves of half a pipe; one
+// union or several bodies.
+void draw_plates(Draft& draft) {
+  const double s = draft.size, length = 2.5 * s, thick = s * draft.log_uniform(0.05, 0.5);
+  std::vector<Solid> plates;
+  double wide = 0, bottom = 0;
+  if (draft.chance(0.6)) {
+    const double tilt = draft.random.real(0.2, 1.3), across = 4 * s;
+    for (const double side : {-1.0, 1.0}) {
+      const Quat q = rotation_by({0, -side * tilt, 0});
+      plates.push_back(placed(box({across, 2 * length, thick}),
+                              q * Vec3(0.5 * side * across, 0, -0.5 * thick), q));
+    }
+    wide = across * std::cos(tilt);
+  } else {
+    const int staves = draft.whole(4, 12);
+    const double radius = s * draft.random.real(1.2, 3), turn = pi / staves;
+    for (int k = 0; k < staves; ++k) {
+      const Quat q = rotation_by({0, (k + 0.5) * turn - 0.5 * pi, 0});
+      plates.push_back(placed(box({2 * radius * std::tan(0.5 * turn), 2 * length, thick}),
+                              Vec3(0, 0, radius) + q * Vec3(0, 0, -radius - 0.5 * thick), q));
+    }
+    wide = radius;
+    bottom = radius - radius / std::cos(0.5 * turn);
+  }
+  if (draft.chance(0.5)) {
+    DescribedBody joined;
+    joined.fixed = true;
+    joined.solids = plates;
+    draft.add(joined, "plates");
+  } else {
+    for (const Solid& plate : plates) draft.add_fixed(plate, Vec3::Zero());
+  }
+  for (const double side : {-1.0, 1.0}) {
+    draft.add_fixed(half_space({-side, 0, 0}, -wide), Vec3::Zero());
+    draft.add_fixed(half_space({0, -side, 0}, -length), Vec3::Zero());
+  }
+  draft.scene.room = {std::nullopt, {-wide, -length, bottom}, {wide, length, 1e3 * s}};
+  const int count = draft.whole(1, 4);
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at(draft.random.real(-0.2, 0.2) * s, (k % 3 - 1) * 1.2 * s,
+                  (4.2 + 1.2 * (k / 3)) * s);
+    const bool is_pointed = draft.chance(0.6);
+    DescribedBody& body =
+        draft.add_moving(is_pointed ? std::vector<Solid>{pointed(draft, s)} : draft.shape(s), at);
+    body.pose.q = draft.attitude();
+    if (is_pointed && draft.chance(0.7)) body.pose.q = rotation_by(draft.vector(0.4));
+    body.velocity = draft.vector(draft.speed);
+    body.velocity.z() = -draft.random.real(0, 1) * draft.speed;
+  }
+  draft.last(8);
+}
+
 void draw_ramp(Draft& draft) {
   const double s = draft.size, angle = draft.random.real(0.1, 1.2);
   const Quat tilt = rotation_by({0, angle, 0});

@@ -26,6 +26,7 @@ void draw_cards(Draft& draft);
 void draw_bullet(Draft& draft);
 void draw_seam(Draft& draft);
 void draw_groove(Draft& draft);
+void draw_plates(Draft& draft);
 void draw_ramp(Draft& draft);
 void draw_hills(Draft& draft);
 

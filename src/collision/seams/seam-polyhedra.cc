@@ -26,6 +26,7 @@ struct Exposure {
   const Polyhedron& other = of_a ? cores.b : cores.a;
   const Frame world = of_a ? cores.world_a : cores.world_a * cores.b_in_a;
   const Frame other_in_part = of_a ? cores.b_in_a : cores.a_in_b();
+  const Vec3 middle = other_in_part * other.center();
 
   // Of one side, over a face or edge of the other; lengths in the frame of the part.
   struct Point {
@@ -108,7 +109,10 @@ struct Exposure {
 
   double same_place() const { return seam::buried_margin * seam.size; }
 
+  // False also under a face that the middle of the other is not over: it comes from elsewhere.
   bool add_vertex(std::uint64_t v, std::uint64_t face, const Vec3& point, double height) const {
+    const Polyhedron::Face& side = part.face(static_cast<int>(face));
+    if (side.normal.dot(middle) <= side.offset) return false;
     return add({of_a, part.faces()[face].normal, point, height, v, face, ~std::uint64_t{0}});
   }
 
@@ -131,7 +135,7 @@ struct Exposure {
     thread_local std::vector<std::pair<double, std::uint64_t>> heights;
     // most are far over the face that is most towards the other's middle
     int towards = 0;
-    part.face_separation(other_in_part * other.center(), towards);
+    part.face_separation(middle, towards);
     const Polyhedron::Face& over = part.face(towards);
     const double clearly = (1 + 1e-9) * seam.farthest();
     for (std::uint64_t v = 0; v < other.vertices().size(); ++v) {
@@ -145,23 +149,27 @@ struct Exposure {
         const Polyhedron::Face& face = part.faces()[f];
         const double height = face.normal.dot(point) - face.offset;
         if (height < -seam::sunk * seam.size || height > seam.reach) continue;
-        if (goes_on_to(part, face, point, world, seam.neighbours(of_a), seam.farthest(), seam.size))
+        if (goes_on_to(part, face, point, middle, world, seam.neighbours(of_a), seam.farthest(),
+                       seam.size))
           heights.emplace_back(-height, f);
       }
-      if (heights.empty() || is_known(world * point)) continue;
+      if (heights.empty()) continue;
       // it leaves what the part goes on by under the nearest of its faces
       std::sort(heights.begin(), heights.end());
+      if (is_known(world * point, -heights.front().first)) continue;
       for (const auto& [depth, f] : heights)
         if (add_vertex(v, f, point, -depth)) break;
     }
   }
 
-  // Whether a contact holds this point (world) of the other.
-  bool is_known(const Vec3& point) const {
-    return std::any_of(
-        out.begin() + static_cast<std::ptrdiff_t>(from), out.end(), [&](const auto& p) {
-          return p.reference_is_a == of_a && (p.core_point - point).norm() <= same_place();
-        });
+  // Whether a contact holds this point (world) of the other, at `height` or deeper: in a slit it is
+  // beside walls, too, that it is not to get to.
+  bool is_known(const Vec3& point, double height) const {
+    return std::any_of(out.begin() + static_cast<std::ptrdiff_t>(from), out.end(),
+                       [&](const auto& p) {
+                         return p.reference_is_a == of_a && p.gap <= height + same_place() &&
+                                (p.core_point - point).norm() <= same_place();
+                       });
   }
 
   // A vertex inside the part, or `beside` it and inside a neighbour.

@@ -5,6 +5,7 @@
 #include "base/constants.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"
+#include "collision/seams/valley.h"
 #include "collision/separation.h"
 
 namespace tw {
@@ -33,6 +34,58 @@ bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
   const std::vector<SeamNeighbour>& others = seam.neighbours(of_a);
   return held_by({of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame}) ||
          std::any_of(others.begin(), others.end(), held_by);
+}
+
+// Where a round part of the other side lies over or under what a face goes on by beneath its
+// neighbours: its points on that plane (valley.h).
+void add_in_valleys(const SeamPair& seam, bool of_a, std::size_t from,
+                    std::vector<ManifoldPoint>& out) {
+  const ConvexPart& part = of_a ? seam.first() : seam.second();
+  const ConvexPart& round = of_a ? seam.second() : seam.first();
+  if (part.kind != PartKind::polyhedron || !(of_a ? seam.a : seam.b).has_seams) return;
+  const Polyhedron& core = *part.core;
+  const Frame& body = (of_a ? seam.a : seam.b).frame;
+  const Frame& round_body = (of_a ? seam.b : seam.a).frame;
+  const Frame world = body * part.placement;
+  const SupportCore support(round, round_body * round.placement);
+  const Vec3 middle = world.to_local(support.center());
+  const double same_place = seam::buried_margin * seam.size;
+  const auto is_known = [&](const Vec3& point, double gap) {
+    return std::any_of(out.begin() + static_cast<std::ptrdiff_t>(from), out.end(), [&](auto& p) {
+      const Vec3 there = p.core_point - p.radius * p.normal;
+      return p.gap <= gap + same_place && (there - point).norm() <= same_place;
+    });
+  };
+  thread_local std::vector<ManifoldPoint> points;
+  for (std::size_t f = 0; f < core.faces().size(); ++f) {
+    const Polyhedron::Face& face = core.faces()[f];
+    if (face.normal.dot(middle) <= face.offset) continue;
+    const Vec3 lowest = world.to_local(support.support(world.R * Vec3(-face.normal))) -
+                        support.margin * face.normal;
+    const double height = face.normal.dot(lowest) - face.offset;
+    if (height < -seam::sunk * seam.size || height > seam.reach) continue;
+    const auto goes_on = [&](const Vec3& point) {
+      return goes_on_to(core, face, point, middle, world, seam.neighbours(of_a), seam.farthest(),
+                        seam.size);
+    };
+    if (!goes_on(lowest) || is_known(world * lowest, height)) continue;
+    ConvexPart plane;
+    plane.kind = PartKind::half_space;
+    plane.normal = face.normal;
+    plane.offset = face.offset;
+    points.clear();
+    if (of_a)
+      part_manifold(plane, world, round, round_body, seam.reach, seam.choice, seam.pair, points);
+    else
+      part_manifold(round, round_body, plane, world, seam.reach, seam.choice, seam.pair, points);
+    for (ManifoldPoint& p : points) {
+      if (!goes_on(world.to_local(p.core_point - p.radius * p.normal))) continue;
+      p.feature =
+          feature_name(seam.pair, of_a ? FeatureMode::exposed_of_a : FeatureMode::exposed_of_b,
+                       {f, p.feature, 0});
+      out.push_back(p);
+    }
+  }
 }
 
 // What is nearest with a round part scaled down, where the neighbours of a (or of b) bury the axis
@@ -71,7 +124,12 @@ double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
   const ConvexPart& second = seam.second();
   const std::size_t from = out.size();
   const Separation s = part_separation(first, seam.a.frame, second, seam.b.frame, nullptr);
-  if (s.distance > seam.reach) return s.distance;
+  const auto finish = [&] {
+    for (const bool of_a : {true, false}) add_in_valleys(seam, of_a, from, out);
+    return s.distance;
+  };
+  if (s.distance > seam.farthest()) return s.distance;
+  if (s.distance > seam.reach) return finish();
   const RoundDistance near{s.distance, s.normal, s.point_a, s.point_b};
   round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
   const bool ghost_a = buries(seam, true, near);
@@ -82,7 +140,7 @@ double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
     seam.remove_ghosts(from, seam::face_angle, out);
   const bool sunk = near.distance < seam::sunk * seam.size;
   if (ghost && sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
-  return near.distance;
+  return finish();
 }
 
 }  // namespace tw
