@@ -35,15 +35,21 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
   const double unit = rate > 0 ? 1 / rate : answer::check_unit;
   double interval = never;
   for (const ProcessId member : members) {
-    // the time to move that far: v s + g s^2/2 = distance
     const PlacedBody body = placed(*work.successor_of(member));
-    const double distance = answer::most_travel * check_size(*body.body);
-    const double speed = body.surface_speed();
-    const double root = std::sqrt(speed * speed + 2 * gravity * distance);
-    const double finest = finest_check(work.scene(), *body.body);
-    const double asked = on_lattice(unit, 2 * distance / (speed + root));
-    interval = std::min(interval, std::clamp(std::ldexp(asked, doublings), finest,
-                                             std::ldexp(finest, answer::most_halvings)));
+    const double speed = body.surface_speed(), finest = finest_check(work.scene(), *body.body);
+    // the longest of the lattice in which it moves no farther: v s + g s^2/2 = distance
+    const auto within = [&](double distance) {
+      const double root = std::sqrt(speed * speed + 2 * gravity * distance);
+      return on_lattice(unit, 2 * distance / (speed + root));
+    };
+    const double size = check_size(*body.body);
+    double asked = within(answer::most_travel * size);
+    // what is thin is checked more rarely anyhow than its thickness asks for
+    if (doublings > 0 && !(size > body.body->least_width))
+      asked = std::max(asked, std::min(std::ldexp(asked, doublings),
+                                       within(answer::most_foreseen * body.body->least_width)));
+    interval =
+        std::min(interval, std::clamp(asked, finest, std::ldexp(finest, answer::most_halvings)));
   }
   return interval;
 }

@@ -128,7 +128,8 @@ TEST(Contacts, in_a_heap_every_body_obeys_newton_so_no_contact_is_missing_or_the
     }
   }
   EXPECT_GT(looked_at, 60);
-  // an impulse of 1e-6 m/s in between moves no load, and is 1 m/s^2 for so short a time: of two bodies
+  // an impulse of 1e-6 m/s in between moves no load, and is 1 m/s^2 for so short a time: of two
+  // bodies
   EXPECT_LE(off, 2);
 }
 

@@ -220,8 +220,8 @@ TEST(Rolling, rolling_friction_holds_a_placed_ball_up_to_its_slope) {
 }
 
 // What rolls up a slope that holds it stops there, and what rolls down one: it rests within the
-// time that rest takes (0.2 s, or three times that where half of it says too little), with no energy
-// ever gained.
+// time that rest takes (0.2 s, or three times that where half of it says too little), with no
+// energy ever gained.
 TEST(Rolling, what_rolling_friction_stops_on_a_slope_rests_there) {
   const double r = 0.1, rho = 5e-3, angle = std::atan(0.5 * rho / r);
   const Vec3 normal(std::sin(angle), 0, std::cos(angle));
