@@ -45,7 +45,7 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
     const double size = check_size(*body.body);
     double asked = within(answer::most_travel * size);
     // what is thin is checked more rarely anyhow than its thickness asks for
-    if (doublings > 0 && !(size > body.body->least_width))
+    if (doublings > 0 && size <= body.body->least_width)
       asked = std::max(asked, std::min(std::ldexp(asked, doublings),
                                        within(answer::most_foreseen * body.body->least_width)));
     interval =

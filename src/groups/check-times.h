@@ -18,7 +18,7 @@
 namespace tw {
 
 // From now to the next check of a group of these, s: on the grid of checks.  `doublings`: of what
-// their motion asks for, for a group that was as foreseen so many times in a row.
+// their motion asks for (foreseen.h).
 double check_interval(const Regrouping& work, const std::vector<ProcessId>& members,
                       int doublings = 0);
 

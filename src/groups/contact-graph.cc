@@ -1,4 +1,4 @@
-// The contact graph: finding contacts, carrying them along, matching stretches.
+// The contact graph: finding contacts and carrying them along.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/contact-graph.h"
 #include "collision/seams/seams.h"
@@ -13,7 +13,7 @@
 #include "geometry/polyhedron.h"
 #include "groups/flush-ground.h"
 #include "groups/followed-contact.h"
-#include "groups/foreseen.h"
+#include "groups/match-contacts.h"
 
 namespace tw {
 namespace {
@@ -29,13 +29,6 @@ bool far_apart(const PlacedBody& a, const PlacedBody& b, double reach) {
   }
   const double radii = a.body->radius + b.body->radius + reach;
   return (a.point.x - b.point.x).squaredNorm() > radii * radii;
-}
-
-// The stretch of an old contact in the tangent plane of a new one, as long as before.
-Vec3 turned_into(const Vec3& stretch, const Vec3& normal) {
-  const Vec3 flat = stretch - normal * normal.dot(stretch);
-  const double length = flat.norm();
-  return length > 0 ? Vec3(flat * (stretch.norm() / length)) : Vec3(Vec3::Zero());
 }
 
 // The part that a point is on, of the body named; `body_b` is the second of the pair.
@@ -101,122 +94,6 @@ bool comes_into_contact(const std::vector<ManifoldPoint>& points, const PlacedBo
   }
   // what comes fast is for an impact, unless the pair carries a load already
   return wanted && (!fast || (before && touches));
-}
-
-// What is left of a contact's offset where it opens: as much less as it does, so that what was
-// pressed together by a load does not float when the load is gone.  Springs only lose by it.
-double released(double offset, double gap) {
-  return offset > 0 ? std::max(0.0, offset - std::max(0.0, gap))
-                    : std::max(offset, std::min(gap, 0.0));
-}
-
-// How deep the contacts of the body are that it had before, at most, m.
-double deepest_before(const Regrouping& work, const Body& body) {
-  const Successor* successor = body.dynamic() ? work.successor_of(body.id()) : nullptr;
-  if (!successor || !successor->data.group) return 0;
-  const Group& group = *successor->data.group;
-  double depth = 0;
-  for (const std::uint32_t number : group.pairs_of(successor->data.member))
-    each_contact(group.pairs[number], [&](std::uint32_t c) {
-      depth = std::max(depth, -group.contact_at(c, work.now()).gap);
-    });
-  return depth;
-}
-
-// A contact that is found deeper than a load would press it, and than the two were in contact with
-// anything before, presses from there on: a spring that is born so deep would throw them apart.
-void start_unpressed(const Regrouping& work, const Body& a, const Body& b, NewContact& c) {
-  double allowed = answer::born_depth * c.contact.law.gap_scale();
-  if (-c.gap <= allowed) return;
-  allowed = std::max({allowed, deepest_before(work, a), deepest_before(work, b)});
-  c.contact.offset = std::min(0.0, c.gap + allowed);
-}
-
-// Where a contact was before, and whether a new one is that.
-struct OldPoint {
-  ContactForce followed;
-  bool taken = false;
-};
-
-// A point that comes to a face which bears a load already presses as those beside it do: their
-// stiffness is shared with it, and so is the depth that they count from.
-void take_offset(const Group& before, const ContactPair& old, const std::vector<OldPoint>& there,
-                 NewContact& fresh) {
-  double nearest = never;
-  for (std::uint32_t o = 0; o < old.count; ++o) {
-    if (before.tags[old.first + o].parts != fresh.tag.parts) continue;
-    const ContactForce& followed = there[o].followed;
-    if (std::abs(followed.normal.dot(fresh.normal)) < answer::same_normal) continue;
-    const double distance = (followed.point - fresh.point).norm();
-    if (distance >= nearest) continue;
-    nearest = distance;
-    const GroupContact& was = before.arc->start().contacts[old.first + o];
-    fresh.law_before = was.law;
-    fresh.contact.offset = released(was.offset, fresh.gap);
-  }
-}
-
-// Each new contact takes the stretch and the offset of the nearest old one; equal features count as
-// half as far.
-void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
-               const PairBefore& before_it) {
-  const ContactPair* old = before_it.pair;
-  const Group& before = *before_it.owner;
-  const GroupArc& arc = *before.arc;
-  const double now = before.contact_time(work.now());
-  const Body& body_a = work.scene().body(pair.a());
-  const Body& body_b = work.scene().body(pair.b());
-  const double size = std::min(body_a.least_width, body_b.least_width);
-  thread_local std::vector<OldPoint> there;
-  there.clear();
-  if (pair.count > 0)
-    each_contact(*old, [&](std::uint32_t c) {
-      there.push_back({arc.contact_force(static_cast<int>(c), now)});
-    });
-  for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-    NewContact& fresh = contacts[c];
-    double nearest = answer::same_point * size;
-    std::uint32_t best = old->count;
-    for (std::uint32_t o = 0; o < old->count; ++o) {
-      if (there[o].taken) continue;
-      const ContactTag& tag = before.tags[old->first + o];
-      double distance = (there[o].followed.point - fresh.point).norm();
-      if (tag.feature == fresh.tag.feature && tag.parts == fresh.tag.parts) distance *= 0.5;
-      if (distance >= nearest) continue;
-      nearest = distance;
-      best = o;
-    }
-    if (best == old->count) {
-      start_unpressed(work, body_a, body_b, fresh);
-      take_offset(before, *old, there, fresh);
-      continue;
-    }
-    there[best].taken = true;
-    const ContactTag& tag = before.tags[old->first + best];
-    const GroupContact& was = arc.start().contacts[old->first + best];
-    fresh.law_before = was.law;
-    fresh.foreseen = is_foreseen(fresh, there[best].followed, tag.reference, size);
-    fresh.contact.offset = released(was.offset, fresh.gap);
-    // of another side of the body
-    if (std::abs(there[best].followed.normal.dot(fresh.normal)) < answer::same_normal)
-      start_unpressed(work, body_a, body_b, fresh);
-    const Quat attitude = work.attitude(tag.reference),
-               fresh_attitude = work.attitude(fresh.tag.reference);
-    const int number = static_cast<int>(old->first + best);
-    Vec3 stretch = attitude * arc.stretch(number, now);
-    if (tag.reference != fresh.tag.reference) stretch = -stretch;
-    fresh.contact.stretch = fresh_attitude.conjugate() * turned_into(stretch, fresh.normal);
-
-    // the bend across the normal as the stretch; that along it stays so, whose normal ever it is
-    const ContactConstants& law = fresh.contact.law;
-    if (!(law.rolling > 0 || law.spinning > 0)) continue;
-    const Vec3 bend = attitude * arc.bend(number, now);
-    const double along = bend.dot(there[best].followed.normal);
-    Vec3 across = bend - along * there[best].followed.normal;
-    if (tag.reference != fresh.tag.reference) across = -across;
-    fresh.contact.bend =
-        fresh_attitude.conjugate() * (turned_into(across, fresh.normal) + along * fresh.normal);
-  }
 }
 
 // A spring that is born unloaded lets a body slide before it holds: so a new contact is given the
@@ -393,9 +270,9 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
     fresh.has_borne_load = before->pair->has_borne_load;
     fresh.masses = before->pair->masses;
     match_old(work, look.contacts, fresh, *before);
-  }
-  if (!before)
+  } else {
     for (NewContact& c : look.contacts) start_unpressed(work, body_a, body_b, c);
+  }
   if (wants != Wanted::touching) preload(work, look.contacts, fresh, a, b);
 }
 

@@ -157,7 +157,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
 
   const double start = group.arc->start().time, length = group.next_check - start;
   // where checks are rarer than motion asks for, as often as they would be
-  const double unlooked = group.foreseen > 0 ? 2 * answer::most_travel : answer::travel_unlooked;
+  const double unlooked = group.doublings > 0 ? 2 * answer::most_travel : answer::travel_unlooked;
   const int looks = static_cast<int>(std::clamp(std::ceil(travel / (unlooked * size)),
                                                 along.runs() ? answer::running_looks : 1.0,
                                                 static_cast<double>(answer::most_looks)));
@@ -179,7 +179,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
     double deepest = along.deepest(to, false), seen_to = to;
     if (answer::phantom_share * deepest - known > phantom)
       end = std::min(end, phantom_touch(along, from, to, phantom));
-    // what a phantom hides may have come to be before
+    // only what comes before that end counts, and a phantom may hide it
     if (end < to) {
       seen_to = end;
       known = std::min(along.represented(end), 0.0);

@@ -11,17 +11,16 @@ namespace tw {
 
 bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId reference,
                  double size) {
-  if (reference != fresh.tag.reference) return false;
-  const double off = (followed.normal - fresh.normal).norm();
-  return std::abs(followed.gap - fresh.gap) <=
-             answer::foreseen_gap * fresh.contact.law.gap_scale() &&
+  const double gap_off = std::abs(followed.gap - fresh.gap);
+  return reference == fresh.tag.reference &&
+         gap_off <= answer::foreseen_gap * fresh.contact.law.gap_scale() &&
          (followed.point - fresh.point).norm() <= answer::foreseen_way * size &&
-         off <= answer::foreseen_way;
+         (followed.normal - fresh.normal).norm() <= answer::foreseen_way;
 }
 
-int foreseen_in_a_row(const Regrouping& work, const Group& group, const Group& before) {
+int doublings_of(const Regrouping& work, const Group& group, const Group& before) {
   // what a callback changes goes on, as far as its contacts are concerned
-  if (work.cause == Cause::callback) return before.foreseen;
+  if (work.cause == Cause::callback) return before.doublings;
   if (work.cause != Cause::check || before.at_rest || group.has_border || before.has_border ||
       group.pairs.size() != before.pairs.size())
     return 0;
@@ -34,12 +33,10 @@ int foreseen_in_a_row(const Regrouping& work, const Group& group, const Group& b
       if (!work.contacts[c].foreseen) return 0;
   }
   // steps that are cut short by checks have errors far below their tolerance: so it stays
-  const double lasted = work.now() - before.arc->start().time;
-  const double goes_on_with = before.arc->next_step();
-  if (goes_on_with >= answer::most_step_change * lasted)
-    return std::min(before.foreseen + 1, answer::most_halvings);
-  return goes_on_with >= 0.5 * answer::most_step_change * lasted ? before.foreseen
-                                                                 : std::max(before.foreseen - 1, 0);
+  const double whole = answer::most_step_change * (work.now() - before.arc->start().time);
+  const double step = before.arc->next_step();
+  if (step >= whole) return std::min(before.doublings + 1, answer::most_halvings);
+  return step >= 0.5 * whole ? before.doublings : std::max(before.doublings - 1, 0);
 }
 
 }  // namespace tw

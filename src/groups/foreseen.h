@@ -5,8 +5,8 @@
 // so the next one may come after twice the time, and so on, up to the time after which what hardly
 // moves is looked at, or in which it moves by its own thickness (check-times.cc).  The first that
 // finds anything else (a contact more or less, one that is elsewhere, an arc that ended early), and
-// whatever changes the group otherwise, begins anew.  A function of the group and of the one before
-// it, as everything of a group is.
+// whatever changes the group otherwise, begins anew.  A function
+// of the group and of the one before it, as everything of a group is.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -20,8 +20,8 @@ namespace tw {
 bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId reference,
                  double size);
 
-// Checks in a row that found all as foreseen, this one too: of a group and the one of the same
+// How many times the time to the next check of a group is doubled, after the group of the same
 // members that was there before.
-int foreseen_in_a_row(const Regrouping& work, const Group& group, const Group& before);
+int doublings_of(const Regrouping& work, const Group& group, const Group& before);
 
 }  // namespace tw

@@ -25,7 +25,7 @@ void for_each_field(const Group& group, Visit&& visit) {
   visit("stillness", motion, group.stillness);
   visit("first step", motion, group.first_step);
   visit("patience", motion, group.patience);
-  visit("foreseen", motion, group.foreseen);
+  visit("doublings", motion, group.doublings);
   visit("range of masses", motion, group.masses);
   visit("outside bodies", motion, group.outside);
   visit("border", motion, group.has_border);

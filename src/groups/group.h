@@ -59,7 +59,7 @@ struct Group : Counted<Group> {
   bool at_rest = false;
   double first_step = 0;           // of the arc, s; 0: chosen
   double patience = never;         // how long an arc may be worth making, s (make-groups.cc)
-  int foreseen = 0;                // checks in a row that found all as foreseen (foreseen.h)
+  int doublings = 0;               // of the time to its next check (foreseen.h)
   MassRange masses;                // of all that hung together when it was made
   std::vector<ProcessId> members;  // ascending
   std::vector<BodyId> outside;     // of arc->start().outside: all in contact that are no members

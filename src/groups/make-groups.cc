@@ -213,7 +213,7 @@ double interval_of(const Regrouping& work, const Group& group) {
           std::max(slowest, body.multibody ? joint_check_interval(work.scene(), *body.multibody)
                                            : bond_check_interval(work.scene(), body));
   }
-  const double interval = check_interval(work, touching, group.foreseen);
+  const double interval = check_interval(work, touching, group.doublings);
   return slowest > 0 ? std::min(slowest, interval) : interval;
 }
 
@@ -311,7 +311,7 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   group->members = members;
   const double border_end = take_pairs(work, *group);
   const Group* before = same_before(work, *group);
-  if (before) group->foreseen = foreseen_in_a_row(work, *group, *before);
+  if (before) group->doublings = doublings_of(work, *group, *before);
   set_check_times(work, before, border_end, *group);
   for (const ProcessId member : members)
     group->placed_at = std::max(group->placed_at, placed_at(work.before.state(member)));

@@ -68,6 +68,9 @@ const MendedSeed mended[] = {
      "a ball that friction jams where its normals are not opposite was not told squeezed"},
     {"bonds", 22, "bodies swung on stiff springs by the implicit method"},
     {"called", 16053, "a callback turned a held body back within a step that was far too long"},
+    {"round", 19270,
+     "a rim over which a cone lay was followed where it crossed it last, not deepest"},
+    {"plates", 90, "a spike's edge lay in the slit between two plates, held by one check in two"},
 };
 
 }  // namespace

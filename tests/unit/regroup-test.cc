@@ -33,6 +33,29 @@ TEST(Regroup, a_cube_that_fuses_with_the_floor_is_a_group_of_one) {
   for (const GroupContact& contact : group.arc->start().contacts) EXPECT_EQ(contact.share, 0.25);
 }
 
+// A cube that slides on: the time to its next check doubles, up to that of what hardly moves (1/30
+// s); what comes meanwhile begins anew.
+TEST(Regroup, what_goes_on_as_foreseen_is_checked_after_twice_the_time) {
+  SmallScene small;
+  const BodyId floor = small.add_floor(), cube = small.add_cube(0.1, {0, 0, 0.05}, {0.5, 0, 0});
+  ContactSettings slippery;
+  slippery.friction = 0;
+  small.scene.contacts.add({}, {}, slippery);
+  small.fuse(floor, cube, 0);
+  std::vector<double> lasted;
+  for (int k = 0; k < 10; ++k) {
+    const double from = small.group_of(cube).key.time;
+    small.check(cube, {cube});
+    lasted.push_back(small.group_of(cube).key.time - from);
+  }
+  EXPECT_EQ(small.group_of(cube).doublings, answer::most_halvings);
+  EXPECT_DOUBLE_EQ(lasted.front(), 1.0 / 120);
+  EXPECT_DOUBLE_EQ(lasted.back(), 1.0 / 30);
+  small.regroup({small.group_of(cube).key.time + 1e-3, 1, KeyKind::impact, pair_id(floor, cube)},
+                Cause::impact, {cube}, [](Successor& s) { s.data.v.y() = s.point.v.y() = 0.1; });
+  EXPECT_EQ(small.group_of(cube).doublings, 0);
+}
+
 TEST(Regroup, what_hangs_together_is_one_group_but_not_over_the_floor) {
   SmallScene small;
   const BodyId floor = small.add_floor();

@@ -111,9 +111,9 @@ struct Exposure {
 
   // False also under a face that the middle of the other is not over: it comes from elsewhere.
   bool add_vertex(std::uint64_t v, std::uint64_t face, const Vec3& point, double height) const {
-    const Polyhedron::Face& side = part.face(static_cast<int>(face));
-    if (side.normal.dot(middle) <= side.offset) return false;
-    return add({of_a, part.faces()[face].normal, point, height, v, face, ~std::uint64_t{0}});
+    const Polyhedron::Face& under = part.faces()[face];
+    if (under.normal.dot(middle) <= under.offset) return false;
+    return add({of_a, under.normal, point, height, v, face, ~std::uint64_t{0}});
   }
 
   // Vertices of the other, each over or under the face of the part that it is nearest to, or under

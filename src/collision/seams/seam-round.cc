@@ -40,14 +40,13 @@ bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
 // neighbours: its points on that plane (valley.h).
 void add_in_valleys(const SeamPair& seam, bool of_a, std::size_t from,
                     std::vector<ManifoldPoint>& out) {
+  const SeamSide &side = of_a ? seam.a : seam.b, &round_side = of_a ? seam.b : seam.a;
   const ConvexPart& part = of_a ? seam.first() : seam.second();
   const ConvexPart& round = of_a ? seam.second() : seam.first();
-  if (part.kind != PartKind::polyhedron || !(of_a ? seam.a : seam.b).has_seams) return;
+  if (part.kind != PartKind::polyhedron || !side.has_seams) return;
   const Polyhedron& core = *part.core;
-  const Frame& body = (of_a ? seam.a : seam.b).frame;
-  const Frame& round_body = (of_a ? seam.b : seam.a).frame;
-  const Frame world = body * part.placement;
-  const SupportCore support(round, round_body * round.placement);
+  const Frame world = side.frame * part.placement;
+  const SupportCore support(round, round_side.frame * round.placement);
   const Vec3 middle = world.to_local(support.center());
   const double same_place = seam::buried_margin * seam.size;
   const auto is_known = [&](const Vec3& point, double gap) {
@@ -75,9 +74,11 @@ void add_in_valleys(const SeamPair& seam, bool of_a, std::size_t from,
     plane.offset = face.offset;
     points.clear();
     if (of_a)
-      part_manifold(plane, world, round, round_body, seam.reach, seam.choice, seam.pair, points);
+      part_manifold(plane, world, round, round_side.frame, seam.reach, seam.choice, seam.pair,
+                    points);
     else
-      part_manifold(round, round_body, plane, world, seam.reach, seam.choice, seam.pair, points);
+      part_manifold(round, round_side.frame, plane, world, seam.reach, seam.choice, seam.pair,
+                    points);
     for (ManifoldPoint& p : points) {
       if (!goes_on(world.to_local(p.core_point - p.radius * p.normal))) continue;
       p.feature =
@@ -117,21 +118,11 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
   }
 }
 
-}  // namespace
-
-double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
-  const ConvexPart& first = seam.first();
-  const ConvexPart& second = seam.second();
+// What is nearest, or what of it the neighbours leave exposed.
+void add_reached(const SeamPair& seam, const RoundDistance& near, std::vector<ManifoldPoint>& out) {
   const std::size_t from = out.size();
-  const Separation s = part_separation(first, seam.a.frame, second, seam.b.frame, nullptr);
-  const auto finish = [&] {
-    for (const bool of_a : {true, false}) add_in_valleys(seam, of_a, from, out);
-    return s.distance;
-  };
-  if (s.distance > seam.farthest()) return s.distance;
-  if (s.distance > seam.reach) return finish();
-  const RoundDistance near{s.distance, s.normal, s.point_a, s.point_b};
-  round_manifold(first, seam.a.frame, second, seam.b.frame, near, seam.reach, seam.pair, out);
+  round_manifold(seam.first(), seam.a.frame, seam.second(), seam.b.frame, near, seam.reach,
+                 seam.pair, out);
   const bool ghost_a = buries(seam, true, near);
   const bool ghost = ghost_a || buries(seam, false, near);
   if (ghost)
@@ -140,7 +131,19 @@ double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
     seam.remove_ghosts(from, seam::face_angle, out);
   const bool sunk = near.distance < seam::sunk * seam.size;
   if (ghost && sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
-  return finish();
+}
+
+}  // namespace
+
+double round_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) {
+  const std::size_t from = out.size();
+  const Separation s =
+      part_separation(seam.first(), seam.a.frame, seam.second(), seam.b.frame, nullptr);
+  if (s.distance > seam.farthest()) return s.distance;
+  if (s.distance <= seam.reach)
+    add_reached(seam, {s.distance, s.normal, s.point_a, s.point_b}, out);
+  for (const bool of_a : {true, false}) add_in_valleys(seam, of_a, from, out);
+  return s.distance;
 }
 
 }  // namespace tw

@@ -15,16 +15,18 @@
 
 namespace tw {
 
-// Two plates that meet in an edge alone make a valley, too, with nothing beneath: there a tip is
-// through as soon as it is sunk at all.
+// Two plates that meet in an edge alone make a valley, too, with nothing beneath: a slit, through
+// which a tip is as soon as it is sunk at all.
 //
 // Whether the point (frame of the polyhedron), beside the face, is over or under what the face goes
 // on by beneath its neighbours: beyond each side that the foot of the point is beyond, a neighbour
 // rises above the face, and a neighbour holds the foot, no more than `farthest` (m) from the face.
 // A point under it is in a neighbour too: else it is on the far side of that, where there is no
-// valley.  Where there is nothing beneath, the middle of the body that the point is of (`middle`,
-// frame of the polyhedron) tells the sides apart.  `world`: the frame of the polyhedron; `size` (m)
-// as in seams.h.
+// valley.  Of a slit nothing is held, but nothing lies between its border and the point, or the
+// place where the body that the point is of goes through the plane; and the neighbour rises between
+// what the face goes on by and the middle of that body, which tells above from below.  In any case
+// the middle (`middle`, frame of the polyhedron) is over the face.  `world`: the frame of the
+// polyhedron; `size` (m) as in seams.h.
 bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& point,
                 const Vec3& middle, const Frame& world,
                 const std::vector<SeamNeighbour>& neighbours, double farthest, double size);
