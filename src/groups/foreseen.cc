@@ -19,6 +19,11 @@ bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId r
 }
 
 int doublings_of(const Regrouping& work, const Group& group, const Group& before) {
+  // whether what is slow has stopped is decided by what checks see of it
+  const auto is_watched = [&](ProcessId member) {
+    return work.stillness[work.place_of(work.successor_of(member))].since != never;
+  };
+  if (std::any_of(group.members.begin(), group.members.end(), is_watched)) return 0;
   // what a callback changes goes on, as far as its contacts are concerned
   if (work.cause == Cause::callback) return before.doublings;
   if (work.cause != Cause::check || before.at_rest || group.has_border || before.has_border ||

@@ -5,7 +5,7 @@
 // so the next one may come after twice the time, and so on, up to the time after which what hardly
 // moves is looked at, or in which it moves by its own thickness (check-times.cc).  The first that
 // finds anything else (a contact more or less, one that is elsewhere, an arc that ended early), and
-// whatever changes the group otherwise, begins anew.  A function
+// whatever changes the group otherwise, begins anew; so does what is watched for rest.  A function
 // of the group and of the one before it, as everything of a group is.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later

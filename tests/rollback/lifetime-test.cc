@@ -17,11 +17,11 @@ TEST(Lifetime, groups_of_the_past_go) {
     World world;
     tower_scene(12, 0).fill(world);
     std::int64_t most = 0;
-    for (int i = 1; i <= 40; ++i) {
+    for (int i = 1; i <= 80; ++i) {
       world.advance(0.05 * i);
       most = std::max(most, Group::alive() - before);
     }
-    EXPECT_GT(count_of(world.statistics(), "groups"), 100);
+    EXPECT_GT(count_of(world.statistics(), "groups"), 200);
     EXPECT_LE(most, 13);
   }
   EXPECT_EQ(Group::alive(), before);
