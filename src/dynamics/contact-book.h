@@ -37,6 +37,8 @@ class ContactBook {
   const ContactParameters& between(BodyId a, BodyId b) const;
   // Whether some pair may have been told not to collide.
   bool may_disable() const { return may_disable_; }
+  // Changes with every rule, not with bodies.
+  unsigned version() const { return table_.version(); }
 
  private:
   // Bodies that a rule names are classes of their own; others are one with all of their material.

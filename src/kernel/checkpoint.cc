@@ -37,6 +37,7 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   auto result = std::make_shared<Checkpoint>();
   result->owner = this;
   result->present = simulation.present;
+  result->contact_rules = simulation.scene.contacts.version();
   for (const Process& process : simulation.processes)
     result->states.push_back(kept_states(simulation.graph, process.id, simulation.present.key()));
   result->callbacks = callbacks.committed_ticks();
@@ -83,6 +84,9 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   }
   callbacks.restore(checkpoint.callbacks);
   delivery.restart();
+  // groups hold the contact parameters they were made with; what rests would keep them for good
+  if (present.begun && checkpoint.contact_rules != simulation.scene.contacts.version())
+    editing.renew_groups();
 }
 
 }  // namespace tw

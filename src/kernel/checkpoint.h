@@ -15,6 +15,7 @@ class Kernel;
 struct Checkpoint {
   const Kernel* owner = nullptr;
   Present present;
+  unsigned contact_rules = 0;  // version of the contact parameters: they are the scene's, and stay
   // by body: the last committed one, and what edits have added to it
   struct Kept {
     Key key;

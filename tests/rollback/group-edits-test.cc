@@ -281,6 +281,23 @@ TEST(GroupCheckpoints, stack_at_rest_comes_back_at_rest) {
   EXPECT_EQ(motion(scene.world), expected);
 }
 
+// Contact parameters are no part of a checkpoint: what rested then takes those that hold now.
+TEST(GroupCheckpoints, what_comes_back_at_rest_takes_contact_parameters_set_since) {
+  Stack scene;
+  scene.world.set_gravity({1, 0, -9.81});
+  scene.world.advance(2);
+  ASSERT_TRUE(scene.at_rest(scene.boxes[2]));
+  const auto checkpoint = scene.world.checkpoint();
+  const Vec3 before = scene.world.state(scene.boxes[2]).position;
+  set_contact_for_all(scene.world, 0, 0);
+  for (int time = 0; time < 2; ++time) {
+    scene.world.advance(2.5);
+    EXPECT_GT((scene.world.state(scene.boxes[2]).position - before).norm(), 0.05);
+    scene.world.restore(*checkpoint);
+    EXPECT_EQ(scene.world.state(scene.boxes[2]).position, before);
+  }
+}
+
 // A callback's error on a member stops its group, and is raised once it is final.
 TEST(GroupErrors, error_of_a_callback_on_a_member_is_raised_at_its_time) {
   for (std::uint64_t seed = 0; seed < 20; ++seed)
