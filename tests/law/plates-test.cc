@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/scene.h"
+#include "support/stability.h"
 
 namespace tw::test {
 namespace {
@@ -77,6 +78,43 @@ TEST(Plates, hold_tips_over_the_edge_where_they_meet) {
                 << world.time();
           }
         }
+}
+
+// Round bodies fall over the ends of the plates, where they are held by the plates' end edges:
+// these go on beneath the other plate.
+TEST(Plates, hold_round_bodies_over_their_ends) {
+  Random random(8);
+  const auto fall = [](double tilt, const ShapePtr& shape, const Vec3& place,
+                       const Quat& attitude) {
+    World world;
+    add_trough(world, tilt, 0, false);
+    BodyDef def;
+    def.shape = shape;
+    def.position = place;
+    def.orientation = attitude;
+    world.add_body(def);
+    const double start = world.total_energy();
+    for (int k = 1; k <= 160; ++k) {
+      world.advance(0.01 * k);
+      ASSERT_LT(world.total_energy(), start + 1e-6);
+      StabilityOutcome outcome;
+      measure_depths(world, outcome);
+      ASSERT_LT(outcome.deepest, 2e-3)
+          << shape->kind_name() << " at tilt " << tilt << " and " << world.time();
+    }
+  };
+  // one that went 4 cm deep, and gained 2000 times its energy
+  fall(0.5, make_cylinder(0.1, 0.15), {0.077088766728117, 0.918171188559892, 0.45},
+       Quat(0.4643850824118429, -0.45605745773643724, 0.7402892360590331, 0.16831499473147643));
+  for (int i = 0; i < 60; ++i) {
+    const double length = random.real(0.05, 0.35);
+    const ShapePtr shape = i % 3 == 0   ? make_cylinder(random.real(0.03, 0.13), length)
+                           : i % 3 == 1 ? make_cone(0.1, length)
+                                        : make_capsule(random.real(0.01, 0.06), length);
+    fall(random.real(0.15, 1.25), shape,
+         {random.real(-0.05, 0.05), (i % 2 == 0 ? 1 : -1) * random.real(0.9, 1.05), 0.7},
+         random_attitude(random));
+  }
 }
 
 }  // namespace

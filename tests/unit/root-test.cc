@@ -1,6 +1,7 @@
 // Root finding to full convergence.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "math/root.h"
+#include "math/maximum.h"
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,14 @@ TEST(Root, zero_at_an_end_is_the_root) {
   EXPECT_EQ(at_left.left, 1);
   const Bracket at_right = find_root(f, 0.0, 1.0, -1.0, 0.0);
   EXPECT_EQ(at_right.right, 1);
+}
+
+TEST(Maximum, is_found_inside_and_at_the_ends) {
+  const auto top_at = [](double place) {
+    return [place](double x) { return -std::abs(x - place) + 0.1 * std::min(x, place); };
+  };
+  for (const double place : {-1.0, -0.2, 0.7, 2.0, 5.0})
+    EXPECT_NEAR(greatest_at(top_at(place), -1, 2, 1e-9), std::min(place, 2.0), 1e-9);
 }
 
 }  // namespace

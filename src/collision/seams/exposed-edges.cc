@@ -11,12 +11,6 @@ namespace tw {
 
 namespace {
 
-// Of an edge, as fractions from tail to head.
-struct Stretch {
-  double from = 0, to = 1;
-  bool empty() const { return !(from <= to); }
-};
-
 // A height that is linear along the edge.
 struct Height {
   double at_tail = 0, at_head = 0;
@@ -203,6 +197,13 @@ struct EdgeThrough {
 
 }  // namespace
 
+void leave_exposed(const Vec3& tail, const Vec3& head, const std::vector<SeamNeighbour>& neighbours,
+                   double margin, std::vector<Stretch>& stretches) {
+  for (const SeamNeighbour& q : neighbours)
+    if (!held_by(q, tail, head, -margin).empty())
+      subtract(stretches, held_by(q, tail, head, margin));
+}
+
 void exposed_edges(const Polyhedron& part, const Frame& world, const Polyhedron& other,
                    const Frame& other_in_part, const std::vector<SeamNeighbour>& neighbours,
                    double margin, double reach, std::vector<ExposedPoint>& out) {
@@ -214,10 +215,7 @@ void exposed_edges(const Polyhedron& part, const Frame& world, const Polyhedron&
     if (inside.empty()) continue;
     const Vec3 tail = world * through.tail, head = world * through.at(1);
     exposed.assign(1, inside);
-    // an edge along the surface of a neighbour is no less exposed than that
-    for (const SeamNeighbour& q : neighbours)
-      if (!held_by(q, tail, head, -margin).empty())
-        subtract(exposed, held_by(q, tail, head, margin));
+    leave_exposed(tail, head, neighbours, margin, exposed);
     for (const Stretch& stretch : exposed) {
       const ExposedPoint p = through.deepest(heights, stretch);
       if (p.gap <= reach && through.is_normal(p.normal)) out.push_back(p);

@@ -32,9 +32,20 @@ struct ExposedPoint {
   int other_edge = -1;  // the edge that it crosses
 };
 
+// Of a segment, as fractions from tail to head.
+struct Stretch {
+  double from = 0, to = 1;
+  bool empty() const { return !(from <= to); }
+};
+
+// Takes from the stretches of a segment (world) what a neighbour holds, and `margin` (m) around
+// that.  What runs along the surface of a neighbour is no less exposed than that; neighbours other
+// than polyhedra and half-spaces bury nothing.
+void leave_exposed(const Vec3& tail, const Vec3& head, const std::vector<SeamNeighbour>& neighbours,
+                   double margin, std::vector<Stretch>& stretches);
+
 // `world`: the frame of `part`; `other_in_part` maps the other's frame to it.  Points within
-// `margin` (m) of a neighbour are not exposed.  Neighbours other than polyhedra and half-spaces
-// bury nothing here. Appends those with gap <= reach.
+// `margin` (m) of a neighbour are not exposed.  Appends those with gap <= reach.
 void exposed_edges(const Polyhedron& part, const Frame& world, const Polyhedron& other,
                    const Frame& other_in_part, const std::vector<SeamNeighbour>& neighbours,
                    double margin, double reach, std::vector<ExposedPoint>& out);

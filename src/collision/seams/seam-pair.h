@@ -68,4 +68,9 @@ struct SeamPair {
 double polyhedra_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 double round_at_seam(const SeamPair& pair, std::vector<ManifoldPoint>& out);
 
+// Where the neighbours bury the axis of least depth of a polyhedron and a round part: the edges of
+// the polyhedron, which is a's (or b's), as far as they are exposed, and what they go on by beneath
+// neighbours beside their ends.
+void round_at_edges(const SeamPair& pair, bool of_a, std::vector<ManifoldPoint>& out);
+
 }  // namespace tw

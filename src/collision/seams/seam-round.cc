@@ -131,6 +131,7 @@ void add_reached(const SeamPair& seam, const RoundDistance& near, std::vector<Ma
     seam.remove_ghosts(from, seam::face_angle, out);
   const bool sunk = near.distance < seam::sunk * seam.size;
   if (ghost && sunk && out.size() == from) add_shrunk(seam, ghost_a, out);
+  if (ghost && sunk && out.size() == from) round_at_edges(seam, ghost_a, out);
 }
 
 }  // namespace

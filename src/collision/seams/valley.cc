@@ -94,4 +94,29 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
          beyond.ends_beneath(near, true);
 }
 
+bool edge_goes_on(const Polyhedron& part, std::size_t edge, const Frame& world, bool to_head,
+                  double share, const std::vector<SeamNeighbour>& neighbours, double size) {
+  const Polyhedron::Edge& e = part.edges()[edge];
+  const Vec3 tail = part.vertex(e.tail), along = part.vertex(e.head) - tail;
+  const Vec3 end = tail + share * along;
+  const Vec3 beyond = (to_head ? 1 : -1) * along.normalized();
+  // of either face: into it, square to the edge
+  const Vec3 &left = part.face(e.left).normal, &right = part.face(e.right).normal;
+  const Vec3 into_left = -(right - right.dot(left) * left).normalized();
+  const Vec3 into_right = -(left - left.dot(right) * right).normalized();
+  const double probe = seam::probe * size;
+  for (const auto& [normal, into] : {std::pair(left, into_left), std::pair(right, into_right)})
+    for (const double rise : seam::rises)
+      for (const double aside : {0.3, 0.2}) {
+        const Vec3 there =
+            world *
+            (end + probe * (std::cos(rise) * beyond + std::sin(rise) * normal + aside * into));
+        if (std::any_of(neighbours.begin(), neighbours.end(), [&](const SeamNeighbour& q) {
+              return height_over(q, there) <= -seam::buried_margin * size;
+            }))
+          return true;
+      }
+  return false;
+}
+
 }  // namespace tw

@@ -31,4 +31,9 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
                 const Vec3& middle, const Frame& world,
                 const std::vector<SeamNeighbour>& neighbours, double farthest, double size);
 
+// Whether an edge goes on beyond the point at this share of it, towards its head or its tail,
+// beneath a neighbour: that is above one of the two faces there.
+bool edge_goes_on(const Polyhedron& part, std::size_t edge, const Frame& world, bool to_head,
+                  double share, const std::vector<SeamNeighbour>& neighbours, double size);
+
 }  // namespace tw

@@ -1,0 +1,98 @@
+// The exposed edges of a polyhedron through a round part.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.h"
+#include "collision/manifold-parts.h"
+#include "collision/seams/exposed-edges.h"
+#include "collision/seams/seam-pair.h"
+#include "collision/seams/valley.h"
+#include "collision/support-core.h"
+#include "math/maximum.h"
+
+namespace tw {
+
+namespace {
+
+// An exposed edge of a polyhedron and a round part: the axis of least depth of those square to the
+// edge, between the normals of its faces.  That of the two parts may be another one, which a
+// neighbour buries.
+struct EdgeUnder {
+  const Vec3& left;  // normals of the faces, world
+  const Vec3& right;
+  const Vec3& tail;
+  const SupportCore& round;
+  double angle = std::atan2(left.cross(right).norm(), left.dot(right));
+
+  Vec3 normal_at(double turn) const {
+    return (std::sin(angle - turn) * left + std::sin(turn) * right) / std::sin(angle);
+  }
+  Vec3 lowest(const Vec3& normal) const { return round.support(-normal) - round.margin * normal; }
+  double height(const Vec3& normal) const { return normal.dot(lowest(normal) - tail); }
+
+  // Seen from the edge; false where a face is nearer.
+  bool find(RoundDistance& least) const {
+    if (!(std::sin(angle) > 0)) return false;
+    const double end = 1e-6 * angle;
+    const double turn = greatest_at([&](double t) { return height(normal_at(t)); }, 0, angle, end);
+    if (turn < 2 * end || turn > angle - 2 * end) return false;
+    least.normal = normal_at(turn);
+    least.point_b = lowest(least.normal);
+    least.distance = least.normal.dot(least.point_b - tail);
+    least.point_a = least.point_b - least.distance * least.normal;
+    return true;
+  }
+};
+
+}  // namespace
+
+void round_at_edges(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out) {
+  const SeamSide& side = of_a ? seam.a : seam.b;
+  const ConvexPart& part = of_a ? seam.first() : seam.second();
+  const ConvexPart& round = of_a ? seam.second() : seam.first();
+  if (part.kind != PartKind::polyhedron || !side.has_seams) return;
+  const Polyhedron& core = *part.core;
+  const Frame world = side.frame * part.placement;
+  const SupportCore support(round, (of_a ? seam.b : seam.a).frame * round.placement);
+  thread_local std::vector<Stretch> exposed;
+  for (std::size_t e = 0; e < core.edges().size(); ++e) {
+    const Polyhedron::Edge& edge = core.edges()[e];
+    const Vec3 left = world.R * core.face(edge.left).normal;
+    const Vec3 right = world.R * core.face(edge.right).normal;
+    const Vec3 tail = world * core.vertex(edge.tail), head = world * core.vertex(edge.head);
+    RoundDistance least;
+    if (!EdgeUnder{left, right, tail, support}.find(least)) continue;
+    if (least.distance > seam.reach || least.distance < -seam::sunk * seam.size) continue;
+    const double margin = seam::buried_margin * seam.size, length = (head - tail).norm();
+    const double at = (head - tail).dot(least.point_a - tail) / length;
+    exposed.assign(1, Stretch());
+    leave_exposed(tail, head, seam.neighbours(of_a), margin, exposed);
+    const bool on_it = std::any_of(exposed.begin(), exposed.end(), [&](const Stretch& stretch) {
+      return at >= stretch.from * length && at <= stretch.to * length;
+    });
+    // or beneath a neighbour beside its end
+    const double farthest = seam::beyond_end * std::abs(least.distance) + margin;
+    const bool beside = std::any_of(exposed.begin(), exposed.end(), [&](const Stretch& stretch) {
+      const double from = stretch.from * length, to = stretch.to * length;
+      const double end = at < 0.5 * (from + to) ? from : to;
+      return std::abs(at - end) <= farthest && edge_goes_on(core, e, world, end == to, end / length,
+                                                            seam.neighbours(of_a), seam.size);
+    });
+    if (!on_it && !beside) continue;
+    if (!of_a) {
+      std::swap(least.point_a, least.point_b);
+      least.normal = -least.normal;
+    }
+    const std::size_t first = out.size();
+    round_manifold(seam.first(), seam.a.frame, seam.second(), seam.b.frame, least, seam.reach,
+                   seam.pair, out);
+    for (std::size_t i = first; i < out.size(); ++i)
+      out[i].feature =
+          feature_name(seam.pair, of_a ? FeatureMode::exposed_of_a : FeatureMode::exposed_of_b,
+                       {e, out[i].feature, 1});
+    if (!beside) seam.remove_ghosts(first, seam::same_angle, out);
+  }
+}
+
+}  // namespace tw
