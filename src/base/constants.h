@@ -412,6 +412,8 @@ inline constexpr double same_point = 1e-5;
 inline constexpr double buried_margin = 2e-5;
 // How far from the surface normals are compared, and how far around a point a face is looked at.
 inline constexpr double probe = 0.01;
+// Walls of the ground that are no farther apart, as a share of `probe`, are inner walls.
+inline constexpr double crack = 0.05;
 // How steeply a neighbour is looked for beyond a side of a face, rad.
 inline constexpr double rises[] = {0, 0.5, 1, 1.4};
 // Where it is looked for between the border of a slit and what is in it.

@@ -117,6 +117,34 @@ TEST(HeightField, hills_are_rolled_over_as_slabs_of_the_same_triangles) {
   }
 }
 
+// Cells that stand against each other are one ground: nothing is pressed by the walls between them,
+// which all stand upright, on ground that falls away steeply.
+TEST(HeightField, walls_between_cells_press_nothing) {
+  std::vector<double> heights;
+  for (int j = -10; j <= 10; ++j)
+    for (int i = -10; i <= 10; ++i)
+      heights.push_back(0.05 * (0.02 * (i * i + j * j) + std::sin(1.7 * (i + 10) * (j + 10))));
+  const ShapePtr ground = make_height_field(heights, 21, 0.17, 0.17);
+  Random random(59);
+  for (int seed = 0; seed < 60; ++seed) {
+    World world;
+    set_contact_for_all(world, 0.3, 0.5);
+    add_ground(world, ground);
+    BodyDef def = body_of(make_cone(0.1, 0.2),
+                          Vec3(random.real(-0.5, 0.5), random.real(-0.5, 0.5), 0.5), Vec3::Zero());
+    def.orientation = random_attitude(random);
+    const BodyId id = world.add_body(def);
+    const double start = world.total_energy();
+    for (int k = 1; k <= 150; ++k) {
+      world.advance(0.01 * k);
+      ASSERT_LT(world.total_energy(), start + 1e-6);
+      for (const ContactReading& contact : world.contacts_of(id, world.time()))
+        ASSERT_TRUE(contact.force == 0 || std::abs(contact.normal.z()) > 1e-9)
+            << seed << " at " << world.time() << " by " << contact.force << " N";
+    }
+  }
+}
+
 // Rest on rough ground: nothing sinks in, nothing moves.  (Without resistance drums roll on in
 // their hollows.)
 TEST(HeightField, bodies_come_to_rest_on_rough_ground) {

@@ -68,16 +68,21 @@ void round_at_edges(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>&
     const double at = (head - tail).dot(least.point_a - tail) / length;
     exposed.assign(1, Stretch());
     leave_exposed(tail, head, seam.neighbours(of_a), margin, exposed);
+    const auto edge_at = [&](double share) {
+      return GroundEdge(core, e, share, world, seam.neighbours(of_a), seam.size);
+    };
     const bool on_it = std::any_of(exposed.begin(), exposed.end(), [&](const Stretch& stretch) {
-      return at >= stretch.from * length && at <= stretch.to * length;
+      return at >= stretch.from * length && at <= stretch.to * length &&
+             edge_at(at / length).is_open(0);
     });
     // or beneath a neighbour beside its end
     const double farthest = seam::beyond_end * std::abs(least.distance) + margin;
     const bool beside = std::any_of(exposed.begin(), exposed.end(), [&](const Stretch& stretch) {
-      const double from = stretch.from * length, to = stretch.to * length;
-      const double end = at < 0.5 * (from + to) ? from : to;
-      return std::abs(at - end) <= farthest && edge_goes_on(core, e, world, end == to, end / length,
-                                                            seam.neighbours(of_a), seam.size);
+      const bool to_head = at > 0.5 * (stretch.from + stretch.to) * length;
+      const double end = to_head ? stretch.to : stretch.from;
+      if (std::abs(at - end * length) > farthest) return false;
+      const int towards = to_head ? 1 : -1;
+      return edge_at(end).is_open(-towards) && edge_at(end).goes_on(towards);
     });
     if (!on_it && !beside) continue;
     if (!of_a) {

@@ -38,6 +38,18 @@ struct Beyond {
     });
   }
 
+  // Whether the face is open beside the border: an inner wall, whose neighbour stands against it,
+  // is no slope.
+  bool is_slope(const Vec3& border) const {
+    Vec3 inward = Vec3::Zero();
+    for (int i = 0; i < face.count; ++i) {
+      const Polyhedron::Side& side = part.side(face.first + i);
+      if (side.inward.dot(foot) < side.offset) inward += side.inward;
+    }
+    const double probe = seam::probe * size;
+    return !is_held(border + probe * (inward.normalized() + seam::crack * face.normal), 0);
+  }
+
   // Whether beyond the side, as seen from that place on the border, a neighbour is above the face:
   // straight beyond but for `aside`, and up to an angle of `most`, rad.
   bool is_beneath(const Vec3& border, const Polyhedron::Side& side, double aside,
@@ -79,7 +91,7 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
   const Vec3& foot = beyond.foot;
   if (beyond.over <= 0 || over_face(part, face, foot, 0)) return false;
   const Vec3 border = nearest_on_face(part, face, foot);
-  if ((border - foot).norm() > farthest) return false;
+  if ((border - foot).norm() > farthest || !beyond.is_slope(border)) return false;
   if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
       beyond.ends_beneath(border, false))
     return true;
@@ -94,26 +106,44 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
          beyond.ends_beneath(near, true);
 }
 
-bool edge_goes_on(const Polyhedron& part, std::size_t edge, const Frame& world, bool to_head,
-                  double share, const std::vector<SeamNeighbour>& neighbours, double size) {
+GroundEdge::GroundEdge(const Polyhedron& part, std::size_t edge, double share, const Frame& world,
+                       const std::vector<SeamNeighbour>& neighbours, double size)
+    : world_(world), neighbours_(neighbours), size_(size) {
   const Polyhedron::Edge& e = part.edges()[edge];
-  const Vec3 tail = part.vertex(e.tail), along = part.vertex(e.head) - tail;
-  const Vec3 end = tail + share * along;
-  const Vec3 beyond = (to_head ? 1 : -1) * along.normalized();
-  // of either face: into it, square to the edge
-  const Vec3 &left = part.face(e.left).normal, &right = part.face(e.right).normal;
-  const Vec3 into_left = -(right - right.dot(left) * left).normalized();
-  const Vec3 into_right = -(left - left.dot(right) * right).normalized();
-  const double probe = seam::probe * size;
-  for (const auto& [normal, into] : {std::pair(left, into_left), std::pair(right, into_right)})
+  const Vec3 &tail = part.vertex(e.tail), &head = part.vertex(e.head);
+  place_ = tail + share * (head - tail);
+  along_ = (head - tail).normalized();
+  normal_[0] = part.face(e.left).normal;
+  normal_[1] = part.face(e.right).normal;
+  const double cosine = normal_[0].dot(normal_[1]);
+  for (const int i : {0, 1}) into_[i] = (cosine * normal_[i] - normal_[1 - i]).normalized();
+}
+
+bool GroundEdge::is_held(const Vec3& offset, double depth) const {
+  const Vec3 there = world_ * (place_ + offset);
+  return std::any_of(neighbours_.begin(), neighbours_.end(),
+                     [&](const SeamNeighbour& q) { return height_over(q, there) <= -depth; });
+}
+
+bool GroundEdge::is_open(int towards) const {
+  // from farther, over cracks, and from near by, as the ground may fall away steeply; at its end
+  // the edge may be within the neighbour a little
+  for (const double share : {1.0, 0.1, 0.01}) {
+    if (towards != 0 && share < 0.1) break;
+    for (const int i : {0, 1}) {
+      const Vec3 beside = into_[i] + towards * along_ + seam::crack * normal_[i];
+      if (is_held(share * seam::probe * size_ * beside, 0)) return false;
+    }
+  }
+  return true;
+}
+
+bool GroundEdge::goes_on(int towards) const {
+  for (const int i : {0, 1})
     for (const double rise : seam::rises)
       for (const double aside : {0.3, 0.2}) {
-        const Vec3 there =
-            world *
-            (end + probe * (std::cos(rise) * beyond + std::sin(rise) * normal + aside * into));
-        if (std::any_of(neighbours.begin(), neighbours.end(), [&](const SeamNeighbour& q) {
-              return height_over(q, there) <= -seam::buried_margin * size;
-            }))
+        const Vec3 beyond = std::cos(rise) * towards * along_ + std::sin(rise) * normal_[i];
+        if (is_held(seam::probe * size_ * (beyond + aside * into_[i]), seam::buried_margin * size_))
           return true;
       }
   return false;

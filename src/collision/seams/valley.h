@@ -31,9 +31,27 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
                 const Vec3& middle, const Frame& world,
                 const std::vector<SeamNeighbour>& neighbours, double farthest, double size);
 
-// Whether an edge goes on beyond the point at this share of it, towards its head or its tail,
-// beneath a neighbour: that is above one of the two faces there.
-bool edge_goes_on(const Polyhedron& part, std::size_t edge, const Frame& world, bool to_head,
-                  double share, const std::vector<SeamNeighbour>& neighbours, double size);
+// A place on an edge of a part of the ground, and what its neighbours make of it there.
+class GroundEdge {
+ public:
+  // At this share of the edge, from tail to head.  `world`: the frame of the polyhedron.
+  GroundEdge(const Polyhedron& part, std::size_t edge, double share, const Frame& world,
+             const std::vector<SeamNeighbour>& neighbours, double size);
+  // Whether both faces are open, here or (+1, -1) a little towards the head or the tail: an inner
+  // wall has no edges.
+  bool is_open(int towards) const;
+  // Whether it goes on from here, towards its head (+1) or tail (-1), beneath a neighbour: that is
+  // above one of the two faces there.
+  bool goes_on(int towards) const;
+
+ private:
+  bool is_held(const Vec3& offset, double depth) const;
+
+  const Frame& world_;
+  const std::vector<SeamNeighbour>& neighbours_;
+  double size_;
+  Vec3 place_, along_;                  // unit, from tail to head
+  Vec3 normal_[2] = {}, into_[2] = {};  // of both faces, and into them, square to the edge
+};
 
 }  // namespace tw
