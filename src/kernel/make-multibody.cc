@@ -53,8 +53,12 @@ std::shared_ptr<Multibody> make_multibody(const MultibodyDef& def, std::uint32_t
   TW_REQUIRE(is_finite(def.orientation) && def.orientation.squaredNorm() > 0,
              "orientation of " + name + " is zero or not finite; expected a quaternion #(w x y z)");
   const Frame base(Pose{def.position, def.orientation.normalized()});
-  return std::make_shared<Multibody>(Multibody{
-      number, name, def.place, Tree(specs_of(def, name)), base, {}, {}, false, nullptr, {}});
+  Tree tree(specs_of(def, name));
+  TW_REQUIRE(tree.nv() > 0, "the multibody " + name +
+                                " cannot move: all of its links are welded to its base; expected "
+                                "at least one joint that moves, or a body with a union of shapes");
+  return std::make_shared<Multibody>(
+      Multibody{number, name, def.place, std::move(tree), base, {}, {}, false, nullptr, {}});
 }
 
 MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef& def, double now) {

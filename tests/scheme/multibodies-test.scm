@@ -286,6 +286,8 @@
     (test-message "a joint of what is free" "first link a of a free multibody has a joint, revolute"
       (add-multibody! #:base 'free (link 'a #:joint (revolute) #:shape (rod-shape 1))))
     (test-message "no links" "has no links" (add-multibody!))
+    (test-message "welds alone" "cannot move: all of its links are welded"
+                  (add-multibody! (link "w" #:joint (weld) #:shape (box 1 1 1))))
     (test-message "a base that moves freely" "the base of the multibody .* is ball; expected a body that is fixed"
       (add-multibody! #:base ball (link 'a #:joint (revolute) #:shape (rod-shape 1))))
     (test-message "an unknown base" "base is floating; expected 'fixed, 'free"
