@@ -432,8 +432,8 @@ inline constexpr int most_around = 4;
 inline constexpr double flush = 1e-4, low = 2e-3, sideways = 0.99;
 // How far a round part is scaled down to be apart from what it overlaps: one of these mostly does.
 inline constexpr double shrinking[] = {0.98, 0.9};
-// How far beyond the end of an edge, against its depth, the lowest point of a round part may be: that
-// is beneath a neighbour, which stands there at up to 76 degrees.
+// How far beyond the end of an edge, against its depth, the lowest point of a round part may be:
+// that is beneath a neighbour, which stands there at up to 76 degrees.
 inline constexpr double beyond_end = 4;
 
 }  // namespace tw::seam

@@ -41,11 +41,9 @@ struct Beyond {
   // Whether the face is open beside the border: an inner wall, whose neighbour stands against it,
   // is no slope.
   bool is_slope(const Vec3& border) const {
-    Vec3 inward = Vec3::Zero();
-    for (int i = 0; i < face.count; ++i) {
-      const Polyhedron::Side& side = part.side(face.first + i);
-      if (side.inward.dot(foot) < side.offset) inward += side.inward;
-    }
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < face.count; ++i) sum += part.vertex(part.corner(face.first + i));
+    const Vec3 inward = sum / face.count - border;
     const double probe = seam::probe * size;
     return !is_held(border + probe * (inward.normalized() + seam::crack * face.normal), 0);
   }
@@ -91,13 +89,13 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
   const Vec3& foot = beyond.foot;
   if (beyond.over <= 0 || over_face(part, face, foot, 0)) return false;
   const Vec3 border = nearest_on_face(part, face, foot);
-  if ((border - foot).norm() > farthest || !beyond.is_slope(border)) return false;
+  if ((border - foot).norm() > farthest) return false;
   if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
       beyond.ends_beneath(border, false))
     return true;
 
   // a slit: nothing is between its border and the point, nor where the body goes through the plane
-  if (!beyond.is_open(border, point)) return false;
+  if (!beyond.is_slope(border) || !beyond.is_open(border, point)) return false;
   const Vec3 through =
       height < 0 ? Vec3(point + height / (height - beyond.over) * (middle - point)) : foot;
   if (over_face(part, face, through, 0)) return beyond.ends_beneath(border, true);
