@@ -14,6 +14,16 @@ namespace tw {
 
 namespace {
 
+// Whether a neighbour holds the place (world) and `depth` (m) around it.
+bool hold(const std::vector<SeamNeighbour>& neighbours, const Vec3& place, double depth) {
+  return std::any_of(neighbours.begin(), neighbours.end(), [&](const SeamNeighbour& q) {
+    const double farthest = q.part->bound_radius - depth;
+    return (q.frame * q.part->bound_center - place).squaredNorm() <=
+               farthest * farthest * (1 + 1e-9) &&
+           height_over(q, place) <= -depth;
+  });
+}
+
 // What a face goes on by beyond the sides that the foot of a point is beyond.
 struct Beyond {
   const Polyhedron& part;
@@ -26,9 +36,7 @@ struct Beyond {
 
   // Whether a neighbour holds the point and `depth` (m) around it.
   bool is_held(const Vec3& point, double depth) const {
-    const Vec3 there = world * point;
-    return std::any_of(neighbours.begin(), neighbours.end(),
-                       [&](const SeamNeighbour& q) { return height_over(q, there) <= -depth; });
+    return hold(neighbours, world * point, depth);
   }
 
   // Whether none is between the two: they are on both sides of a slit, or in it.
@@ -118,9 +126,7 @@ GroundEdge::GroundEdge(const Polyhedron& part, std::size_t edge, double share, c
 }
 
 bool GroundEdge::is_held(const Vec3& offset, double depth) const {
-  const Vec3 there = world_ * (place_ + offset);
-  return std::any_of(neighbours_.begin(), neighbours_.end(),
-                     [&](const SeamNeighbour& q) { return height_over(q, there) <= -depth; });
+  return hold(neighbours_, world_ * (place_ + offset), depth);
 }
 
 bool GroundEdge::is_open(int towards) const {
