@@ -33,26 +33,20 @@ the earlier.
 #:fusion-speed  m/s, 0 or more: an impact that leaves less becomes a lasting contact; 0.07 sqrt(g
                 size)
 #:friction-law  'anchored (a spring holds what sticks) or 'smooth; 'anchored
-#:impact-law    'chatterjee-ruina, the only one that is there yet"
-  (check-impact-law impact-law)
+#:impact-law    'chatterjee-ruina (one formula), or 'stronge: the impact is followed, sliding,
+                sticking and turning back included, and restitution gives the square of it of the
+                work that compression took; 'chatterjee-ruina"
   (let ((settings (filter cdr `((restitution . ,restitution) (friction . ,friction)
                                 (rolling-friction . ,rolling-friction)
                                 (spinning-friction . ,spinning-friction)
                                 (stiffness . ,stiffness) (damping . ,damping)
-                                (fusion-speed . ,fusion-speed) (friction-law . ,friction-law)))))
+                                (fusion-speed . ,fusion-speed) (friction-law . ,friction-law)
+                                (impact-law . ,impact-law)))))
     (set-contact! a b settings)))
 
 (define (set-contact! a b settings)
   (call-with-sides (lambda (a b) (%set-contact! (current-world) a b settings)) a b)
   (if #f #f))
-
-;; Chatterjee and Ruina's law is the only one so far.
-(define (check-impact-law law)
-  (case law
-    ((#f chatterjee-ruina) #t)
-    ((stronge)
-     (not-there-yet "#:impact-law 'stronge" "Stronge's law (expected 'chatterjee-ruina)"))
-    (else (bad-value "impact-law" law "'chatterjee-ruina"))))
 
 (define (contact-parameters a b)
   "Return the restitution, the friction, whether they collide, and the lengths of rolling and spinning

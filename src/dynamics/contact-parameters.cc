@@ -83,7 +83,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
                    [](const auto& x, const auto& y) { return x.first > y.first; });
 
   ContactParameters result;
-  std::array<bool, 9> open;
+  std::array<bool, 10> open;
   open.fill(true);
   for (const auto& [specificity, rule] : found) {
     const ContactSettings& s = rule->settings;
@@ -96,6 +96,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
     take(open[6], s.collide, result.collide);
     take(open[7], s.rolling_friction, result.rolling_friction);
     take(open[8], s.spinning_friction, result.spinning_friction);
+    take(open[9], s.impact_law, result.impact_law);
   }
   return result;
 }

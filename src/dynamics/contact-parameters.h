@@ -14,7 +14,8 @@
 
 namespace tw {
 
-enum class FrictionLaw : unsigned char { anchored, smooth };
+enum class FrictionLaw : unsigned char { anchored, smooth };  // of lasting contacts
+enum class ImpactLaw : unsigned char { chatterjee_ruina, stronge };
 
 // One side of a rule.
 struct ContactSide {
@@ -32,6 +33,7 @@ struct ContactSettings {
   std::optional<double> damping;                              // s/m, Hunt-Crossley's b
   std::optional<double> fusion_speed;                         // m/s
   std::optional<FrictionLaw> friction_law;
+  std::optional<ImpactLaw> impact_law;
   std::optional<bool> collide;  // set by disable/enable-collisions!
 };
 
@@ -42,6 +44,7 @@ struct ContactParameters {
   double rolling_friction = 0, spinning_friction = 0;  // m
   std::optional<double> stiffness, damping, fusion_speed;
   FrictionLaw friction_law = FrictionLaw::anchored;
+  ImpactLaw impact_law = ImpactLaw::chatterjee_ruina;
   bool collide = true;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "dynamics/impulse-solver.h"
 
+#include "dynamics/stronge-law.h"
+
 namespace tw {
 
 ImpulseSlot ImpulseSlot::of(const Body& body, const PoseTwist& point) {
@@ -86,7 +88,8 @@ void ImpulseSolver::apply(std::uint32_t slot, const Vec3& impulse, const Vec3& w
 
 void ImpulseSolver::strike(const ImpulseContact& c) {
   const Vec3 u = relative_velocity(c);
-  exchange(c, impact_impulse(compliance(c), c.normal, u, c.restitution, c.friction));
+  const auto law = c.law == ImpactLaw::stronge ? stronge_impulse : impact_impulse;
+  exchange(c, law(compliance(c), c.normal, u, c.restitution, c.friction));
 }
 
 void ImpulseSolver::exchange(const ImpulseContact& c, const Vec3& impulse) {

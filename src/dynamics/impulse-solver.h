@@ -30,6 +30,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/contact-parameters.h"
 #include "dynamics/impact-law.h"
 #include "dynamics/placed-body.h"
 
@@ -63,6 +64,7 @@ struct ImpulseContact {
   Vec3 point = Vec3::Zero();    // m
   double restitution = 0, friction = 0;
   double bears = 0;  // m/s: an approach up to this needs no impulse; may be infinite
+  ImpactLaw law = ImpactLaw::chatterjee_ruina;
 };
 
 // How a solution ended.

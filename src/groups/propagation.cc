@@ -61,8 +61,8 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
     const ContactParameters& law = scene.contacts.between(a, b);
     const double slow = fusion_speed(scene, scene.body(a), scene.body(b));
     for (const ContactPoint& c : work.struck_at)
-      touching_now.push_back(
-          {slot_of(a), slot_of(b), c.normal, c.point, law.restitution, law.friction, slow});
+      touching_now.push_back({slot_of(a), slot_of(b), c.normal, c.point, law.restitution,
+                              law.friction, slow, law.impact_law});
   }
   const int most = work.struck_at.empty() ? guard::most_passed_on : guard::most_struck_again;
   JointImpulses joints(solver, work.now());

@@ -231,7 +231,8 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   joints.add(b, slot_b);
   joints.join();
   const auto contact_at = [&](const ContactPoint& c) {
-    return ImpulseContact{slot_a, slot_b, c.normal, c.point, contact.restitution, contact.friction};
+    return ImpulseContact{slot_a,           slot_b, c.normal,          c.point, contact.restitution,
+                          contact.friction, 0,      contact.impact_law};
   };
   thread_local std::vector<ImpulseContact> contacts;
   contacts.clear();

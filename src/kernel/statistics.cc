@@ -172,7 +172,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"squeezed_depth", counters.squeezed_depth},
       {"squeezed_share", counters.squeezed_share},
       {"impulses_given_up", whole(counters.impulses_given_up)},
-      {"impacts_declared_soft", whole(counters.declared_soft)},
+      {"soft_after_repeats", whole(counters.declared_soft)},
       {"momentum_dropped", counters.momentum_dropped},
       {"kinematic_work", kinematic_work},
       {"placed_energy", counters.placed_energy},

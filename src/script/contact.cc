@@ -58,6 +58,12 @@ constexpr Setting settings_table[] = {
        s.friction_law = to_law<FrictionLaw>(
            v, n, {{"anchored", FrictionLaw::anchored}, {"smooth", FrictionLaw::smooth}});
      }},
+    {"impact-law",
+     [](ContactSettings& s, SCM v, const char* n) {
+       s.impact_law = to_law<ImpactLaw>(
+           v, n,
+           {{"chatterjee-ruina", ImpactLaw::chatterjee_ruina}, {"stronge", ImpactLaw::stronge}});
+     }},
     {"collide?", [](ContactSettings& s, SCM v, const char*) { s.collide = to_bool(v); }},
 };
 

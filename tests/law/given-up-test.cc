@@ -17,7 +17,7 @@ struct GivenUp {
   std::int64_t impulses = 0, impacts = 0;
   explicit GivenUp(const World& world)
       : impulses(count_of(world.statistics(), "impulses_given_up")),
-        impacts(count_of(world.statistics(), "impacts_declared_soft")) {}
+        impacts(count_of(world.statistics(), "soft_after_repeats")) {}
 };
 
 // A heavy cube stands on a light one; another falls on it.

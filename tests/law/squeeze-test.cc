@@ -142,7 +142,7 @@ TEST(Squeeze, what_a_plate_pins_to_the_floor_is_a_contact_at_once) {
     EXPECT_NEAR(world.state(body).position.z(), 0.25 * width, 1e-3) << kind.name;
     const auto table = world.statistics();
     EXPECT_LT(count_of(table, "collisions"), 100) << kind.name;
-    EXPECT_EQ(count_of(table, "impacts_declared_soft"), 0) << kind.name;
+    EXPECT_EQ(count_of(table, "soft_after_repeats"), 0) << kind.name;
   }
 }
 

@@ -149,7 +149,7 @@ TEST(Standstill, a_heavy_body_is_stopped_by_a_light_one_in_few_impacts) {
   const BodyId id = world.add_body(heavy);
   world.advance(0.2);
   EXPECT_LT(count_of(world.statistics(), "collisions"), 100);
-  EXPECT_EQ(count_of(world.statistics(), "impacts_declared_soft"), 0);
+  EXPECT_EQ(count_of(world.statistics(), "soft_after_repeats"), 0);
   EXPECT_NEAR(world.state(id).position.z(), 0.3, 0.002);
 }
 

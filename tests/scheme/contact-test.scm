@@ -28,14 +28,36 @@
     (test-message "negative friction" "friction is -1" (set-contact-parameters! a b #:friction -1))
     (test-message "an unknown law" "expected anchored or smooth"
       (set-contact-parameters! a b #:friction-law 'sticky))
-    (test-message "Stronge's impact law" "stronge is not there yet.*expected 'chatterjee-ruina"
-      (set-contact-parameters! a b #:impact-law 'stronge))
-    (test-message "an unknown impact law" "impact-law is 5; expected 'chatterjee-ruina"
-      (set-contact-parameters! a b #:impact-law 5))
-    (test-equal "the impact law there is" #f
-      (error-of (set-contact-parameters! a b #:impact-law 'chatterjee-ruina)))
+    (test-message "an unknown impact law" "impact-law is newton; expected chatterjee-ruina or stronge"
+      (set-contact-parameters! a b #:impact-law 'newton))
     (test-message "unknown keyword" "unknown keyword #:bounce; expected one of #:restitution"
       (set-contact-parameters! a b #:bounce 1))))
+
+;; A thin rod of length 1 and mass 1 comes down on its end, tilted by 60 degrees, without gravity.  By Stronge's
+;; law the end slides away at once with friction mu = 0.1 along x, so that along z
+;;   p = (1 + e) v/(k_zz - mu k_xz),  k_zz = 1/m + x^2/I,  k_xz = x z/I.
+(define (rod-speed law friction slide)
+  (in-world ()
+    (scene #:gravity #(0 0 0))
+    (let* ((angle (acos 0.5))
+           (rod (add-body! #:shape (box 1 1e-5 1e-5) #:mass 1 #:inertia #(1e-6 1/12 1/12)
+                           #:orientation (rotation #(0 1 0) angle)
+                           #:position #(0 0 1) #:velocity (vector slide 0 -1))))
+      (add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)
+      (set-contact-parameters! #t #t #:restitution 0.5 #:friction friction)
+      (when law (set-contact-parameters! rod #t #:impact-law law))
+      (run! #:until 0.7)
+      (vector-ref (velocity rod) 2))))
+
+(test-group "impact laws"
+  (let* ((x (* 1/2 1/2)) (z (* 1/2 (sqrt 3/4)))
+         (kzz (+ 1 (* 12 x x))) (kxz (* 12 x z))
+         (stronge (+ -1 (/ 1.5 (- kzz (* 0.1 kxz))))))
+    (test-approximate "Stronge's law: an end that slides away" stronge (rod-speed 'stronge 0.1 0) 3e-5))
+  (let ((default (rod-speed #f 0.5 0.5)))
+    (test-assert "where sliding stops the laws differ"
+      (> (abs (- default (rod-speed 'stronge 0.5 0.5))) 0.01))
+    (test-equal "the default has a name" default (rod-speed 'chatterjee-ruina 0.5 0.5))))
 
 (define (fall disabled?)
   (in-world ()
