@@ -42,7 +42,13 @@ struct EdgeUnder {
     const double turn = greatest_at([&](double t) { return height(normal_at(t)); }, 0, angle, end);
     if (turn < 2 * end || turn > angle - 2 * end) return false;
     least.normal = normal_at(turn);
-    least.point_b = lowest(least.normal);
+    // where a line of it crosses the edge the lowest point jumps from one end to the other
+    const Vec3 aside = left.cross(right).cross(least.normal);
+    const Vec3 before = lowest(normal_at(turn - 2 * end)),
+               after = lowest(normal_at(turn + 2 * end));
+    const double from = aside.dot(before - tail), to = aside.dot(after - tail);
+    least.point_b =
+        from * to < 0 ? Vec3(before + from / (from - to) * (after - before)) : lowest(least.normal);
     least.distance = least.normal.dot(least.point_b - tail);
     least.point_a = least.point_b - least.distance * least.normal;
     return true;
