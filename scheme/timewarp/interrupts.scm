@@ -66,9 +66,9 @@ ignored stay so: nohup ignores SIGHUP."
                       thunk))
 
 (define (call-with-broken-pipes thunk)
-  "Call THUNK; SIGPIPE becomes an error of what writes."
+  "Call THUNK; SIGPIPE, and SIGXFSZ of a file beyond its limit, become errors of what writes."
   ;; no SIG_IGN, which programs that we start would inherit
-  (call-with-handlers (list (list SIGPIPE (const #t))) thunk))
+  (call-with-handlers (list (list SIGPIPE (const #t)) (list SIGXFSZ (const #t))) thunk))
 
 (define (reader-gone? key args)
   "Is this exception the failure to write where nobody reads any more, as after `| head -1'?  The

@@ -10,9 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <numeric>
+#include <sstream>
 
 #include "base/error.h"
 #include "geometry/polyhedron.h"
@@ -35,10 +38,30 @@ struct Mesh {
   std::vector<Object> objects;
 };
 
+// The reader takes for 0 what is no number.
+void require_numbers(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word != "v") continue;
+    for (int i = 0; i < 3; ++i) {
+      const bool there = static_cast<bool>(words >> word);
+      char* end = nullptr;
+      const double value = there ? std::strtod(word.c_str(), &end) : 0;
+      TW_REQUIRE(there && *end == 0 && std::isfinite(value),
+                 file + ":" + std::to_string(number) + ": coordinate of a vertex is " +
+                     (there ? word : "missing") + "; expected three finite numbers");
+    }
+  }
+}
+
 Mesh read_obj(const std::string& file) {
   std::error_code ignored;
   TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
              "the mesh " + file + " is missing; expected a file that can be read");
+  require_numbers(file);
   tinyobj::ObjReaderConfig config;
   config.triangulate = true;
   tinyobj::ObjReader reader;

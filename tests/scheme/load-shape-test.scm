@@ -71,6 +71,10 @@
   (load-shape (write-file "flat.obj" "v 0 0 0" "v 1 0 0" "v 1 1 0" "v 0 1 0" "f 1 2 3 4")))
 (test-message "corners that are not there" "flaw.obj has a face with the corner 7, and 2 vertices"
   (load-shape (write-file "flaw.obj" "v 0 0 0" "v 1 0 0" "f 1 2 7")))
+(test-message "a coordinate that is no number" "nan.obj:2: coordinate of a vertex is nan; expected three finite"
+  (load-shape (write-file "nan.obj" "v 0 0 0\nv 1 nan 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")))
+(test-message "a coordinate that is missing" "short.obj:1: coordinate of a vertex is missing"
+  (load-shape (write-file "short.obj" "v 0 0\n")))
 (test-message "no scale" "scale" (load-shape cube #:scale 0))
 (test-message "no name" "file" (load-shape 5))
 (test-assert "a body made of it falls, lands and rests"
