@@ -10,6 +10,7 @@
 
 #include "base/constants.h"
 #include "collision/near-parts.h"
+#include "collision/support-core.h"
 #include "detect/round-reach.h"
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"
@@ -94,14 +95,22 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   return side.longest_along(n, least);
 }
 
-// Seconds until the two parts may meet, given n from a to b and the witness points.
+// How high a part reaches along n; `point` is where it does, but for what is not known better.
+double top_along(const MovingBody& side, const ConvexPart& part, const Vec3& n, const Vec3& point) {
+  if (part.kind == PartKind::half_space || part.kind == PartKind::sphere) return n.dot(point);
+  const SupportCore core(part, side.frame * part.placement);
+  return n.dot(core.support(n)) + core.margin;
+}
+
+// Seconds until the two parts may meet, given n from a to b and the witness points; the plane
+// between them is at the height c.
 double time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
-                  const ConvexPart& part_b, const Vec3& n, const Vec3& point_a, const Vec3& point_b,
-                  double allowance, bool a_as_ball, bool b_as_ball) {
+                  const ConvexPart& part_b, const Vec3& n, double c, const Vec3& point_a,
+                  const Vec3& point_b, double allowance, bool a_as_ball, bool b_as_ball) {
   Plane plane;
   plane.allowance = 0.5 * allowance;
   plane.n = n;
-  plane.c = 0.5 * n.dot(point_a + point_b);
+  plane.c = c;
   plane.u = 0.5 * n.dot(a.velocity_at(point_a) + b.velocity_at(point_b));
   plane.alpha = 0.5 * n.dot(a.acceleration + b.acceleration);
   const double below = part_reach(a, part_a, plane, 1, a_as_ball);
@@ -198,8 +207,8 @@ template <class Bound>
 double Certificates::by_step(const Bound& bound) {
   if (!in_steps()) return bound(a_, b_);
   if (!step_a_) {
-    step_a_.emplace(a_.within_step(piece_.a->trajectory(), when_));
-    step_b_.emplace(b_.within_step(piece_.b->trajectory(), when_));
+    step_a_.emplace(a_.within_step());
+    step_b_.emplace(b_.within_step());
   }
   return std::min(std::min(step_a_->bounds.valid_until, step_b_->bounds.valid_until) - when_,
                   bound(*step_a_, *step_b_));
@@ -225,18 +234,27 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
     if (spheres && !(centers - radii > sure && centers > 0)) return -never;
     if (spheres || centers - radii > cost::far_in_radii * radii) {
       const Vec3 n = (cb - ca) / centers;
+      const Vec3 on_a = ca + pa.bound_radius * n, on_b = cb - pb.bound_radius * n;
+      const double c = 0.5 * n.dot(on_a + on_b);
       return longest([&](const MovingBody& x, const MovingBody& y) {
-        return time_apart(x, pa, y, pb, n, ca + pa.bound_radius * n, cb - pb.bound_radius * n,
-                          allowance, true, true);
+        return time_apart(x, pa, y, pb, n, c, on_a, on_b, allowance, true, true);
       });
     }
   }
 
   const Separation& s = separation(i, j);
   if (!(s.distance > sure)) return -never;
-  double apart = longest([&](const MovingBody& x, const MovingBody& y) {
-    return time_apart(x, pa, y, pb, s.normal, s.point_a, s.point_b, allowance, false, false);
-  });
+  const auto by_plane = [&](double c) {
+    return longest([&](const MovingBody& x, const MovingBody& y) {
+      return time_apart(x, pa, y, pb, s.normal, c, s.point_a, s.point_b, allowance, false, false);
+    });
+  };
+  double apart = by_plane(0.5 * s.normal.dot(s.point_a + s.point_b));
+  // where faces that hardly lean overlap by less than the allowance, the nearest points may lie
+  // lower than what reaches highest
+  if (!(apart > 0) && s.distance <= 0)
+    apart = by_plane(
+        0.5 * (top_along(a, pa, s.normal, s.point_a) - top_along(b, pb, -s.normal, s.point_b)));
   // where edges and faces turn past each other, a plane that turns with them lasts longer
   if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
     apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {
@@ -278,13 +296,14 @@ double Certificates::planes_apart(const ConvexPart& part, const ConvexPart& othe
   if (!(over_face.gap > rounding_)) return 0;
   const Vec3 n = over_face.normal, on_face = over_face.foot;
   const Vec3 on_part = on_face + over_face.gap * n;
+  const double c = 0.5 * n.dot(on_face + on_part);
   const bool as_ball = part.kind != PartKind::polyhedron;
   if (of_b)
     return longest([&](const MovingBody& x, const MovingBody& y) {
-      return time_apart(x, part, y, other, -n, on_part, on_face, allowance, as_ball, false);
+      return time_apart(x, part, y, other, -n, -c, on_part, on_face, allowance, as_ball, false);
     });
   return longest([&](const MovingBody& x, const MovingBody& y) {
-    return time_apart(x, other, y, part, n, on_face, on_part, allowance, false, as_ball);
+    return time_apart(x, other, y, part, n, c, on_face, on_part, allowance, false, as_ball);
   });
 }
 

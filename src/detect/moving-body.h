@@ -19,9 +19,11 @@ struct MovingBody : PlacedBody {
   bool by_speed = false;    // only its speeds are bounded
   double bend = 0;          // bound on |a point's acceleration against the centre's| / arm, 1/s^2
   double step_end = never;  // of the integrator's present step; `never`: the arc ends with it
+  const Trajectory* path;
+  double from, to;  // s, of the bounds
 
   MovingBody(const Body& b, const Trajectory& trajectory, double when)
-      : PlacedBody(b, trajectory.path_at(when)) {
+      : PlacedBody(b, trajectory.path_at(when)), path(&trajectory), from(when), to(when) {
     step_end = trajectory.step_end(when);
     double until = trajectory.end();
     if (b.kinematic() || (until == never && step_end != never)) {
@@ -29,23 +31,25 @@ struct MovingBody : PlacedBody {
       until = std::min(when + cost::kinematic_horizon, step_end);
       step_end = never;
     }
-    bound_by(trajectory.bounds(when, std::max(when, until)));
+    bound_by(std::max(when, until));
   }
   // The same with the narrower bounds of the present step of the integrator.
-  MovingBody within_step(const Trajectory& trajectory, double when) const {
+  MovingBody within_step() const {
     MovingBody narrow = *this;
-    if (step_end != never) narrow.bound_by(trajectory.bounds(when, std::max(when, step_end)));
+    if (step_end != never) narrow.bound_by(std::max(from, step_end));
     return narrow;
   }
 
   // The longer of two times in which no point may come too far along the unit n, given such a time
-  // by a bound on the bend: along n that is no more than |w'| + |n x w| |w|.  What spins in a plane
-  // stays in it.
+  // by a bound on the bend: along n that is no more than |n x w'| + |n x w| |w|.  What spins in a
+  // plane stays in it.
   template <class Least>
   double longest_along(const Vec3& n, const Least& least) const {
     const double wide = least(bend);
     if (!(wide > 0 && wide < never) || by_speed) return wide;
-    const double change = bounds.turn_change, across = n.cross(point.w).norm();
+    const double change = wide < cost::soon ? path->turn_change_across(n, from, to, bounds)
+                                            : bounds.turn_change,
+                 across = n.cross(point.w).norm();
     // n x w may have doubled by then
     const double until = change > 0 ? std::max(4 * wide, across / change) : never;
     const double growth = change > 0 ? change * until : 0;
@@ -54,8 +58,9 @@ struct MovingBody : PlacedBody {
   }
 
  private:
-  void bound_by(const MotionBounds& b) {
-    bounds = b;
+  void bound_by(double until) {
+    to = until;
+    const MotionBounds& b = bounds = path->bounds(from, to);
     by_speed = b.velocity_may_jump();
     bend = b.turn_change + b.turn * b.turn;
     acceleration = by_speed ? Vec3(Vec3::Zero()) : b.acceleration.center();

@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "base/interruption.h"
+#include "integrate/turning.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
@@ -252,6 +253,27 @@ MotionBounds DrivenArc::bounds(double from, double to) const {
   bounds.turn_change *= widen;
   bounds.valid_until = to;
   return bounds;
+}
+
+double DrivenArc::turn_change_across(const Vec3& n, double from, double to,
+                                     const MotionBounds& known) const {
+  constexpr int most_steps = 16;
+  double most = 0;
+  int steps = 0;
+  for (double t = from; t < solution_.reached() && t < to;) {
+    if (++steps > most_steps) return known.turn_change;
+    const DenseStep& step = solution_.at(t);
+    const double end = solution_.step_end(t), until = std::min(to, end);
+    const auto degree = static_cast<std::size_t>(step.degree());
+    DenseStep::Control theta, rate, second;
+    step.control(0, theta_at, t, until, theta);
+    step.control(1, theta_at, t, until, rate);
+    step.control(2, theta_at, t, until, second);
+    most = std::max(
+        most, tw::turn_change_across(n, {theta, degree + 1}, {rate, degree}, {second, degree - 1}));
+    t = end;
+  }
+  return std::min(known.turn_change, most);
 }
 
 }  // namespace tw

@@ -54,6 +54,8 @@ class DrivenArc final : public Trajectory {
   PoseTwist at(double time) const override;
   // Beyond where it failed it stands.
   MotionBounds bounds(double from, double to) const override;
+  double turn_change_across(const Vec3& n, double from, double to,
+                            const MotionBounds& known) const override;
   // Where it failed, as far as that is known yet.
   double end() const override;
   double step_end(double time) const override;

@@ -252,6 +252,13 @@ MotionBounds GroupArc::bounds(int member, double from, double to) const {
   return standing_bounds(start.x, start.v, start.w);
 }
 
+double GroupArc::turn_change_across(const Vec3& n, int member, double from, double to,
+                                    const MotionBounds& known) const {
+  if (data_->record.steps() == 0 || data_->joints_of(member)) return known.turn_change;
+  const double end = data_->at(to), begin = std::min(data_->at(from), end);
+  return std::min(known.turn_change, data_->record.turn_change_across(n, member, begin, end));
+}
+
 double GroupArc::step_end(double time) const {
   TW_ASSERT(time < reached() || data_->complete(),
             "the step from " + show(time) + " s on is not completed");

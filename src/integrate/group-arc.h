@@ -201,6 +201,9 @@ class GroupArc : public Counted<GroupArc> {
   // integration error, and at the ends of steps by rounding): for bounds.
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
   MotionBounds bounds(int member, double from, double to) const;
+  // As Trajectory's.
+  double turn_change_across(const Vec3& n, int member, double from, double to,
+                            const MotionBounds& known) const;
   // The end of the step that holds `time`, or begins there: beyond it bounds may be much wider.
   double step_end(double time) const;
   // What the member does over [from, to]: a copy of that stretch, which keeps nothing else of the

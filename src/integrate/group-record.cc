@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "integrate/turning.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
@@ -309,6 +310,26 @@ MotionBounds GroupRecord::bounds(int member, double from, double to) const {
   result.turn *= widen;
   result.turn_change *= widen;
   return result;
+}
+
+double GroupRecord::turn_change_across(const Vec3& n, int member, double from, double to) const {
+  constexpr int most_steps = 16;
+  const int last = step_to(to), first = std::min(std::max(step_from(from), 0), last);
+  if (last - first >= most_steps) return never;
+  double most = 0;
+  for (int i = first; i <= last; ++i) {
+    // the control points of theta and of its rates over [r0, r1]
+    const double r0 = fraction(i, std::max(from, time(i))),
+                 r1 = fraction(i, std::min(to, time(i + 1))), rate = 1 / length(i), h = r1 - r0;
+    const Cubic turn = rotation(i, member);
+    const Vec3 p0 = turn.value(r0), p1 = turn.value(r1), u0 = turn.rate(r0), u1 = turn.rate(r1),
+               s0 = turn.second(r0), s1 = turn.second(r1);
+    const Vec3 theta[] = {p0, p0 + h / 3 * u0, p1 - h / 3 * u1, p1};
+    const Vec3 rates[] = {rate * u0, rate * (u0 + 0.5 * h * s0), rate * u1};
+    const Vec3 seconds[] = {rate * rate * s0, rate * rate * s1};
+    most = std::max(most, tw::turn_change_across(n, theta, rates, seconds));
+  }
+  return most;
 }
 
 }  // namespace tw

@@ -80,6 +80,8 @@ class GroupRecord {
   }
   // As GroupArc::bounds; from <= to, both in [start, reached], at least one step.
   MotionBounds bounds(int member, double from, double to) const;
+  // As Trajectory's; `never` where it would take long.
+  double turn_change_across(const Vec3& n, int member, double from, double to) const;
 
  private:
   // cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step

@@ -35,6 +35,11 @@ MotionBounds MemberTrajectory::bounds(double from, double to) const {
   return bounds;
 }
 
+double MemberTrajectory::turn_change_across(const Vec3& n, double from, double to,
+                                            const MotionBounds& known) const {
+  return arc_->turn_change_across(n, member_, from, to, known);
+}
+
 double MemberTrajectory::end() const { return arc_->end(member_); }
 
 double MemberTrajectory::step_end(double time) const {

@@ -19,6 +19,8 @@ class MemberTrajectory final : public Trajectory {
   Twist twist(double time) const override;
   PoseTwist at(double time) const override;
   MotionBounds bounds(double from, double to) const override;
+  double turn_change_across(const Vec3& n, double from, double to,
+                            const MotionBounds& known) const override;
   double end() const override;
   double step_end(double time) const override;
   bool stepped() const override { return true; }

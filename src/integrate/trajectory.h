@@ -103,6 +103,12 @@ class Trajectory {
   virtual PoseTwist at(double time) const { return joined(time); }
   // Bounds over [from, to] on the path of the pose and its rates.
   virtual MotionBounds bounds(double from, double to) const = 0;
+  // |w' across the unit vector n|, rad/s^2, over what `bounds` tell of [from, to]:
+  // `known.turn_change` or less.  Dearer than they are.
+  virtual double turn_change_across(const Vec3& /*n*/, double /*from*/, double /*to*/,
+                                    const MotionBounds& known) const {
+    return known.turn_change;
+  }
   // Where it ends by itself, s; what follows is another state's.
   virtual double end() const { return never; }
   // Beyond this time bounds from `time` on may be much wider, the end of a step of the integrator,

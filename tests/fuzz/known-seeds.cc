@@ -71,6 +71,10 @@ const MendedSeed mended[] = {
     {"round", 19270,
      "a rim over which a cone lay was followed where it crossed it last, not deepest"},
     {"plates", 90, "a spike's edge lay in the slit between two plates, held by one check in two"},
+    {"shaker", 19546, "a rod was on an edge that it crossed beyond the edge's end"},
+    {"lattice", 19553, "faces that lay on each other to rounding were not apart by a plane"},
+    {"lattice", 19035,
+     "the same, and bodies that turn about the normal of a face they are next to"},
 };
 
 }  // namespace

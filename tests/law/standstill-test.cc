@@ -153,6 +153,27 @@ TEST(Standstill, a_heavy_body_is_stopped_by_a_light_one_in_few_impacts) {
   EXPECT_NEAR(world.state(id).position.z(), 0.3, 0.002);
 }
 
+// Without gravity, pushed along a wall that it touches and turned about the wall's normal: what
+// turns about the normal comes no nearer.  It was looked at at every grid point.
+TEST(Standstill, what_is_turned_along_the_face_that_it_touches_is_looked_at_rarely) {
+  for (const ShapePtr& shape : {make_cylinder(0.2, 0.1), make_box({0.3, 0.3, 0.1})}) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    BodyDef wall = body_of(make_box({10, 10, 1}), {0, 0, -0.5}, Vec3::Zero());
+    wall.fixed = true;
+    world.add_body(wall);
+    const BodyId id = world.add_body(body_of(shape, {0, 0, 0.05}, Vec3::Zero()));
+    world.edit(id, [](StateView& view) {
+      view.set_applied_force({5, 0, 0});
+      view.set_applied_torque({0, 0, 0.1});
+    });
+    world.advance(1);
+    const double mass = shape->mass_properties().volume * 1000;
+    EXPECT_NEAR(world.state(id).position.x(), 2.5 / mass, 1e-9);
+    EXPECT_LT(count_of(world.statistics(), "certificates"), 100);
+  }
+}
+
 // A rod of 1:2000 that comes down on its end and a plate (thin:115 of the random scenes): in the
 // rod's rows of the linear system a pivot that was large in SI units only lost all digits of its
 // momentum, and no step was short enough.
