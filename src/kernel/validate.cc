@@ -125,6 +125,8 @@ std::string validate_residences(const Simulation& simulation) {
                      simulation.body(id).info.name;
       if (s->committed || s->key != group.key) continue;
       for (const ProcessId other : group.members) {
+        // what was removed at this instant has left its group's states
+        if (simulation.body_of(other).info.removed) continue;
         const State* t = simulation.graph.last_at_or_before(other, s->key);
         if (!t || t->group != s->group) return "a member is elsewhere: " + where;
       }

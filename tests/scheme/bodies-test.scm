@@ -199,6 +199,20 @@
 
 ;; ---- removing ----
 
+;; What was attached just before leaves a state behind whose group it was in.
+(for-each
+ (lambda (until)
+   (in-world ('(check . #t))
+     (let ((a (add-body! #:shape (sphere 0.2) #:position #(0 0 1)))
+           (b (add-body! #:shape (sphere 0.2) #:position #(4 0 1))))
+       (run! #:until until)
+       (attach! a b)
+       (remove-body! a)
+       (run-for! 0.1)
+       (test-assert (format #f "what is held may be removed at ~a s" until)
+         (close? (+ 1 (* -1/2 9.81 (+ until 0.1) (+ until 0.1))) (vector-ref (position b) 2) 1e-9)))))
+ '(0 0.1))
+
 (in-world ()
   (ground)
   (let ((low (add-body! #:name "low" #:shape (box 1 1 1) #:position #(0 0 0.5)))
