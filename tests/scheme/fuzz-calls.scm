@@ -4,6 +4,8 @@
 ;;   guile fuzz-calls.scm --seed=S --calls=N [--setting=NAME] [--verbose]
 ;;   guile fuzz-calls.scm --seed=S --episode=E [--without=I,J,...]    one episode, call by call
 ;;
+;; In the end the procedures are named of which no call returned, those that callbacks made included.
+;;
 ;; Calls come in episodes of 40, each with a fresh world; an episode is a function of the seed and
 ;; its number.  They are made in a child process, which says what it does before it does it.  Where
 ;; the child dies, or says nothing for long, the parent repeats the episode without one call after
@@ -20,7 +22,7 @@
              (ice-9 format))
 
 (define calls-in-episode 40)
-(define bodies-at-start 6)
+(define beginning 13)  ; calls
 ;; s: after the first a call is interrupted as by Ctrl-C, which only a run may need; after the
 ;; second it is taken for hanging
 (define patience 3)
@@ -73,7 +75,7 @@
     (setitimer ITIMER_REAL 0 0 patience 0)
     (catch #t
       (lambda ()
-        (keep! (eval call (current-module)))
+        (keep! (eval `(made ,call) (current-module)))
         (set! returned (1+ returned)))
       (lambda (key . args)
         (let ((message (if (eq? key 'timewarp-interrupted) "interrupted" (message-of key args))))
@@ -95,15 +97,22 @@
     ((undo) '((undo-redo . #t)))
     ((adversary) '((adversary 1 0.05 #t)))))
 
+;; Seeds begin at other places.
+(define (place-of episode number)
+  (+ (* 97 seed) (* episode (- calls-in-episode beginning)) (- number beginning)))
+
 (define (run-episode episode)
   (set! state (seed->random-state (format #f "~a/~a" seed episode)))
   (hash-clear! kept)
+  (write-files!)
   (set-overrides! (overrides))
   (parameterize ((current-world (make-world)))
     (scene #:duration 0.05)
     (for-each
      (lambda (number)
-       (let ((call (if (< number bodies-at-start) (a-body-to-add number) (a-call 2))))
+       (let ((call (if (< number beginning)
+                       (a-beginning number)
+                       (a-call-in-turn (place-of episode number) 2))))
          (unless (memv number without)
            (say "call " number " " (object->string call))
            (match (trial call)
@@ -122,6 +131,8 @@
               (say "episode " episode)
               (run-episode episode))
             episodes)
+  (say "never " (object->string (remove (lambda (name) (hash-ref returns name))
+                                        (map car procedures))))
   (say (format #f "end ~a calls returned, ~,1f s simulated, ~a collisions"
                returned simulated collisions)))
 
@@ -130,6 +141,9 @@
 (define program (canonicalize-path (car (command-line))))
 ;; where the child works
 (define folder (delay (mkdtemp (string-append (or (getenv "TMPDIR") "/tmp") "/timewarp-fuzz-XXXXXX"))))
+
+;; The procedures of which no call returned, as the child says in the end.
+(define never-returned '())
 
 ;; Reads a line, or #f if nothing comes in time.
 (define (read-line-in-time port)
@@ -175,6 +189,9 @@
             (cond ((string-prefix? "episode " line)
                    (loop (string->number (substring line 8)) '() fault))
                   ((string-prefix? "call " line) (loop episode (cons line calls) fault))
+                  ((string-prefix? "never " line)
+                   (set! never-returned (call-with-input-string (substring line 6) read))
+                   (loop episode calls fault))
                   ((string-prefix? "end " line) (loop episode (list line) fault))
                   ((string-prefix? "fault " line) (loop episode calls (substring line 6)))
                   (else (loop episode calls fault))))))))))
@@ -202,6 +219,7 @@
     ((#f _ (end . _))
      (format #t "seed ~a, setting ~a: ~a episodes end well: ~a~%" seed setting (length episodes)
              (substring end 4))
+     (format #t "never returned: ~s~%" never-returned)
      0)
     ((fault #f calls) (format #t "the child ~a before it began~%" fault) 2)
     ((fault episode calls)
