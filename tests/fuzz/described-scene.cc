@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "fuzz/deeds.h"
+#include "fuzz/mesh-text.h"
+#include "fuzz/procedures.h"
 #include "support/counter.h"
 #include "support/scene.h"
 
@@ -22,9 +24,22 @@ bool DescribedScene::has(const std::string& body) const {
 }
 
 bool DescribedScene::driven() const {
-  return std::any_of(callbacks.begin(), callbacks.end(), [](const DescribedCallback& c) {
-    return c.deed == Deed::reach || c.deed == Deed::lean;
-  });
+  return !servos.empty() ||
+         std::any_of(forces.begin(), forces.end(),
+                     [](const DescribedForce& force) { return force.procedure; }) ||
+         std::any_of(callbacks.begin(), callbacks.end(), [](const DescribedCallback& c) {
+           return c.deed == Deed::reach || c.deed == Deed::lean || c.deed == Deed::steady ||
+                  c.deed == Deed::strain;
+         });
+}
+
+Pose Swing::pose(const Pose& middle, double time) const {
+  const double share = std::sin(2 * pi / period * time);
+  return {middle.p + share * along, rotation_by(share * turn) * middle.q};
+}
+
+double Swing::max_speed(double radius) const {
+  return 1.01 * 2 * pi / period * (along.norm() + radius * turn.norm());
 }
 
 Solid ball(double radius) {
@@ -112,6 +127,7 @@ ShapePtr shape_of(const Solid& solid) {
 }  // namespace
 
 ShapePtr shape_of(const DescribedBody& body) {
+  if (body.mesh) return shape_from_file(body);
   if (body.hills) {
     const Hills& hills = *body.hills;
     return make_height_field(hills.heights, hills.columns, hills.spacing, hills.spacing);
@@ -137,7 +153,8 @@ BodyDef definition(const DescribedBody& body, bool counts) {
   if (body.hanging) return def;
   def.fixed = body.fixed;
   if (body.kinematic()) {
-    def.motion = make_keyframes(body.keyframes, body.smooth);
+    def.motion =
+        body.swing ? make_swing(body, *def.shape) : make_keyframes(body.keyframes, body.smooth);
   } else {
     def.position = body.pose.p;
     def.orientation = body.pose.q;
@@ -193,6 +210,34 @@ void add_bond(World& world, const DescribedBond& bond) {
   world.add_spring(def);
 }
 
+void add_force(World& world, const DescribedForce& force, std::uint64_t number) {
+  const BodyId body = world.find_body(force.body).value();
+  if (force.linear > 0 || force.quadratic > 0) world.add_drag(body, force.linear, force.quadratic);
+  if (force.procedure) world.add_force(body, make_force(force, number));
+}
+
+// As (set! (joint-servo MULTIBODY NAME) (servo ...)) does.
+void add_servo(World& world, const DescribedServo& servo) {
+  const BodyId body = world.find_body(servo.link).value();
+  world.edit(body, [&](StateView& view) {
+    const Multibody& multibody = *view.multibody();
+    const auto found = std::find(multibody.links.begin(), multibody.links.end(), body);
+    const auto& link = multibody.tree.link(static_cast<int>(found - multibody.links.begin()));
+    view.change_joints([&](MultibodyState& joints) {
+      if (joints.servos.empty()) {
+        joints.servos.resize(static_cast<std::size_t>(multibody.tree.axis_count()));
+        joints.targets.resize(static_cast<std::size_t>(multibody.tree.nq()));
+        multibody::neutral_position(multibody.tree, joints.targets);
+        joints.target_velocities.resize(static_cast<std::size_t>(multibody.tree.nv()));
+      }
+      joints.targets[static_cast<std::size_t>(link.q)] = servo.target;
+      joints.target_velocities[static_cast<std::size_t>(link.u)] = servo.rate;
+      joints.servos[static_cast<std::size_t>(link.first_axis)] = {servo.stiffness, servo.damping,
+                                                                  servo.max_torque};
+    });
+  });
+}
+
 }  // namespace
 
 void fill(World& world, const DescribedScene& scene) {
@@ -211,6 +256,8 @@ void fill(World& world, const DescribedScene& scene) {
       world.add_body(definition(scene.bodies[i++], !scene.callbacks.empty()));
   }
   for (const DescribedBond& bond : scene.bonds) add_bond(world, bond);
+  for (std::size_t i = 0; i < scene.forces.size(); ++i) add_force(world, scene.forces[i], i);
+  for (const DescribedServo& servo : scene.servos) add_servo(world, servo);
   add_callbacks(world, scene);
 }
 

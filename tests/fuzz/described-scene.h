@@ -59,9 +59,21 @@ struct Hanging {
   std::vector<double> velocity;  // of the joint
 };
 
+// To and fro by a procedure of time about where the body begins.
+struct Swing {
+  Vec3 along = Vec3::Zero();  // m
+  Vec3 turn = Vec3::Zero();   // rad, a rotation vector
+  double period = 1;          // s
+
+  Pose pose(const Pose& middle, double time) const;
+  // Of any point within `radius` of the origin, m/s.
+  double max_speed(double radius) const;
+};
+
 struct DescribedBody {
   std::string name;
   std::vector<Solid> solids;   // several: a union
+  bool mesh = false;           // its polyhedra are read from a mesh file
   std::optional<Hills> hills;  // instead of solids
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
@@ -69,6 +81,7 @@ struct DescribedBody {
   bool fixed = false;
   std::vector<Keyframe> keyframes;  // kinematic where there are any
   bool smooth = false;
+  std::optional<Swing> swing;  // kinematic where there is one
   std::optional<Hanging> hanging;
 
   // Links on both sides of a joint, with what is welded to them, don't touch.
@@ -77,7 +90,7 @@ struct DescribedBody {
     const Hanging &a = *hanging, &b = *other.hanging;
     return a.part == b.part || a.part == b.on || a.on == b.part;
   }
-  bool kinematic() const { return !keyframes.empty(); }
+  bool kinematic() const { return !keyframes.empty() || swing; }
   bool dynamic() const { return !fixed && !kinematic(); }
 };
 
@@ -88,6 +101,24 @@ struct DescribedBond {
   bool holds = false;
 };
 
+// What slows a body, and a force by a procedure: a pull to a place, a push to and fro, and what
+// resists its turning.
+struct DescribedForce {
+  std::string body;
+  double linear = 0, quadratic = 0;                // drag: N s/m, N s^2/m^2
+  bool procedure = false;                          // it has what follows
+  Vec3 place = Vec3::Zero(), push = Vec3::Zero();  // m, N
+  double stiffness = 0, resistance = 0;            // N/m, N m s
+  double period = 1;                               // s, of the push
+};
+
+// At the joint of a link, of one axis.
+struct DescribedServo {
+  std::string link;
+  double target = 0, rate = 0;  // rad or m; a second
+  double stiffness = 0, damping = 0, max_torque = 0;
+};
+
 // What a callback does, with a counter of its calls in the slot of its first target:
 //   turn    every other time, by chance, turns a velocity: (x y z) becomes (y z x)
 //   feel    where the first target has contacts, every other time its spin turns round
@@ -95,13 +126,24 @@ struct DescribedBond {
 //   reach   turns the first joint's torque round, where that of the last link is beyond a limit
 //   lean    pushes the first target against what springs and the hold to the second do to it, or
 //           against what its accelerometer reads, or not, in turn
-enum class Deed { turn, feel, grip, reach, lean };
+//   scan    looks from the first target at the others, in turn by a ray along its velocity, which
+//           turns away from what is near there, and by a rangefinder: its spin turns round
+//   mind    turns the first target's velocity away from the second where their closest points are
+//           near; turns its spin round where a ball about it overlaps an even number of the others
+//           or its bounding box reaches down low
+//   steady  turns the first target against its spin as a gyroscope reads it, pushes it against what
+//           contacts with the second do to it, turns it against torques of contacts and of the
+//           hold to the second, in turn
+//   strain  turns the last joint's torque against the force or the moment that passes through it,
+//           and its servo's target round, in turn
+enum class Deed { turn, feel, grip, reach, lean, scan, mind, steady, strain };
 
 struct DescribedCallback {
   Deed deed = Deed::turn;
   std::vector<std::string> targets;  // of bodies, by name
   double start = 0, period = 0;      // s
-  double torque = 0;                 // N m or N: reach; N, at most: lean
+  double torque = 0;                 // N m or N: reach, strain; N, at most: lean, steady
+  double reach = 0;                  // m: scan, mind; times the torque, N m: steady
 };
 
 // Where centres of dynamic bodies stay, in the frame of a body.
@@ -122,13 +164,15 @@ struct DescribedScene {
   double rolling = 0, spinning = 0;  // m
   std::vector<DescribedBody> bodies;
   std::vector<DescribedBond> bonds;
+  std::vector<DescribedForce> forces;
+  std::vector<DescribedServo> servos;
   std::vector<DescribedCallback> callbacks;  // and each collision counts, where there are any
   Room room;
 
   std::string name() const { return kind + ":" + std::to_string(seed); }
   std::size_t moving() const;
   bool has(const std::string& body) const;
-  // Callbacks give energy.
+  // Callbacks, servos or forces by procedures give energy.
   bool driven() const;
 };
 
@@ -142,6 +186,8 @@ Solid hull(std::vector<Vec3> points);
 Solid half_space(const Vec3& normal, double offset);
 Solid placed(Solid solid, const Vec3& position, const Quat& orientation = Quat::Identity());
 
+// The polyhedra of a body as an OBJ file, an object each.
+std::string obj_text(const DescribedBody& body);
 ShapePtr shape_of(const DescribedBody& body);
 // Adds everything to an empty world.
 void fill(World& world, const DescribedScene& scene);

@@ -42,6 +42,14 @@ constexpr Kind table[] = {
     {"called", "bodies and carts that callbacks and sensors turn, hold and drive", draw_called},
     {"sensed", "as bonds; callbacks push against what springs, holds and accelerometers feel",
      draw_sensed},
+    {"asked",
+     "bodies, meshes among them, with drag and beside swinging ones; callbacks ask for rays, "
+     "closest points, overlaps and boxes",
+     draw_asked},
+    {"driven",
+     "bonds and chains with servos, forces by procedures and drag; callbacks push against "
+     "what gyroscopes, contacts, holds and joints feel",
+     draw_driven},
 };
 
 // Which the seeds take in turn; the others are asked for by name, so that what is known of a seed
@@ -54,7 +62,7 @@ struct Placed {
   Frame frame;
 
   explicit Placed(const DescribedBody& body) : parts(parts_of(body)), frame(body.pose) {
-    if (!body.kinematic()) return;
+    if (body.keyframes.empty()) return;
     const Keyframe& first = body.keyframes.front();
     frame = Frame({first.position, first.orientation.value_or(Quat::Identity())});
   }
@@ -107,6 +115,8 @@ void leave_out_overlapping(DescribedScene& scene) {
   std::erase_if(scene.bonds, [&](const DescribedBond& bond) {
     return !scene.has(bond.a) || !scene.has(bond.b);
   });
+  std::erase_if(scene.forces, [&](const DescribedForce& force) { return !scene.has(force.body); });
+  std::erase_if(scene.servos, [&](const DescribedServo& servo) { return !scene.has(servo.link); });
   std::erase_if(scene.callbacks, [&](const DescribedCallback& callback) {
     return !std::all_of(callback.targets.begin(), callback.targets.end(),
                         [&](const std::string& name) { return scene.has(name); });

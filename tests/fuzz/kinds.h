@@ -36,4 +36,8 @@ void draw_bonds(Draft& draft);
 void draw_called(Draft& draft);
 void draw_sensed(Draft& draft);
 
+// kinds-asked.cc
+void draw_asked(Draft& draft);
+void draw_driven(Draft& draft);
+
 }  // namespace tw::fuzz

@@ -1,5 +1,7 @@
 // A described scene as a file that the command runs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+
 #include "base/error.h"
 #include "fuzz/described-scene.h"
 #include "fuzz/scheme-ties.h"
@@ -39,6 +41,20 @@ std::string solid_text(const Solid& solid) {
   return points + "))";
 }
 
+// procedures.cc, mesh-text.cc
+const char* const swing_text = R"((define (swing p q along turn period)
+  (let ((angle (norm turn)))
+    (lambda (time)
+      (let ((share (sin (* (/ 6.283185307179586 period) time))))
+        (values (v+ p (v* share along))
+                (if (> angle 0) (q* (rotation turn (* share angle)) q) q))))))
+)";
+const char* const mesh_text = R"((define (mesh text)
+  (let ((file (string-append (mkdtemp "/tmp/fuzz-mesh-XXXXXX") "/mesh.obj")))
+    (call-with-output-file file (lambda (port) (display text port)))
+    (load-shape file)))
+)";
+
 std::string hills_text(const Hills& hills) {
   std::string rows = "(height-field '(";
   for (std::size_t i = 0; i < hills.heights.size(); ++i) {
@@ -51,6 +67,7 @@ std::string hills_text(const Hills& hills) {
 }  // namespace
 
 std::string shape_text(const DescribedBody& body) {
+  if (body.mesh) return "(mesh \"" + obj_text(body) + "\")";
   if (body.hills) return hills_text(*body.hills);
   const auto placed_text = [](const Solid& solid) {
     return "(placed " + solid_text(solid) + " #:position " + text(solid.placement.p) +
@@ -70,6 +87,13 @@ namespace {
 std::string body_form(const DescribedBody& body, bool counts) {
   std::string form = "(add-body! #:name \"" + body.name + "\"" + (counts ? slots_text : "") +
                      "\n  #:shape " + shape_text(body) + "\n ";
+  if (body.swing) {
+    const Swing& swing = *body.swing;
+    return form + " #:motion (swing " + text(body.pose.p) + " " + text(body.pose.q) + "\n    " +
+           text(swing.along) + " " + text(swing.turn) + " " + show(swing.period) +
+           ")\n  #:max-speed " + show(swing.max_speed(shape_of(body)->radius_about_origin())) +
+           ")\n";
+  }
   if (body.kinematic()) {
     form += " #:motion (keyframes '(";
     for (const Keyframe& frame : body.keyframes)
@@ -89,8 +113,15 @@ std::string scheme_text(const DescribedScene& scene) {
   std::string all = ";; fuzz-scenes --kind=" + scene.kind +
                     " --seeds=" + std::to_string(scene.seed) + ": size " + show(scene.size) +
                     " m, time unit " + show(scene.time_unit) + " s\n";
-  all += scene.callbacks.empty() ? "(use-modules (timewarp))\n"
-                                 : "(use-modules (timewarp) (timewarp vectors))\n";
+  const bool swings = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const DescribedBody& body) { return body.swing; });
+  const bool meshes = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const DescribedBody& body) { return body.mesh; });
+  all += scene.callbacks.empty() && scene.forces.empty() && !swings
+             ? "(use-modules (timewarp))\n"
+             : "(use-modules (timewarp) (timewarp vectors))\n";
+  if (swings) all += swing_text;
+  if (meshes) all += mesh_text;
   all += "(scene #:title \"" + scene.name() + "\" #:duration " + show(scene.duration) +
          " #:gravity " + text(scene.gravity) + "\n  #:accuracy " + show(scene.accuracy) +
          " #:fps " + show(60 / scene.duration) + ")\n";
@@ -107,7 +138,7 @@ std::string scheme_text(const DescribedScene& scene) {
     else
       all += body_form(scene.bodies[i++], !scene.callbacks.empty());
   }
-  all += bonds_text(scene) + callbacks_text(scene);
+  all += bonds_text(scene) + forces_text(scene) + servos_text(scene) + callbacks_text(scene);
   Vec3 center = Vec3::Zero();
   double count = 0;
   for (const DescribedBody& body : scene.bodies)

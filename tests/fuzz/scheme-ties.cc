@@ -68,6 +68,10 @@ const char* name_of(Deed deed) {
     case Deed::feel: return "feel";
     case Deed::grip: return "grip";
     case Deed::lean: return "lean";
+    case Deed::scan: return "scan";
+    case Deed::mind: return "mind";
+    case Deed::steady: return "steady";
+    case Deed::strain: return "strain";
     case Deed::reach: break;
   }
   return "reach";
@@ -77,21 +81,21 @@ const char* name_of(Deed deed) {
 const char* const deeds_text = R"((define (count-up! view)
   (set! (slot view 'count) (1+ (slot view 'count)))
   (slot view 'count))
-(define (turn period torque)
+(define (turn period torque reach)
   (lambda (time view)
     (when (and (odd? (count-up! view)) (< (random-real! view) 1/2))
       (let ((v (velocity view)))
         (set! (velocity view) (vector (vector-ref v 1) (vector-ref v 2) (vector-ref v 0)))))))
-(define (feel period torque)
+(define (feel period torque reach)
   (lambda (time view other)
     (when (and (pair? (contacts #:body view)) (odd? (count-up! view)))
       (set! (angular-velocity view) (v* -1 (angular-velocity view))))))
-(define (grip period torque)
+(define (grip period torque reach)
   (lambda (time view other)
     (count-up! view)
     (if (attached? view other) (detach! view other) (attach! view other))
     (+ time (* period (+ 0.5 (random-real! view))))))
-(define (reach period torque)
+(define (reach period torque distance)
   (lambda (time view)
     (let* ((count (count-up! view))
            (torques (joint-torques view))
@@ -100,7 +104,7 @@ const char* const deeds_text = R"((define (count-up! view)
            (new (vector-copy torques)))
       (vector-set! new last (if (zero? (modulo count 3)) 0. pushed))
       (set! (joint-torques view) new))))
-(define (lean period torque)
+(define (lean period torque reach)
   (lambda (time view other)
     (let* ((turn (modulo (count-up! view) 3))
            (felt (case turn
@@ -110,6 +114,76 @@ const char* const deeds_text = R"((define (count-up! view)
            (length (norm felt)))
       (set! (applied-force view)
             (if (> length 0) (v* (- (/ torque length)) felt) #(0 0 0))))))
+(define (turn-away! view normal)
+  (let* ((v (velocity view)) (into (dot v normal)))
+    (when (< into 0)
+      (set! (velocity view) (v- v (v* (* 2 into) normal))))))
+(define (turn-spin-round! view)
+  (set! (angular-velocity view) (v* -1 (angular-velocity view))))
+(define (scan period torque reach)
+  (lambda (time view . others)
+    (if (odd? (count-up! view))
+        (let* ((v (velocity view))
+               (way (if (> (norm v) 0) (normalize v) #(0 0 -1)))
+               (hit (ray-cast (position view) way #:max-distance reach #:bodies others)))
+          (when hit (turn-away! view (hit-normal hit))))
+        (when (rangefinder view #(1 0 0) #:max-distance reach #:bodies others)
+          (turn-spin-round! view)))))
+(define (mind period torque reach)
+  (lambda (time view . others)
+    (count-up! view)
+    (let ((start (position view)))
+      (call-with-values (lambda () (closest-points view (car others)))
+        (lambda (mine theirs distance)
+          (let ((apart (v- mine theirs)))
+            (when (and (< distance reach) (> (norm apart) 0))
+              (turn-away! view (normalize apart))))))
+      (let ((touched (overlapping (sphere reach) #:position start #:bodies others))
+            (low? (call-with-values (lambda () (bounding-box view))
+                    (lambda (lo hi) (< (vector-ref lo 2) (- (vector-ref start 2) reach))))))
+        (when (or (even? (length touched)) low?)
+          (turn-spin-round! view))))))
+(define (against felt length)
+  (if (> (norm felt) 0) (v* (- (/ length (norm felt))) felt) #(0 0 0)))
+(define (felt-torque view other)
+  (let loop ((contacts (contacts #:body view)) (sum (hold-torque view other)))
+    (if (null? contacts)
+        sum
+        (loop (cdr contacts)
+              (v+ sum (v* (if (equal? (body-name view)
+                                      (body-name (cadr (contact-bodies (car contacts)))))
+                              1 -1)
+                          (contact-torque (car contacts))))))))
+(define (steady period torque reach)
+  (lambda (time view other)
+    (let ((turn (modulo (count-up! view) 4)))
+      (set! (applied-force view)
+            (against (if (= turn 2) (net-contact-force view #:from other) #(0 0 0)) torque))
+      (set! (applied-torque view)
+            (against (case turn
+                       ((1) (rotate (orientation view) (gyro view)))
+                       ((3) (felt-torque view other))
+                       (else #(0 0 0)))
+                     (* torque reach))))))
+(define (strain name)
+  (lambda (period torque reach)
+    (lambda (time view)
+      (let* ((count (count-up! view))
+             (felt (if (odd? count) (joint-force view name) (joint-moment view name)))
+             (sum (apply + (vector->list felt)))
+             (new (vector-copy (joint-torques view)))
+             (servo* (and (zero? (modulo count 3)) (servo-at view name))))
+        (vector-set! new (1- (vector-length new)) (if (> sum 0) (- torque) torque))
+        (set! (joint-torques view) new)
+        (when servo*
+          (set! (joint-servo view name)
+                (servo #:target (- (servo-target servo*))
+                       #:target-velocity (servo-target-velocity servo*)
+                       #:stiffness (servo-stiffness servo*) #:damping (servo-damping servo*)
+                       #:max-torque (servo-max-torque servo*))))))))
+;; #f where there is none, or no joint that could have one
+(define (servo-at view name)
+  (catch 'timewarp-error (lambda () (joint-servo view name)) (const #f)))
 (on-collision! #t #t
   (lambda (collision . views)
     (for-each count-up! views)))
@@ -151,6 +225,50 @@ std::string bonds_text(const DescribedScene& scene) {
   return all;
 }
 
+std::string forces_text(const DescribedScene& scene) {
+  std::string all;
+  for (const DescribedForce& force : scene.forces) {
+    const std::string body = body_text(force.body);
+    if (force.linear > 0 || force.quadratic > 0)
+      all += "(add-drag! " + body + " #:linear " + show(force.linear) + " #:quadratic " +
+             show(force.quadratic) + ")\n";
+    if (force.procedure)
+      all += "(add-force! " + body + "\n  (lambda (time view)\n    (values (v+ (v* " +
+             show(force.stiffness) + " (v- " + text(force.place) + " (position view)))\n" +
+             "                (v* (sin (* " + show(2 * pi / force.period) + " time)) " +
+             text(force.push) + "))\n            (v* " + show(-force.resistance) +
+             " (angular-velocity view)))))\n";
+  }
+  return all;
+}
+
+std::string servos_text(const DescribedScene& scene) {
+  std::string all;
+  for (const DescribedServo& servo : scene.servos) {
+    const auto slash = servo.link.find('/');
+    all += "(set! (joint-servo (find-multibody \"" + servo.link.substr(0, slash) + "\") '" +
+           servo.link.substr(slash + 1) + ")\n  (servo #:target " + show(servo.target) +
+           " #:target-velocity " + show(servo.rate) + " #:stiffness " + show(servo.stiffness) +
+           " #:damping " + show(servo.damping) + " #:max-torque " + show(servo.max_torque) + "))\n";
+  }
+  return all;
+}
+
+namespace {
+
+// How a deed is called; `strain` by its last link.
+std::string deed_text(const DescribedScene& scene, const DescribedCallback& callback) {
+  if (callback.deed != Deed::strain) return name_of(callback.deed);
+  const std::string& first = callback.targets.front();
+  const std::string multibody = first.substr(0, first.find('/') + 1);
+  std::string last;
+  for (const DescribedBody& body : scene.bodies)
+    if (body.name.starts_with(multibody)) last = body.name.substr(multibody.size());
+  return "(strain '" + last + ")";
+}
+
+}  // namespace
+
 std::string callbacks_text(const DescribedScene& scene) {
   if (scene.callbacks.empty()) return {};
   std::string all = deeds_text;
@@ -158,9 +276,9 @@ std::string callbacks_text(const DescribedScene& scene) {
     std::string targets;
     for (const std::string& name : callback.targets)
       targets += (targets.empty() ? "" : " ") + body_text(name);
-    all += "(add-callback! (list " + targets + ") (" + name_of(callback.deed) + " " +
-           show(callback.period) + " " + show(callback.torque) + ") #:start " +
-           show(callback.start) +
+    all += "(add-callback! (list " + targets + ") (" + deed_text(scene, callback) + " " +
+           show(callback.period) + " " + show(callback.torque) + " " + show(callback.reach) +
+           ") #:start " + show(callback.start) +
            (callback.deed == Deed::grip ? "" : " #:period " + show(callback.period)) + ")\n";
   }
   return all;

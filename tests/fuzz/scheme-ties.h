@@ -16,6 +16,8 @@ std::string shape_text(const DescribedBody& body);
 // The multibody whose first link is number `first`, which becomes the number of what follows it.
 std::string multibody_text(const DescribedScene& scene, std::size_t& first);
 std::string bonds_text(const DescribedScene& scene);
+std::string forces_text(const DescribedScene& scene);
+std::string servos_text(const DescribedScene& scene);
 std::string callbacks_text(const DescribedScene& scene);
 
 }  // namespace tw::fuzz
