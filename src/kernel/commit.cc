@@ -71,6 +71,8 @@ void Commit::commit(double limit, bool inclusive) {
   const std::exception_ptr error = error_before(limit, inclusive);
   commit_states(limit, inclusive);
   Present& present = sim_.present;
+  // an error at the present instant takes nothing back of what was final there
+  inclusive = inclusive || (present.due.inclusive && limit == present.due.time);
   present.gvt = present.time = limit;
   present.due = {limit, inclusive};
   if (error)

@@ -82,4 +82,22 @@
     (add-force! ball (lambda (t view) (set! (velocity view) #(1 0 0)) #(0 0 0)))
     (test-message "it looks only" "changed in a force's procedure" (run! #:until 3))))
 
+;; What a run has made final stays so when the next one fails at once: bodies whose states before
+;; that are gone are changed all the same, and the one that failed goes on with another force.
+(in-world ()
+  (let ((fails (add-body! #:shape (sphere 0.2)))
+        (ticked (add-body! #:shape (sphere 0.2) #:position #(4 0 0)))
+        (wrong? #t))
+    (add-callback! ticked (const #f) #:period 0.01)
+    (run! #:until 0.01)
+    (add-force! fails (lambda (time view) (if wrong? 1 #(0 0 0))))
+    (test-message "a wrong force" "returned a wrong force" (run! #:until 0.1))
+    (set! (velocity ticked) #(1 0 0))
+    (test-equal "another body is changed" #(1.0 0.0 0.0) (velocity ticked))
+    (set! wrong? #f)
+    (set! (velocity fails) #(1 0 0))
+    (run! #:until 0.11)
+    (test-assert "the one that failed goes on"
+      (close? 0.1 (vector-ref (position fails) 0) 1e-12))))
+
 (test-end "forces")
