@@ -74,7 +74,7 @@ double slide_error(const CaseEngine& engine, const CaseTable& c) {
 class EndJudge : public CaseJudge {
  public:
   explicit EndJudge(const CaseTable& c) : case_(c) {
-    if (c.name != "slide") exact_ = test::read_rows(c.name + ".exact.txt");
+    if (c.name != "slide") exact_ = exact_result(c.name);
   }
   double interval() const override { return case_.duration; }
   void look(double, const CaseEngine& engine) override {

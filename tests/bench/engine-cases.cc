@@ -28,8 +28,9 @@ double longest(const std::string& name) { return is_heap(name) ? 10 : 3; }
 constexpr rlim_t too_long = 60;  // CPU s: a process is ended then
 
 const char* const case_names[] = {
-    "brick",   "bounce",           "billiard", "gas-200",     "slide", "creep", "stack", "chain-5",
-    "rolling", "rolling-diagonal", "bouncing", "elastic-666", "666",   "kapla", "drum",  "shaken"};
+    "brick",    "bounce",      "billiard", "gas-200",  "gas-1600", "slide",
+    "creep",    "stack",       "chain-5",  "chain-20", "rolling",  "rolling-diagonal",
+    "bouncing", "elastic-666", "666",      "kapla",    "drum",     "shaken"};
 
 struct Result {
   double cpu = 0, error = 0, settled_error = 0;

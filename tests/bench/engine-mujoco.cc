@@ -126,16 +126,22 @@ std::string driven_text(const CaseTable& c) {
   return out + "</body>";
 }
 
+// By default there is room for a few hundred contacts.  More costs time to make, and in a large
+// gas, in which few touch at once, more memory than there is.
+std::string room_text(const CaseTable& c) {
+  if (c.bodies.size() <= 40) return "";
+  return c.bodies.size() > 1000 ? "<size njmax='1000' nconmax='1000'/>"
+                                : "<size njmax='8000' nconmax='4000'/>";
+}
+
 // A heap is solved by conjugate gradients, as far as MuJoCo does by default: Newton's method takes
 // 13 times as long in the shaken box and is no shallower.
 std::string Mujoco::text(const CaseTable& c, double step) {
   std::ostringstream out;
   const bool contacts = c.bodies.size() > 1 && c.hinges.empty();
   out << std::setprecision(17)
-      << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/>"
-      // else there is room for a few hundred contacts; it costs time to make
-      << (c.bodies.size() > 40 ? "<size njmax='8000' nconmax='4000'/>" : "") << "<option gravity='"
-      << text_of(c.gravity) << "' timestep='" << step << "' integrator='"
+      << "<mujoco><compiler boundmass='0' boundinertia='0' balanceinertia='false'/>" << room_text(c)
+      << "<option gravity='" << text_of(c.gravity) << "' timestep='" << step << "' integrator='"
       << (contacts ? "Euler" : "RK4") << "' cone='"
       << (c.name == "stack" || c.name == "kapla" ? "pyramidal" : "elliptic")
       << (is_heap(c.name) ? "' solver='CG" : "' impratio='100' tolerance='1e-14")

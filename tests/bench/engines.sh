@@ -27,10 +27,13 @@ if ! command -v gnuplot > /dev/null; then
 fi
 engines=$(tail -n +2 engines.csv | cut -d, -f1 | awk '!seen[$0]++')
 {
-  echo 'set terminal png size 1600,1500 font "sans,10"; set output "engines.png"'
+  # four panels a row, the key in one of its own
+  rows=$(tail -n +2 engines.csv | cut -d, -f3 | awk '!seen[$0]++ { ++n } END { print int((n + 4) / 4) }')
+  echo "set terminal png size 1600,$((300 * rows)) font 'sans,10'; set output 'engines.png'"
   echo 'set linetype 5 lc rgb "#a0522d"; set linetype 6 lc rgb "black"'
   echo 'set datafile separator ","; set logscale xy; set format "10^{%T}"; set grid'
-  echo 'set multiplot layout 5,4; set xlabel "CPU, s"; set ylabel "error"; unset key; set yrange [1e-17:20]'
+  echo "set multiplot layout $rows,4"
+  echo 'set xlabel "CPU, s"; set ylabel "error"; unset key; set yrange [1e-17:20]'
   # an error of 0 is drawn at the bottom
   tail -n +2 engines.csv | cut -d, -f3 | awk '!seen[$0]++' | while read -r name; do
     printf 'set title "%s"\nplot ' "$name"

@@ -15,9 +15,22 @@ bool is_simbenchmark(const std::string& name) {
 
 bool is_heap(const std::string& name) { return name == "drum" || name == "shaken"; }
 
+namespace {
+
+constexpr int large_gas = 1600;  // smaller ones are in tables
+
+bool is_large_gas(const std::string& name) { return name == "gas-1600"; }
+
+}  // namespace
+
 test::CaseTable case_named(const std::string& name) {
   if (is_simbenchmark(name)) return simbenchmark_case(name);
+  if (is_large_gas(name)) return gas_case(large_gas);
   return is_heap(name) ? heap_case(name) : test::read_table(name);
+}
+
+std::vector<std::vector<double>> exact_result(const std::string& name) {
+  return is_large_gas(name) ? gas_result(large_gas) : test::read_rows(name + ".exact.txt");
 }
 
 CaseBody solid_ball(double radius, double mass, const Numbers3& position) {

@@ -1,8 +1,10 @@
-// Cases that are made, not read from tables: SimBenchmark's tests, and heaps that are kept moving.
+// Cases that are made, not read from tables: SimBenchmark's tests, heaps that are kept moving, and
+// a large gas.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "support/case-table.h"
 
@@ -23,11 +25,18 @@ test::CaseTable simbenchmark_case(const std::string& name);
 // - shaken: the same in a box that is shaken sideways, a little more than gravity pulls
 test::CaseTable heap_case(const std::string& name);
 
+// gas-N: the spheres of make_gas (event-driven-md.h) within six planes, for 2 s.
+test::CaseTable gas_case(int count);
+// Number, position and velocity of each at its end, by the event-driven program: in double, which
+// is within 1e-11 m of another one in it (gas-bench).
+std::vector<std::vector<double>> gas_result(int count);
+
 bool is_simbenchmark(const std::string& name);
 bool is_heap(const std::string& name);
 
-// Made here, or read from a table.
+// Made here, or read from a table; so is the exact result.
 test::CaseTable case_named(const std::string& name);
+std::vector<std::vector<double>> exact_result(const std::string& name);
 
 // Of what moves and has a shape of its own.
 test::CaseBody solid_ball(double radius, double mass, const test::Numbers3& position);
