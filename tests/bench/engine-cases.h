@@ -1,7 +1,8 @@
 // Cases in any engine: run time against error, as lines of CSV.
 //
 // The columns are engine, version, case, setting, CPU of the first run in a process and of the best
-// of several, s, error, its unit, note.  Only stepping is timed, by the CPU clock of the thread.
+// of several, s, error, its unit, note, CPU of making the engine's world before that first run, s.
+// By the CPU clock of the thread; making the world is in none of the other times.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -45,15 +46,16 @@ struct Setting {
 struct CaseRunner {
   std::string engine, version;
   std::function<std::unique_ptr<CaseEngine>(const CaseTable&, const Setting&)> make;
-  bool by_steps = true;  // a setting is a time step
+  bool by_steps = true;        // a setting is a time step
+  bool every_setting = false;  // else none after one that takes seconds
   // The cheapest first, for a case.
   std::function<std::vector<Setting>(const std::string& name)> settings;
   // Why the engine can't do a case, without commas; empty where it can.
   std::function<std::string(const CaseTable&)> unable = [](const CaseTable&) { return ""; };
 };
 
-// Steps from a 60th of a second down, each a quarter of the one before; of moving heaps from a
-// 240th down, each half of the one before.
+// Steps from a 60th of a second down, each a quarter of the one before; where depths are to be
+// alike each half of it, of moving heaps from a 240th down.
 std::vector<Setting> time_steps(const std::string& name);
 
 // Of a program whose engine is made from a case and a setting's value, by default a time step.
@@ -69,8 +71,8 @@ CaseRunner runner_of(const std::string& name, const std::string& version) {
   return runner;
 }
 
-// Runs all cases, or those that the command line names, each setting in a process of its own, until
-// one takes seconds.  Returns the exit status.
+// Runs all cases, or those that the command line names, each setting in processes of its own, until
+// one takes seconds; says on standard error which.  Returns the exit status.
 int run_cases(const CaseRunner& runner, int argc, char** argv);
 
 }  // namespace tw::bench

@@ -7,7 +7,7 @@
 # doc/engines.md holds such tables between its markers (engine-tables.sh engines.csv PAGE writes them
 # there), doc/pictures/engines.png such a picture.
 # SPDX-License-Identifier: LGPL-3.0-or-later
-echo "engine,version,case,setting,cold_cpu_s,cpu_s,error,unit,note" > engines.csv
+echo "engine,version,case,setting,cold_cpu_s,cpu_s,error,unit,note,made_cpu_s" > engines.csv
 for engine in timewarp ode bullet mujoco simbody dart; do
   program=
   for each; do

@@ -33,6 +33,8 @@ std::vector<std::vector<double>> gas_result(int count);
 
 bool is_simbenchmark(const std::string& name);
 bool is_heap(const std::string& name);
+// Heaps, and 666: engines are compared at like depths.
+bool is_judged_by_depth(const std::string& name);
 
 // Made here, or read from a table; so is the exact result.
 test::CaseTable case_named(const std::string& name);
