@@ -14,13 +14,13 @@ namespace {
 
 using namespace group_scenes;
 
-struct Scene {
+struct GroupScene {
   std::string name;
   GroupStart start;
 };
 
-std::vector<Scene> scenes() {
-  std::vector<Scene> all;
+std::vector<GroupScene> scenes() {
+  std::vector<GroupScene> all;
   GroupStart lands = cube_on_slope(0, 0.5, 0.2, 0.5);
   lands.members[0].x.z() += 0.005;
   lands.members[0].q = rotation_by(Vec3(0.02, 0.01, 0.1));
@@ -65,7 +65,7 @@ double largest_error(GroupArc& arc, GroupArc& reference) {
 void print_costs() {
   std::puts(
       "| group | bodies | contacts | construction us | us a step tried |\n|---|---|---|---|---|");
-  for (const Scene& scene : scenes()) {
+  for (const GroupScene& scene : scenes()) {
     CompleteArc arc(scene.start);
     arc.extend(scene.start.end);
     const double tries = static_cast<double>(arc.counts().steps + arc.counts().rejected);
@@ -76,7 +76,7 @@ void print_costs() {
   }
 }
 
-void print_errors(Scene scene) {
+void print_errors(GroupScene scene) {
   std::printf(
       "\n%s, %g s\n\n| tolerance m, m/s | steps + rejected | CPU ms | largest error m "
       "|\n|---|---|---|---|\n",
@@ -104,7 +104,7 @@ void print_errors(Scene scene) {
 
 int main() {
   tw::print_costs();
-  for (const tw::Scene& scene : tw::scenes())
+  for (const tw::GroupScene& scene : tw::scenes())
     if (scene.start.members.size() <= 16) tw::print_errors(scene);
   return 0;
 }
