@@ -241,7 +241,7 @@
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."
-  (call-with-broken-pipes (lambda () (run-command-line args))))
+  (call-with-write-errors (lambda () (run-command-line args))))
 
 (define (run-command-line args)
   ;; -L before any module is looked for

@@ -11,7 +11,7 @@
   #:export (call-with-interrupts
             interrupt-count
             call-with-ending-signals
-            call-with-broken-pipes
+            call-with-write-errors
             ending?
             reader-gone?
             exit-program))
@@ -65,7 +65,7 @@ ignored stay so: nohup ignores SIGHUP."
                               (list (list SIGTERM end-by! only-once) (list SIGHUP end-by!)))
                       thunk))
 
-(define (call-with-broken-pipes thunk)
+(define (call-with-write-errors thunk)
   "Call THUNK; SIGPIPE, and SIGXFSZ of a file beyond its limit, become errors of what writes."
   ;; no SIG_IGN, which programs that we start would inherit
   (call-with-handlers (list (list SIGPIPE (const #t)) (list SIGXFSZ (const #t))) thunk))

@@ -306,7 +306,7 @@
 
 (define (main args)
   "Do what the command line ARGS says; exit with a status."
-  (call-with-broken-pipes
+  (call-with-write-errors
    (lambda ()
      (let* ((owed 1)
             (status (exit-status (lambda ()

@@ -344,6 +344,8 @@ inline constexpr double far_in_radii = 0.25;
 // A certificate shorter than this is worth a second look, s; with a plane that turns along with the
 // two, which is followed no longer than this, s.
 inline constexpr double soon = 1e-3, longest_turn = 2e-3;
+// Which way a turn changes is asked over so many steps of an integrator.
+inline constexpr int turning_steps = 16;
 // How far ahead the speed of a kinematic body is bounded, s.
 inline constexpr double kinematic_horizon = 0.5;
 

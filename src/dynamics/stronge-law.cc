@@ -20,7 +20,7 @@ constexpr double stopped = 1e-9;      // of |u|: what slides no faster has stopp
 constexpr double settled = 1e-9;      // of K: directions that turn no faster do not turn
 constexpr double counts = 1e-12;      // of K: answers
 constexpr double fineness = 1. / 16;  // of the time in which a direction may turn by a radian
-constexpr int most_steps = 10000;
+constexpr int most_steps = 10000, most_rounds = most_steps + 100;
 
 // How far it has come.
 struct Progress {
@@ -52,12 +52,13 @@ class ImpactCourse {
 
   // False: no impulse ends it.
   bool run() {
-    while (!over()) {
+    for (int rounds = 0; !over(); ++rounds) {
+      if (rounds > most_rounds) return false;
       const double speed = at_.sliding.norm();
       if (speed <= stopped * start_.norm()) return from_rest();
       const Vec2 e = at_.sliding / speed;
       const Vec2 rate = slope(e);
-      if (std::abs(across(e, rate)) <= settled * scale_ || steps_ > most_steps)
+      if (std::abs(across(e, rate)) <= settled * scale_ || rounds > most_steps)
         straight(-mu_ * e, rate.dot(e) < 0 ? speed / -rate.dot(e) : never);
       else
         turn();
@@ -69,17 +70,20 @@ class ImpactCourse {
  private:
   static double across(const Vec2& e, const Vec2& x) { return e.x() * x.y() - e.y() * x.x(); }
   double target() const { return keeps_ * at_.least; }
-  bool over() const { return at_.normal >= 0 && at_.work >= target() && at_.p > 0; }
+  bool over() const { return at_.normal >= 0 && at_.work >= target(); }
   // ds/dp while it slides along e
   Vec2 slope(const Vec2& e) const { return coupling_ - mu_ * (tangential_ * e); }
 
-  void take(double dp, const Vec2& dq, double dwork) {
+  enum class Stop { none, turns, ends };  // from compression to restitution, or the impact itself
+  void take(double dp, const Vec2& dq, double dwork, Stop stop) {
     at_.p += dp;
     at_.q += dq;
     at_.work += dwork;
     at_.normal = start_.z() + direct_ * at_.p + coupling_.dot(at_.q);
     at_.sliding = start_.head<2>() + tangential_ * at_.q + coupling_ * at_.p;
-    if (at_.normal < 0) at_.least = std::min(at_.least, at_.work);
+    if (stop == Stop::turns) at_.normal = 0;
+    if (stop == Stop::ends) at_.work = target();
+    if (at_.normal < 0 || stop == Stop::turns) at_.least = std::min(at_.least, at_.work);
   }
 
   // Goes on with constant friction f for `most` of p at most, all quadratics: to rest, to the turn
@@ -87,23 +91,19 @@ class ImpactCourse {
   void straight(const Vec2& f, double most) {
     const double gain = direct_ + coupling_.dot(f), v = at_.normal;
     double dp = most;
-    bool turns = false, ends = false;
+    Stop stop = Stop::none;
     if (v < 0) {
-      turns = gain > 0 && -v / gain <= dp;
-      if (turns) dp = -v / gain;
+      if (gain > 0 && -v / gain <= dp) dp = -v / gain, stop = Stop::turns;
     } else {
       // v dp + gain dp^2/2 = need, the first root; where it falls back before, to v = 0
       const double need = target() - at_.work, disc = v * v + 2 * gain * need;
       const double to_end = disc >= 0 ? 2 * need / (v + std::sqrt(disc)) : never;
-      ends = to_end <= dp;
-      if (ends)
-        dp = to_end;
+      if (to_end <= dp)
+        dp = to_end, stop = Stop::ends;
       else if (gain < 0)
         dp = std::min(dp, std::max(2 * v / -gain, 0.0));
     }
-    take(dp, f * dp, dp * (v + 0.5 * gain * dp));
-    if (turns) at_.normal = 0, at_.least = at_.work;
-    if (ends) at_.work = target();
+    take(dp, f * dp, dp * (v + 0.5 * gain * dp), stop);
     if (dp == most) at_.sliding.setZero();
   }
 
@@ -126,7 +126,6 @@ class ImpactCourse {
     return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
   void turn() {
-    ++steps_;
     Flow y = Flow::Zero();
     y[0] = std::atan2(at_.sliding.y(), at_.sliding.x());
     y[1] = std::log(at_.sliding.norm());
@@ -142,17 +141,15 @@ class ImpactCourse {
       to = step(y, at);
     };
     const double goal = target() - at_.work;
-    bool turns = false, ends = false;
+    Stop stop = Stop::none;
     if (at_.normal < 0 && normal_after(to) >= 0) {
-      turns = true;
+      stop = Stop::turns;
       cut_where(normal_after);
     } else if (at_.normal >= 0 && to[5] >= goal) {
-      ends = true;
+      stop = Stop::ends;
       cut_where([&](const Flow& y_at) { return y_at[5] - goal; });
     }
-    take(to[2], {to[3], to[4]}, to[5]);
-    if (turns) at_.normal = 0, at_.least = at_.work;
-    if (ends) at_.work = target();
+    take(to[2], {to[3], to[4]}, to[5], stop);
   }
 
   // It has stopped sliding: sticks, or slides away, in either case with the same friction to the
@@ -185,7 +182,6 @@ class ImpactCourse {
   double direct_, scale_;
   Vec3 start_;
   double keeps_, mu_, bend_;
-  int steps_ = 0;
   Progress at_;
 };
 

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -48,9 +48,11 @@ void require_numbers(const std::string& file) {
     if (!(words >> word) || word != "v") continue;
     for (int i = 0; i < 3; ++i) {
       const bool there = static_cast<bool>(words >> word);
-      char* end = nullptr;
-      const double value = there ? std::strtod(word.c_str(), &end) : 0;
-      TW_REQUIRE(there && *end == 0 && std::isfinite(value),
+      // as in any locale
+      double value = 0;
+      const char *begin = word.data() + (word[0] == '+'), *end = word.data() + word.size();
+      const auto read = std::from_chars(begin, end, value);
+      TW_REQUIRE(there && read.ec == std::errc() && read.ptr == end && std::isfinite(value),
                  file + ":" + std::to_string(number) + ": coordinate of a vertex is " +
                      (there ? word : "missing") + "; expected three finite numbers");
     }

@@ -257,11 +257,10 @@ MotionBounds DrivenArc::bounds(double from, double to) const {
 
 double DrivenArc::turn_change_across(const Vec3& n, double from, double to,
                                      const MotionBounds& known) const {
-  constexpr int most_steps = 16;
   double most = 0;
   int steps = 0;
-  for (double t = from; t < solution_.reached() && t < to;) {
-    if (++steps > most_steps) return known.turn_change;
+  for (double t = from; t < solution_.reached();) {
+    if (++steps > cost::turning_steps) return known.turn_change;
     const DenseStep& step = solution_.at(t);
     const double end = solution_.step_end(t), until = std::min(to, end);
     const auto degree = static_cast<std::size_t>(step.degree());
@@ -272,6 +271,7 @@ double DrivenArc::turn_change_across(const Vec3& n, double from, double to,
     most = std::max(
         most, tw::turn_change_across(n, {theta, degree + 1}, {rate, degree}, {second, degree - 1}));
     t = end;
+    if (!(t < to)) break;
   }
   return std::min(known.turn_change, most);
 }

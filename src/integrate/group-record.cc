@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/constants.h"
 #include "integrate/turning.h"
 #include "math/rotation-vector.h"
 
@@ -313,9 +314,8 @@ MotionBounds GroupRecord::bounds(int member, double from, double to) const {
 }
 
 double GroupRecord::turn_change_across(const Vec3& n, int member, double from, double to) const {
-  constexpr int most_steps = 16;
   const int last = step_to(to), first = std::min(std::max(step_from(from), 0), last);
-  if (last - first >= most_steps) return never;
+  if (last - first >= cost::turning_steps) return never;
   double most = 0;
   for (int i = first; i <= last; ++i) {
     // the control points of theta and of its rates over [r0, r1]

@@ -6,14 +6,8 @@
 #
 # All fly by Cash and Karp's method, so that each policy has its own rounding and errors of its own.
 # SPDX-License-Identifier: LGPL-3.0-or-later
-source=$(cd "$1" && pwd)
-shift
-command=
-while [ $# -gt 0 ] && [ "$1" != -- ]; do
-  command="$command $1"
-  shift
-done
-[ $# -gt 0 ] && shift
+. "${0%/*}/arguments.sh"
+source=$(cd "$source" && pwd)
 sizes=${*:-200 400}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

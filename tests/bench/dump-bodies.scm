@@ -79,13 +79,8 @@
     (apply show corners)
     (newline)))
 
-;; in a module of its own, for it may use any name
-(save-module-excursion
- (lambda ()
-   (let ((module (make-fresh-user-module)))
-     (module-use! module (resolve-interface '(timewarp)))
-     (set-current-module module))
-   (load-scene scene-file)))
+(load "load-apart.scm")
+(load-apart scene-file)
 (with-output-to-file output
   (lambda ()
     (display "gravity") (show gravity) (newline)

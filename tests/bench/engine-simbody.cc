@@ -70,7 +70,9 @@ SimTK::ContactMaterial Simbody::material_of(const CaseTable& c, double accuracy)
   if (c.restitution > 0) {
     dissipation = dissipation_of(c.restitution, impact_speed);
   } else {
-    const double mass = c.bodies[1].shape == "box" ? 0.25 * c.bodies[1].mass : c.bodies[1].mass;
+    // the first that moves: a lone body, or the one after the ground
+    const CaseBody& body = c.bodies[c.bodies.size() > 1 ? 1 : 0];
+    const double mass = body.shape == "box" ? 0.25 * body.mass : body.mass;
     dissipation = 2 * std::sqrt(stiffness / mass) / gravity;
   }
   return SimTK::ContactMaterial(stiffness, dissipation, c.friction, c.friction);

@@ -8,13 +8,8 @@
 (define-scene-parameter scene-file "atoms.scm" "the scene to load")
 (define-scene-parameter nudge 1e-12 "how far each moving body is put aside, m")
 
-;; in a module of its own, for it may use any name
-(save-module-excursion
- (lambda ()
-   (let ((module (make-fresh-user-module)))
-     (module-use! module (resolve-interface '(timewarp)))
-     (set-current-module module))
-   (load-scene scene-file)))
+(load "load-apart.scm")
+(load-apart scene-file)
 (for-each (lambda (body i)
             (when (eq? (body-kind body) 'dynamic)
               (let ((aside (vector (sin (* 3 i)) (sin (* 5 i)) (cos (* 7 i)))))

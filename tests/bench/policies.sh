@@ -10,14 +10,7 @@
 #
 # All fly by Cash and Karp's method, on one thread: in closed form nothing would be integrated.
 # SPDX-License-Identifier: LGPL-3.0-or-later
-source=$1
-shift
-command=
-while [ $# -gt 0 ] && [ "$1" != -- ]; do
-  command="$command $1"
-  shift
-done
-[ $# -gt 0 ] && shift
+. "${0%/*}/arguments.sh"
 sizes=${*:-25 50 100 200 400}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

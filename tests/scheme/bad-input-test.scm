@@ -110,6 +110,10 @@
 (let ((result (shell (string-append "sh -c '" timewarp " fall.scm --hash >/dev/full'"))))
   (test-equal "standard output that is full: status 1" 1 (run-status result)))
 
+(let ((result (shell (string-append "sh -c 'ulimit -f 1; exec " timewarp " fall.scm --quiet --poses=large.csv --fps=1000'"))))
+  (test-equal "a file beyond the limit of files: status 1" 1 (run-status result))
+  (test-assert "a file beyond the limit of files: which, and why"
+    (string-contains (run-errors result) "cannot write large.csv: File too large")))
 (let ((result (run "fall.scm" "--poses=poses.csv" "--events=/dev/full")))
   (test-equal "one of two outputs full: status 1" 1 (run-status result)))
 
