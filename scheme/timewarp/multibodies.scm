@@ -94,16 +94,22 @@ link, then about one that is fixed in the link.  Its position is two angles #(a 
 #:restitution  the share of the speed that is left after a stop is struck, of both or #(a b); 0
 #:stop-stiffness  N m/rad, of the stops; from the weight of what hangs on the joint")
 
-(define-joint (spherical at orientation damping friction stiffness rest)
+(define-joint (spherical axis at orientation limits damping friction stiffness rest restitution
+                         stop-stiffness)
   "Return a joint that turns about a point: its position is a quaternion #(w x y z), its velocity the
 angular velocity #(x y z), rad/s, in the link's frame.
 
+#:axis         #(x y z) in the joint's frame: #:limits is of how far it may swing from where it is at
+               #(1 0 0 0), in a cone, and turning about it is free; #f: of all turning
 #:at           m, where the joint is in the frame of the parent link, or of the base; #(0 0 0)
 #:orientation  of the joint's frame there, a quaternion #(w x y z); #(1 0 0 0)
+#:limits       an angle, 0.001 to 3 rad; none
 #:damping      N m s/rad, 0 or more; 0
 #:friction     N m, 0 or more: the torque against the motion, however slow; 0
 #:stiffness    N m, of a spring whose torque is stiffness times the sine of the angle; 0
-#:rest         a quaternion, where the spring is relaxed; #(1 0 0 0)")
+#:rest         a quaternion, where the spring is relaxed; #(1 0 0 0)
+#:restitution  the share of the speed that is left after the stop is struck, 0 to 1; 0
+#:stop-stiffness  N m/rad, of the stop at the limit; from the weight of what hangs on the joint")
 
 (define-joint (weld at orientation)
   "Return a joint that does not move: the link is part of its parent, or of the base.
@@ -325,7 +331,8 @@ of their positions in (joint-positions MULTIBODY).  A free multibody's first is 
 
 (define (joint-limits multibody name)
   "Return the limits of the joint NAME of MULTIBODY as a list (LOWER UPPER), rad or m, infinite where
-there are none; of a universal joint a list of two such; #f of other joints."
+there are none; of a universal joint a list of two such; of a spherical one the greatest angle, rad;
+#f of other joints."
   (caddr (list-ref (%multibody-joints multibody) (%joint-index multibody name))))
 
 (define-syntax-rule (define-joint-accessor (accessor argument ...) doc getter setter)
@@ -501,6 +508,7 @@ joints.  Servos, stops, contacts and forces on links are left out."
 (define (limits->text limits)
   (match limits
     (#f "")
+    ((? real? angle) (if (inf? angle) "" (format #f " (to ~a)" (number->text angle))))
     (((? real? lower) upper)
      (if (and (inf? lower) (inf? upper))
          ""

@@ -211,7 +211,6 @@ double stop_time(const GroupArc& arc, int number) {
   const JointRecord& record = arc.joints_record(number);
   double first = never;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    if (axes[i].ball) continue;
     const auto look = [&](multibody::Stop stop, double side, double limit) {
       const bool leans = !tree.state->stops.empty() && tree.state->stops[i] == stop;
       if (!leans && std::isfinite(limit))

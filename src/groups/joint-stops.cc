@@ -7,6 +7,7 @@
 #include "base/constants.h"
 #include "groups/joints.h"
 #include "multibody/impulses.h"
+#include "multibody/limits.h"
 
 namespace tw {
 
@@ -23,17 +24,28 @@ struct AtStop {
   bool touches = false;
 
   AtStop(const Axis& axis, const MultibodyState& joints) {
-    const double q = joints.q[static_cast<std::size_t>(axis.q)];
+    // most joints have none
+    if (!std::isfinite(axis.law.lower) && !std::isfinite(axis.law.upper)) return;
+    const double q = limited(axis, joints.q);
     const bool low = q - axis.law.lower <= axis.law.upper - q;
     const double limit = low ? axis.law.lower : axis.law.upper;
-    if (axis.ball || !std::isfinite(limit)) return;
+    if (!std::isfinite(limit)) return;
     stop = low ? Stop::lower : Stop::upper;
     side = low ? 1 : -1;
     gap = side * (q - limit);
-    speed = -side * joints.u[static_cast<std::size_t>(axis.u)];
+    speed = -side * limited_rate(axis, joints.q, joints.u);
     touches = gap <= stop_tolerance(axis, limit);
   }
 };
+
+// The change of what is limited by a unit impulse along it; `work`, `force`: room.
+double inverse_inertia_of_limited(const Factored& factored, const Axis& axis, In q,
+                                  ImpulseWork& work, std::vector<double>& force) {
+  if (!axis.ball) return inverse_inertia_of_dof(factored, axis.u);
+  set_along_limited(axis, q, 1, force);
+  velocity_change(factored, {}, force, work, force);
+  return limited_rate(axis, q, force);
+}
 
 // Impulses at the stops that are struck, the fastest first.
 void strike(const Multibody& multibody, double now, MultibodyState& joints) {
@@ -41,7 +53,7 @@ void strike(const Multibody& multibody, double now, MultibodyState& joints) {
   std::unique_ptr<PlacedJoints> placed;
   Articulation factors(tree);
   ImpulseWork work(tree);
-  std::vector<double> unit(joints.u.size());
+  std::vector<double> change(joints.u.size());
   for (int count = 0; count < guard::most_stop_impulses; ++count) {
     const Axis* struck = nullptr;
     double fastest = 0;  // of what is slow there
@@ -61,11 +73,10 @@ void strike(const Multibody& multibody, double now, MultibodyState& joints) {
     const Factored factored{tree, placed->kinematics(), factors};
     const AtStop at(*struck, joints);
     const double impulse = (1 + struck->law.restitution) * at.speed * at.side /
-                           inverse_inertia_of_dof(factored, struck->u);
-    unit.assign(unit.size(), 0.0);
-    unit[static_cast<std::size_t>(struck->u)] = impulse;
-    velocity_change(factored, {}, unit, work, unit);
-    for (std::size_t k = 0; k < unit.size(); ++k) joints.u[k] += unit[k];
+                           inverse_inertia_of_limited(factored, *struck, joints.q, work, change);
+    set_along_limited(*struck, joints.q, impulse, change);
+    velocity_change(factored, {}, change, work, change);
+    for (std::size_t k = 0; k < change.size(); ++k) joints.u[k] += change[k];
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "math/root.h"
 #include "math/rotation-vector.h"
+#include "multibody/limits.h"
 
 namespace tw {
 
@@ -336,11 +337,27 @@ MotionBounds JointRecord::bounds(int link, double from, double to) const {
   return result;
 }
 
-double JointRecord::value(const Axis& axis, int step, double r) const {
+double JointRecord::limited(const Axis& axis, int step, double r) const {
   thread_local std::vector<double> y;
   y.resize(index(2 * n_));
   path_.values(step, r, y.data());
+  if (axis.ball) {
+    const Quat from = multibody::quaternion_at(node(step) + axis.q);
+    const Quat q = from * short_rotation(multibody::vector_at(&y[index(axis.u)]));
+    return multibody::limited_angle(axis, q.normalized()).angle;
+  }
   return node(step)[axis.q] + y[index(axis.u)];
+}
+
+// Bound of its rate; an angle never grows faster than its rotation vector.
+double JointRecord::limited_rate(const Axis& axis, int step, double r0, double r1) const {
+  if (!axis.ball) return path_.rate_bounds(step, axis.u, r0, r1)[0];
+  double squared = 0;
+  for (int k = axis.u; k < axis.u + 3; ++k) {
+    const double rate = path_.rate_bounds(step, k, r0, r1)[0];
+    squared += rate * rate;
+  }
+  return std::sqrt(squared);
 }
 
 // Over a part of a step: halved until it is surely on one side, or too short to matter.  `least`:
@@ -348,10 +365,9 @@ double JointRecord::value(const Axis& axis, int step, double r) const {
 double JointRecord::first_beyond(const Axis& axis, double side, double limit, double least,
                                  int step, double r0, double r1) const {
   constexpr double shortest = 1.0 / 4096;
-  const auto gap = [&](double r) { return side * (value(axis, step, r) - limit) - least; };
+  const auto gap = [&](double r) { return side * (limited(axis, step, r) - limit) - least; };
   const double middle = 0.5 * (r0 + r1);
-  const double reach =
-      0.5 * (r1 - r0) * path_.length(step) * path_.rate_bounds(step, axis.u, r0, r1)[0];
+  const double reach = 0.5 * (r1 - r0) * path_.length(step) * limited_rate(axis, step, r0, r1);
   if (gap(middle) > reach) return never;
   if (r1 - r0 > shortest) {
     const double first = first_beyond(axis, side, limit, least, step, r0, middle);
@@ -365,7 +381,7 @@ double JointRecord::first_beyond(const Axis& axis, double side, double limit, do
 
 double JointRecord::first_beyond(const Axis& axis, double side, double limit) const {
   if (path_.steps() == 0) return never;
-  const double gap = side * (value(axis, 0, 0) - limit);
+  const double gap = side * (limited(axis, 0, 0) - limit);
   const double least = std::min(gap, 0.0) - multibody::stop_tolerance(axis, limit);
   for (int step = 0; step < path_.steps(); ++step)
     if (const double when = first_beyond(axis, side, limit, least, step, 0, 1); when < never)

@@ -45,8 +45,8 @@ class JointRecord {
   // The rates of the pose; at a node those of the step before it, as `pose_rates` of the group.
   Twist rates(int link, double time) const;
   MotionBounds bounds(int link, double from, double to) const;
-  // When a coordinate first gets below (side 1) or above (side -1) a limit, s, or, where it begins
-  // beyond it, further beyond; `never`: it does not.
+  // When what an axis' limits hold first gets below (side 1) or above (side -1) a limit, s, or,
+  // where it begins beyond it, further beyond; `never`: it does not.
   double first_beyond(const multibody::Axis& axis, double side, double limit) const;
   // A copy from the step that holds `from` on.
   JointRecord stretch(double from) const;
@@ -59,7 +59,9 @@ class JointRecord {
   const Placed& place_on_path(int step, double r) const;
   void fill(int step, double r, double time, bool of_path, Placed& p) const;
   double time_at(int step, double r) const;
-  double value(const multibody::Axis& axis, int step, double r) const;
+  // What the axis' limits hold (multibody/limits.h).
+  double limited(const multibody::Axis& axis, int step, double r) const;
+  double limited_rate(const multibody::Axis& axis, int step, double r0, double r1) const;
   double first_beyond(const multibody::Axis& axis, double side, double limit, double least,
                       int step, double r0, double r1) const;
   struct Stretch;

@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "groups/joints.h"
 #include "multibody/impulses.h"
+#include "multibody/limits.h"
 
 namespace tw {
 
@@ -63,12 +64,14 @@ void check_positions(const Multibody& multibody, const MultibodyState& before, b
   }
   for (int i = 0; i < tree.axis_count(); ++i) {
     const Axis& axis = tree.axes()[at(i)];
-    if (axis.ball || after.q[at(axis.q)] == before.q[at(axis.q)]) continue;
-    const double q = after.q[at(axis.q)];
+    const auto first = after.q.begin() + axis.q;
+    if (std::equal(first, first + (axis.ball ? 4 : 1), before.q.begin() + axis.q)) continue;
+    const double q = multibody::limited(axis, after.q);
+    const std::string what = axis.ball ? "the angle of " : "the position of ";
     TW_REQUIRE(q >= axis.law.lower && q <= axis.law.upper,
-               "the position of " + joint_of(multibody, tree.link(axis.link)) + " is " + show(q) +
-                   "; expected one within its limits, " + show(axis.law.lower) + " to " +
-                   show(axis.law.upper));
+               what + joint_of(multibody, tree.link(axis.link)) + " is " + show(q) +
+                   "; expected one within its limits, " + show(axis.ball ? 0 : axis.law.lower) +
+                   " to " + show(axis.law.upper));
     if (!after.stops.empty()) after.stops[at(i)] = Stop::none;
   }
 }

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "math/rotation-vector.h"
 #include "multibody/jacobian.h"
+#include "multibody/limits.h"
 
 namespace tw::multibody {
 namespace {
@@ -57,7 +58,10 @@ class Search {
         J_(6, tree.nv()),
         free_J_(6, tree.nv()) {
     for (const Axis& axis : tree.axes())
-      if (!axis.ball) limits_[static_cast<std::size_t>(axis.u)] = &axis;
+      if (axis.ball)
+        balls_.push_back(&axis);
+      else
+        limits_[static_cast<std::size_t>(axis.u)] = &axis;
   }
 
   // From q; leaves the best there and in `best`.  True: reached.
@@ -83,6 +87,7 @@ class Search {
   Kinematics k_;
   std::vector<double> u_, z_;
   std::vector<const Axis*> limits_;  // by dof, of scalar ones
+  std::vector<const Axis*> balls_;
   std::vector<bool> at_limit_;
   Matrix6X J_, free_J_;
   double residual_ = 0;
@@ -124,6 +129,15 @@ void Search::hold(const Vec6& e, const std::vector<double>& q) {
     if ((at <= axis->law.lower && push < 0) || (at >= axis->law.upper && push > 0))
       J_.col(d).setZero();
   }
+  // of a spherical joint the direction out alone
+  for (const Axis* axis : balls_) {
+    const LimitedAngle now =
+        limited_angle(*axis, quaternion_at(&q[static_cast<std::size_t>(axis->q)]));
+    auto columns = J_.middleCols<3>(axis->u);
+    const Vec6 out = columns * now.direction;
+    if (now.angle >= axis->law.upper - limit_slack && out.dot(e) > 0)
+      columns -= out * now.direction.transpose();
+  }
 }
 
 void Search::cut(std::vector<double>& q) const {
@@ -132,6 +146,10 @@ void Search::cut(std::vector<double>& q) const {
       double& at = q[static_cast<std::size_t>(axis->q)];
       at = std::clamp(at, axis->law.lower, axis->law.upper);
     }
+  for (const Axis* axis : balls_) {
+    double* at = &q[static_cast<std::size_t>(axis->q)];
+    set_quaternion(at, within_limit(*axis, quaternion_at(at)));
+  }
 }
 
 // z is the damped step of the joints that are free, given how far those at their limits go; who
@@ -221,6 +239,7 @@ void Search::draw(Random& random, In given, std::vector<double>& q) const {
     z[u] = random.real(lower, upper) - q[at];
   }
   displace(tree_, q, z, q);
+  cut(q);
 }
 
 }  // namespace

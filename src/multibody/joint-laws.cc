@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "base/error.h"
+#include "multibody/limits.h"
 
 namespace tw::multibody {
 namespace {
@@ -47,7 +48,7 @@ Scalar servo(const ServoGains& gains, double error, double error_rate) {
   return {torque, -gains.stiffness, -gains.damping};
 }
 
-// `side` is +1 at the lower limit: the way out.
+// Of what is limited and its rate; `side` is +1 at the lower limit: the way out.
 Scalar stop(const Axis& axis, double side, double q, double u) {
   const double limit = side > 0 ? axis.law.lower : axis.law.upper;
   const double depth = side * (limit - q), rate = -side * u;
@@ -116,6 +117,17 @@ Ball ball_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, cons
     sum.torque += share * torque;
     sum.by_q -= across * (gains.stiffness * turn_derivative(e));
     sum.by_u -= gains.damping * across;
+  }
+  if (in.stop != Stop::none) {
+    // along the direction n of a limited angle, which turns with the joint
+    const LimitedAngle at = limited_angle(axis, q);
+    const Vec3& n = at.direction;
+    const Scalar law_of_angle = stop(axis, -1, at.angle, n.dot(u));
+    const Vec3 rate_by_turn = at.direction_by_turn.transpose() * u;
+    sum.torque += law_of_angle.torque * n;
+    sum.by_q += law_of_angle.by_q * n * n.transpose() + law_of_angle.torque * at.direction_by_turn +
+                law_of_angle.by_u * n * rate_by_turn.transpose();
+    sum.by_u += law_of_angle.by_u * n * n.transpose();
   }
   return sum;
 }

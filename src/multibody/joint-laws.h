@@ -9,7 +9,8 @@
 //   stop         k d (1 + b d') where positive, else 0; d the depth beyond the limit
 // Of a spherical joint the same with vectors in the link's frame: of the angle, the vector
 // 2 e.w e.vec() of the quaternion e from rest (target) to the joint's position, sin(angle) axis,
-// whose potential k (1 - cos angle) is smooth everywhere; friction and the cut by length.
+// whose potential k (1 - cos angle) is smooth everywhere; friction and the cut by length; the stop
+// along the direction by which its limited angle (limits.h) grows.
 //
 // Laws are smooth but where a servo is cut and a stop comes loose; derivatives there are those of
 // the branch taken.

@@ -10,6 +10,9 @@
 namespace tw::multibody {
 namespace {
 
+// A limit of a spherical joint: where the angle is 0 or pi it has no direction.
+constexpr double least_angle = 1e-3, greatest_angle = 3;  // rad
+
 // Axes of a universal joint are square, and inertia is symmetric, up to rounding of what was typed.
 constexpr double typed = 1e-9;
 
@@ -29,7 +32,7 @@ void require_finite(const Vec3& v, const std::string& what) {
                  tw::show(greatest_length));
 }
 
-void require_axis(const AxisSpec& axis, bool may_have_limits, const std::string& joint) {
+void require_axis(const AxisSpec& axis, bool ball, const std::string& joint) {
   require_at_least_0(axis.damping, "damping of " + joint);
   require_at_least_0(axis.friction, "friction of " + joint);
   require_at_least_0(axis.stiffness, "stiffness of " + joint);
@@ -38,9 +41,16 @@ void require_axis(const AxisSpec& axis, bool may_have_limits, const std::string&
   TW_REQUIRE(axis.lower < axis.upper, "limits of " + joint + " are " + tw::show(axis.lower) +
                                           " and " + tw::show(axis.upper) +
                                           "; expected the lower one first");
-  TW_REQUIRE(may_have_limits || (std::isinf(axis.lower) && std::isinf(axis.upper)),
-             "limits of " + joint + " are " + tw::show(axis.lower) + " and " +
-                 tw::show(axis.upper) + "; expected none, as the joint is spherical");
+  if (ball) {
+    TW_REQUIRE(std::isinf(axis.lower), "the lower limit of " + joint + " is " +
+                                           tw::show(axis.lower) +
+                                           "; expected none, as the joint is spherical");
+    TW_REQUIRE(
+        std::isinf(axis.upper) || (axis.upper >= least_angle && axis.upper <= greatest_angle),
+        "the limit of " + joint + " is " + tw::show(axis.upper) + "; expected an angle from " +
+            tw::show(least_angle) + " to " + tw::show(greatest_angle) +
+            " rad, as the joint is spherical");
+  }
   TW_REQUIRE(axis.restitution >= 0 && axis.restitution <= 1, "restitution of " + joint + " is " +
                                                                  tw::show(axis.restitution) +
                                                                  "; expected a number from 0 to 1");
@@ -75,11 +85,14 @@ void require_joint(const JointSpec& joint, const std::string& name) {
     TW_REQUIRE(std::abs(cosine) < typed, "axes of " + of + " are " + show(joint.axis) + " and " +
                                              show(joint.second) +
                                              "; expected two that are square to each other");
-    require_axis(joint.axes[1], true, of);
+    require_axis(joint.axes[1], false, of);
   }
-  if (joint.kind == JointKind::spherical) require_unit(joint.rest_attitude, "rest of " + of);
+  if (joint.kind == JointKind::spherical) {
+    require_unit(joint.rest_attitude, "rest of " + of);
+    if (joint.swinging) require_direction(*joint.swinging, "axis of " + of);
+  }
   if (joint.kind != JointKind::weld && joint.kind != JointKind::free)
-    require_axis(joint.axes[0], joint.kind != JointKind::spherical, of);
+    require_axis(joint.axes[0], joint.kind == JointKind::spherical, of);
 }
 
 // Some distribution of mass has it, rods and points included: no moment is negative or exceeds the

@@ -100,14 +100,12 @@ int Tree::add_node(NodeKind kind, int parent, const Frame& X_PF) {
   return node_count() - 1;
 }
 
-void Tree::add_axis(const AxisSpec& law, bool ball, int q, int u, const Quat& rest) {
+void Tree::add_axis(const AxisSpec& law) {
   Axis axis;
-  axis.ball = ball;
   axis.link = link_count();
-  axis.q = q;
-  axis.u = u;
+  axis.q = nq_;
+  axis.u = nv_;
   axis.law = law;
-  axis.rest_attitude = rest;
   axis.passive = law.damping > 0 || law.friction > 0 || law.stiffness > 0;
   axes_.push_back(axis);
 }
@@ -148,7 +146,7 @@ void Tree::add_link(const LinkSpec& spec) {
     case JointKind::revolute:
     case JointKind::prismatic: {
       const Frame turn = z_to(joint.axis);
-      add_axis(joint.axes[0], false, nq_, nv_, Quat::Identity());
+      add_axis(joint.axes[0]);
       link.node = add_node(joint.kind == JointKind::revolute ? NodeKind::hinge : NodeKind::slider,
                            parent, X_PJ * turn);
       link.X_NL = inverse_turn(turn);
@@ -156,15 +154,18 @@ void Tree::add_link(const LinkSpec& spec) {
     }
     case JointKind::universal: {
       const Frame first = z_to(joint.axis), second = z_to(joint.second);
-      add_axis(joint.axes[0], false, nq_, nv_, Quat::Identity());
+      add_axis(joint.axes[0]);
       const int between = add_node(NodeKind::hinge, parent, X_PJ * first);
-      add_axis(joint.axes[1], false, nq_, nv_, Quat::Identity());
+      add_axis(joint.axes[1]);
       link.node = add_node(NodeKind::hinge, between, inverse_turn(first) * second);
       link.X_NL = inverse_turn(second);
       break;
     }
     case JointKind::spherical:
-      add_axis(joint.axes[0], true, nq_, nv_, joint.rest_attitude.normalized());
+      add_axis(joint.axes[0]);
+      axes_.back().ball = true;
+      axes_.back().rest_attitude = joint.rest_attitude.normalized();
+      if (joint.swinging) axes_.back().swinging = joint.swinging->normalized();
       link.node = add_node(NodeKind::ball, parent, X_PJ);
       break;
     case JointKind::free:

@@ -41,7 +41,8 @@ struct AxisSpec {
   double friction = 0;   // Coulomb torque against the motion, >= 0
   double stiffness = 0;  // of a spring, >= 0
   double rest = 0;       // where the spring is relaxed
-  double lower = -std::numeric_limits<double>::infinity();  // limits; none of spherical joints
+  // limits; of spherical joints the upper one, of an angle (limits.h)
+  double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double restitution = 0;                // of the stops at the limits, 0 to 1
   std::optional<double> stop_stiffness;  // default: the subtree's weight bends it by stop_depth
@@ -53,7 +54,9 @@ struct JointSpec {
   Vec3 axis = Vec3::UnitZ();     // in the joint frame; need not be a unit vector
   Vec3 second = Vec3::UnitY();   // universal: fixed in the link, square to the first at 0
   std::array<AxisSpec, 2> axes;  // the second: universal joints alone
-  Quat rest_attitude = Quat::Identity();  // where a spherical joint's spring is relaxed
+  // of a spherical joint
+  Quat rest_attitude = Quat::Identity();  // where its spring is relaxed
+  std::optional<Vec3> swinging;  // whose swing is limited, in the joint frame; none: all turning
 };
 
 struct LinkSpec {
@@ -102,19 +105,21 @@ struct Axis {
   int q = 0, u = 0;
   AxisSpec law;
   Quat rest_attitude = Quat::Identity();
-  double unit = 1;            // rad, or the reach of what it moves, m
-  double slow = 1;            // that over sqrt(reach/g): the scale of what is slow, rad/s or m/s
-  double stop_stiffness = 0;  // N m/rad or N/m
-  bool passive = false;       // damping, friction or a spring
+  Vec3 swinging = Vec3::Zero();  // unit vector; 0: none
+  double unit = 1;               // rad, or the reach of what it moves, m
+  double slow = 1;               // that over sqrt(reach/g): the scale of what is slow, rad/s or m/s
+  double stop_stiffness = 0;     // N m/rad or N/m
+  bool passive = false;          // damping, friction or a spring
 };
 
 class Tree {
  public:
   // Errors (TW_REQUIRE), with the link's name: no or a repeated name, a parent that is unknown,
   // comes later or leads back to the link, a free joint below another link, axes that are zero or
-  // not square, limits of a spherical joint or reversed, numbers that are not finite, negative
-  // mass, damping, friction or stiffness, restitution outside 0 to 1, inertia that is not symmetric
-  // or that no body has, massless parts that leave the acceleration of a joint undetermined.
+  // not square, limits that are reversed or, of a spherical joint, out of range, numbers that are
+  // not finite, negative mass, damping, friction or stiffness, restitution outside 0 to 1, inertia
+  // that is not symmetric or that no body has, massless parts that leave the acceleration of a
+  // joint undetermined.
   explicit Tree(const std::vector<LinkSpec>& links);
 
   const std::vector<Link>& links() const { return links_; }
@@ -141,7 +146,7 @@ class Tree {
  private:
   void add_link(const LinkSpec& spec);
   int add_node(NodeKind kind, int parent, const Frame& X_PF);
-  void add_axis(const AxisSpec& law, bool ball, int q, int u, const Quat& rest);
+  void add_axis(const AxisSpec& law);
   void add_mass(Node& node, const LinkSpec& spec, const Frame& X_NL);
   void set_scales();
   void require_regular() const;

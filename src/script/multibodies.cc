@@ -51,7 +51,21 @@ void read_axes(JointSpec& joint, SCM value, const char* name, double AxisSpec::*
 
 constexpr const char* limits_expected = "a list (LOWER UPPER); of a universal joint, one or two";
 
+void read_axis(JointSpec& joint, SCM value, const char* name) {
+  const Vec3 axis = to_vec3(value, name);
+  if (joint.kind == JointKind::spherical)
+    joint.swinging = axis;
+  else
+    joint.axis = axis;
+}
+
 void read_limits(JointSpec& joint, SCM value, const char* name) {
+  if (joint.kind == JointKind::spherical) {
+    if (!scm_is_real(value))
+      throw BadValue{name, value, "an angle, rad, as the joint is spherical"};
+    joint.axes[0].upper = to_real(value, name);
+    return;
+  }
   const auto set = [&](AxisSpec& axis, SCM limits) {
     const std::vector<double> both = to_reals(limits, 2, name, limits_expected);
     axis.lower = both[0], axis.upper = both[1];
@@ -79,7 +93,7 @@ struct JointProperty {
 };
 
 constexpr JointProperty joint_properties[] = {
-    {"axis", [](JointSpec& j, SCM v, const char* n) { j.axis = to_vec3(v, n); }},
+    {"axis", read_axis},
     {"second-axis", [](JointSpec& j, SCM v, const char* n) { j.second = to_vec3(v, n); }},
     {"at", [](JointSpec& j, SCM v, const char* n) { j.placement.p = to_vec3(v, n); }},
     {"orientation", [](JointSpec& j, SCM v, const char* n) { j.placement.q = to_quat(v, n); }},
@@ -155,7 +169,9 @@ std::vector<double> to_row(const Jointed& of, SCM value, bool positions, const c
   return row;
 }
 
+// (LOWER UPPER); of a spherical joint the angle.
 SCM from_limits(const Axis& axis) {
+  if (axis.ball) return scm_from_double(axis.law.upper);
   return scm_list_2(scm_from_double(axis.law.lower), scm_from_double(axis.law.upper));
 }
 
@@ -245,15 +261,15 @@ TW_PRIMITIVE(link_body, "%link-body", (SCM multibody, SCM name), "The body of a 
   return from_body(body_world(multibody), m.links[at(to_link(m, name))]);
 }
 
-TW_PRIMITIVE(multibody_joints, "%multibody-joints", (SCM object),
-             "((NAME KIND LIMITS) ...) of all links; limits are (LOWER UPPER), two such, or #f.") {
+TW_PRIMITIVE(
+    multibody_joints, "%multibody-joints", (SCM object),
+    "((NAME KIND LIMITS) ...) of all links; limits: (LOWER UPPER), two such, ANGLE or #f.") {
   const Multibody& m = to_jointed(object, "the multibody").multibody;
   SCM list = SCM_EOL;
   for (int i = m.tree.link_count(); i-- > 0;) {
     const Link& link = m.tree.link(i);
     SCM limits = SCM_BOOL_F;
-    const bool ball = link.joint == JointKind::spherical;
-    if (link.axes == 1 && !ball) limits = from_limits(m.tree.axes()[at(link.first_axis)]);
+    if (link.axes == 1) limits = from_limits(m.tree.axes()[at(link.first_axis)]);
     if (link.axes == 2)
       limits = scm_list_2(from_limits(m.tree.axes()[at(link.first_axis)]),
                           from_limits(m.tree.axes()[at(link.first_axis + 1)]));

@@ -42,7 +42,14 @@ std::string joint_text(const JointSpec& joint) {
   switch (joint.kind) {
     case JointKind::weld: return "(weld" + at + ")";
     case JointKind::universal: return "(universal" + at + laws + ")";
-    case JointKind::spherical: return "(spherical" + at + laws + ")";
+    case JointKind::spherical: {
+      const AxisSpec& axis = joint.axes[0];
+      std::string limits;
+      if (std::isfinite(axis.upper))
+        limits = " #:limits " + show(axis.upper) + " #:restitution " + show(axis.restitution);
+      if (joint.swinging) limits += " #:axis " + text(*joint.swinging);
+      return "(spherical" + at + laws + limits + ")";
+    }
     case JointKind::prismatic: return along_axis("prismatic");
     default: return along_axis("revolute");
   }

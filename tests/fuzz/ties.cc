@@ -40,6 +40,15 @@ void limit(Draft& draft, AxisSpec& axis, double lower, double upper) {
   axis.restitution = draft.random.real();
 }
 
+// By draws of its own, so that what follows stays as it was before there were such limits.
+void limit_turning(Random random, JointSpec& spec) {
+  if (random.real() > 0.4) return;
+  spec.axes[0].upper = random.real(0.05, 2.5);
+  spec.axes[0].restitution = random.real();
+  if (random.real() < 0.5)
+    spec.swinging = Vec3(random.real(-1, 1), random.real(-1, 1), random.real(0.1, 1));
+}
+
 JointSpec joint(Draft& draft, double length, double torque, bool moves) {
   JointSpec spec;
   switch (draft.random.below(moves ? 7 : 8)) {
@@ -51,6 +60,7 @@ JointSpec joint(Draft& draft, double length, double torque, bool moves) {
     case 2:
       spec.kind = JointKind::spherical;
       spec.axes[0] = law(draft, torque);
+      limit_turning(draft.random, spec);
       return spec;
     case 3:
       spec.kind = JointKind::prismatic;

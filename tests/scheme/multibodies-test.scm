@@ -75,12 +75,27 @@
                   (link 'p #:joint (prismatic #:at #(0 5 0)) #:shape shape)
                   (link 'u #:joint (universal #:at #(0 10 0) #:limits '((-1 1) (-2 2)))
                         #:shape shape)
-                  (link 's #:joint (spherical #:at #(0 15 0)) #:shape shape)))
+                  (link 's #:joint (spherical #:at #(0 15 0)) #:shape shape)
+                  (link 'c #:joint (spherical #:at #(0 20 0) #:limits 0.7 #:axis #(0 0 1))
+                        #:shape shape)))
          (free (add-multibody! #:name 'free #:base 'free #:position #(0 0 5)
                                #:orientation #(0 1 0 0)
                  (link 'f #:shape (sphere 0.1)
                    (link 'w #:joint (weld #:at #(0 0 1)) #:shape (sphere 0.1))))))
     (test-equal "limits of both axes" '((-1.0 1.0) (-2.0 2.0)) (joint-limits kinds 'u))
+    (test-equal "the limit of a spherical one" 0.7 (joint-limits kinds 'c))
+    (test-equal "none" +inf.0 (joint-limits kinds 's))
+    (test-message "beyond the limit"
+        "the angle of joint c of kinds is 1.2.*; expected one within its limits, 0 to 0.7"
+      (set! (joint-position kinds 'c) (vector (cos 0.6) (sin 0.6) 0 0)))
+    (set! (joint-position kinds 'c) (vector (cos 0.6) 0 0 (sin 0.6)))
+    (test-assert "turned about its axis it is not beyond"
+      (close? (sin 0.6) (vector-ref (joint-position kinds 'c) 3) 1e-15))
+    (set! (joint-position kinds 'c) #(1 0 0 0))
+    (test-message "limits of a spherical joint are one angle"
+        "limits of the link s.*expected an angle, rad, as the joint is spherical"
+      (add-multibody! #:name 'wrong
+        (link 's #:joint (spherical #:limits '(-1 1)) #:shape shape)))
     (test-equal "positions at first" '(0.0 0.0 #(0.0 0.0) #(1.0 0.0 0.0 0.0))
       (map (lambda (name) (joint-position kinds name)) '(r p u s)))
     (test-equal "of a free link" #(0.0 0.0 5.0 0.0 1.0 0.0 0.0) (joint-position free 'f))
@@ -101,7 +116,7 @@
     (set! (joint-velocity free 'f) #(1 0 0 0 0 0))
     (test-equal "velocities that were set" '(1.0 2.0 #(0.1 0.2) #(0.0 0.0 3.0))
       (map (lambda (name) (joint-velocity kinds name)) '(r p u s)))
-    (test-equal "in one vector" #(1.0 2.0 0.1 0.2 0.0 0.0 3.0) (joint-velocities kinds))
+    (test-equal "in one vector" #(1.0 2.0 0.1 0.2 0.0 0.0 3.0 0.0 0.0 0.0) (joint-velocities kinds))
     (test-assert "links have them" (close? #(0 0 2) (velocity (link-body kinds 'p)) 1e-12))
     (set! (joint-torque kinds 's) #(0 0 1))
     (test-equal "torques" '(0.0 #(0.0 0.0 1.0))

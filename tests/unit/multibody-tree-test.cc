@@ -98,12 +98,19 @@ TEST(MultibodyTree, numbers_that_are_wrong_are_told_with_link_and_value) {
               l.joint.axes[0].upper = -1;
             }),
             "limits of the joint of elbow are 1 and -1; expected the lower one first");
-  EXPECT_EQ(refused_arm([](LinkSpec& l) {
-              l.joint.kind = JointKind::spherical;
-              l.joint.axes[0].lower = -1;
-              l.joint.axes[0].upper = 1;
-            }),
-            "limits of the joint of elbow are -1 and 1; expected none, as the joint is spherical");
+  EXPECT_EQ(
+      refused_arm([](LinkSpec& l) {
+        l.joint.kind = JointKind::spherical;
+        l.joint.axes[0].lower = -1;
+        l.joint.axes[0].upper = 1;
+      }),
+      "the lower limit of the joint of elbow is -1; expected none, as the joint is spherical");
+  for (const double angle : {-1.0, 0.0, 3.1})
+    EXPECT_EQ(refused_arm([&](LinkSpec& l) {
+                l.joint.kind = JointKind::spherical;
+                l.joint.axes[0].upper = angle;
+              }).substr(0, 31),
+              "the limit of the joint of elbow");
   for (double AxisSpec::*field : {&AxisSpec::damping, &AxisSpec::friction, &AxisSpec::stiffness})
     for (double value : {-1.0, double(NAN), double(INFINITY)})
       EXPECT_NE(refused_arm([&](LinkSpec& l) {
