@@ -100,7 +100,8 @@ link, then about one that is fixed in the link.  Its position is two angles #(a 
 angular velocity #(x y z), rad/s, in the link's frame.
 
 #:axis         #(x y z) in the joint's frame: #:limits is of how far it may swing from where it is at
-               #(1 0 0 0), in a cone, and turning about it is free; #f: of all turning
+               #(1 0 0 0), in a cone, and turning about it is free; #f: of all turning (which a thin
+               link that may turn about itself strikes again and again: many short steps)
 #:at           m, where the joint is in the frame of the parent link, or of the base; #(0 0 0)
 #:orientation  of the joint's frame there, a quaternion #(w x y z); #(1 0 0 0)
 #:limits       an angle, 0.001 to 3 rad; none

@@ -378,6 +378,13 @@ inline constexpr double clearly_larger = 1.01;
 // a rim that stands flat miss r tilt (1 - cos(pi/8)) < 2.3e-5 r; the nearest point in the place of
 // one of them would make it rock for ever.
 inline constexpr double missed_ratio = 2e-3, missed_floor = 1e-6, missed_floor_round = 2.5e-5;
+// What the two points of lines on a round side that are not parallel, nor cross, may miss of the
+// depth between them, of the radius: what a body's own weight presses it in. With less the points
+// lie so near to where the lines come nearest that they jump along with it as the body rocks, each
+// time onto springs that are wound up.
+inline constexpr double missed_along = 2e-4;
+// The least part of what they share over which two points are taken: needles that cross have one.
+inline constexpr double least_line = 0.1;
 // A corner of a contact's polygon that sticks out by no more than this share of half its width, and
 // is no deeper than the line between its neighbours, is none: where outlines are equal but for a
 // little turn, their sides cross in the middle, or not, as rounding has it.
@@ -386,8 +393,8 @@ inline constexpr double straight = 4e-3;
 // which it stands flat, on points fixed in it: nearer to upright the lowest point is noise.
 inline constexpr double standing = 0.342, standing_flat = 3e-4;
 // Sine of the angle from which on two lines cross, 6 degrees: their nearest points run along them
-// ten times as fast as the bodies slide.  Flatter ones are a line and a point, whose gap misses
-// s^2 sine^2/2r when the bodies slide by s.
+// ten times as fast as the bodies slide.  Flatter ones are a line and two points (missed_along) or
+// one, whose gap misses s^2 sine^2/2r when the bodies slide by s.
 inline constexpr double crossing = 0.1;
 // Points of a rim, and corners of a disc as an outline.
 inline constexpr int rim_points = 8, disc_sides = 16;

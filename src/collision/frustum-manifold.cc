@@ -271,9 +271,28 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   return true;
 }
 
+// Of a segment, tail + t along, what lies on a side from t0 to t1: the part over which it comes no
+// farther from the axis than `allowed` beyond the nearest there.  Its distance from the axis grows
+// from where they cross, by s^2 sine^2/2h, h the height of the one over the other.  False, and as
+// it was, where that is too small a part for its ends to hold more than its middle would.
+bool keep_near_crossing(const SideLine& c, const Vec3& tail, const Vec3& along, double height,
+                        double allowed, double& t0, double& t1) {
+  const Vec3 apart = tail - c.center;
+  const Vec3 off = along - c.axis * along.dot(c.axis);
+  const double square = off.squaredNorm();
+  const double crossing = -off.dot(apart - c.axis * apart.dot(c.axis)) / square;
+  const double nearest = std::clamp(crossing, t0, t1) - crossing;
+  const double width = std::sqrt(nearest * nearest + 2 * height * allowed / square);
+  const double from = std::max(t0, crossing - width), to = std::min(t1, crossing + width);
+  if (!(to - from >= patch::least_line * (t1 - t0))) return false;
+  t0 = from;
+  t1 = to;
+  return true;
+}
+
 // The axis of a frustum's side as reference line, and a segment of the other: from `tail` along
-// `along` with a radius.  Nearly parallel ones meet at the two ends of what they share, others at
-// the witness.
+// `along` with a radius.  Nearly parallel ones meet at the two ends of what they share, flat ones
+// as far as points between them would not be much deeper; others at the witness.
 void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radius,
                  std::vector<ManifoldPoint>& out) {
   const SideLine c = side_line(v.reference, v.reference_frame, v.on_reference);
@@ -297,14 +316,18 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   };
   const std::size_t from = out.size();
   const double rate = along.dot(c.axis);
-  if (along.cross(c.axis).norm() < patch::level * along.norm()) {
+  const double sine = along.cross(c.axis).norm() / along.norm();
+  if (sine < patch::crossing) {
     const double start = (tail - c.center).dot(c.axis);
     double t0 = (-c.half_length - start) / rate;
     double t1 = (c.half_length - start) / rate;
     if (t0 > t1) std::swap(t0, t1);
     t0 = std::max(t0, 0.0);
     t1 = std::min(t1, 1.0);
-    if (t0 <= t1) {
+    const double round = c.radius + radius;
+    if (t0 <= t1 &&
+        (sine < patch::level ||
+         keep_near_crossing(c, tail, along, round, patch::missed_along * round, t0, t1))) {
       add(tail + t0 * along, 1);
       if (t1 > t0) add(tail + t1 * along, 2);
     }
@@ -331,7 +354,7 @@ void witness_edge(const View& v, Vec3& tail, Vec3& along) {
 }
 
 // The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the
-// axis and square to the normal; zero where there is none within 0.2 degrees.
+// axis; zero where there is none that is square to the normal within 0.2 degrees.
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
@@ -339,7 +362,7 @@ void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
   tail = world * core.vertex(vertex);
   along.setZero();
-  double best = patch::level;
+  double best = patch::crossing;
   for (const Polyhedron::Link& link : core.links(vertex)) {
     const Vec3 edge = world * core.vertex(link.vertex) - tail;
     const double off = edge.cross(axis).norm() / edge.norm();
@@ -397,10 +420,14 @@ void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const C
     p.reference_radius = side.radius;
     p.reference_point -= side.radius * p.normal;
   } else if (near.feature == FrustumFeature::rim) {
+    // the rim keeps rolling on its ball
     mode = FeatureMode::rim;
     p.kind = ReferenceFeature::point;
-    p.reference_radius = frustum.margin;
-    p.reference_point = world * near.core;
+    const PlacedFrustum c(frustum, frame_f);
+    const Vec3 core = world * near.core;
+    const double rolling = c.rolling_radius(c.radius_at(core), c.tilt(-p.normal));
+    p.reference_radius = frustum.margin + rolling;
+    p.reference_point = core - rolling * p.normal;
   }
   const bool down = p.normal.dot(world.R.col(2)) < 0;
   p.feature = feature_name(pair, mode, {down ? 1u : 0u, 0, 0});

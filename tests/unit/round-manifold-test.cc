@@ -205,6 +205,33 @@ TEST(CylinderManifold, a_log_along_an_edge_has_two_points_and_across_it_one) {
   EXPECT_NEAR((one[0].core_point - Vec3(0.1, 0.5, 0.5)).norm(), 0, 1e-6);
 }
 
+// Askew by 0.3 to 5 degrees what is short touches along much of what it shares with the edge: two
+// points, exact where they are, and no shallower than the deepest by more than a weight presses; a
+// needle has one.
+TEST(CylinderManifold, a_log_askew_on_an_edge_has_two_points_and_a_needle_one) {
+  const ShapePtr box = make_box({1, 1, 1});
+  const double radius = 0.2;
+  const ShapePtr log = make_cylinder(radius, 0.4), needle = make_cylinder(1e-3, 0.4);
+  const Vec3 out(0, std::sqrt(0.5), std::sqrt(0.5));
+  for (const double askew : {0.005, 0.01, 0.02, 0.05, 0.09}) {
+    Frame frame = turned({0, pi / 2, 0}, Vec3(0, 0.5, 0.5) + (radius - 1e-4) * out);
+    frame.R = rotation_by(askew * out).toRotationMatrix() * frame.R;
+    const double deepest = separation(*box, Frame(), *log, frame).distance;
+    const Points two = manifold_of(box, Frame(), log, frame, 0.01);
+    ASSERT_EQ(two.size(), 2u) << askew;
+    EXPECT_GT((two[0].core_point - two[1].core_point).norm(), 0.03) << askew;
+    for (const ManifoldPoint& p : two) {
+      EXPECT_EQ(p.kind, ReferenceFeature::line);
+      EXPECT_NEAR(p.gap, gap_by_feature(p), 1e-12);
+      EXPECT_GE(p.gap, deepest - 1e-12) << askew;
+      EXPECT_LE(p.gap, deepest + 1.001 * patch::missed_along * radius) << askew;
+      EXPECT_NEAR(p.core_point.y(), 0.5, 1e-12) << "on the edge";
+    }
+    frame.p = Vec3(0, 0.5, 0.5) + (1e-3 - 1e-6) * out;
+    EXPECT_EQ(manifold_of(box, Frame(), needle, frame, 0.01).size(), 1u) << askew;
+  }
+}
+
 TEST(CylinderManifold, logs_side_by_side_have_two_points_crossed_ones_one_stacked_cans_eight) {
   const ShapePtr log = make_cylinder(0.1, 1);
   const Points beside =
@@ -328,6 +355,8 @@ TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {
   p = meets({0.36, 0, 0.48});
   EXPECT_EQ(p.kind, ReferenceFeature::point);
   EXPECT_NEAR(gap_by_feature(p), 0, 1e-15);
+  // the rim rolls on the ball: spinning about the axis changes nothing
+  EXPECT_NEAR(p.reference_point.head<2>().norm(), 0, 1e-15);
 }
 
 }  // namespace
