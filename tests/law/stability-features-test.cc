@@ -46,6 +46,15 @@ TEST(StabilityFeatures, servos_hold_an_arm_level) {
   EXPECT_NEAR(stiff, 1e-3 * soft, 1e-4 * soft);
 }
 
+TEST(StabilityFeatures, cones_joint_friction_loops_and_force_procedures_hold) {
+  for (const double e : {0.0, 0.9}) expect_sound(cones_scene(e, 2), 1e-3);
+  for (const double ratio : {1.0, 1e3}) {
+    expect_sound(dry_chain_scene(ratio, 3), 1e-5);
+    expect_sound(loop_scene(ratio, 2), 1e-3);
+  }
+  for (const double stiffness : {1e3, 1e5}) expect_sound(drawn_box_scene(stiffness, 3), 0);
+}
+
 TEST(StabilityFeatures, chain_on_a_shaken_base_neither_breaks_nor_runs_away) {
   EXPECT_LT(expect_sound(shaken_base_scene(5), 0).travel, 1.7);
 }

@@ -1,5 +1,6 @@
 // Scenes that strain what came after bodies and contacts: joints, stops, servos, moving bases,
-// holds, springs, height fields, round shapes, rolling friction, fine hulls, procedures, policies.
+// holds, closed loops, springs, force procedures, height fields, round shapes, rolling friction,
+// fine hulls, procedures, policies.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -88,6 +89,67 @@ inline StabilityScene servo_scene(double ratio, double stiffness, double duratio
   return scene;
 }
 
+// Five rods whirl, each within a cone of half a radian about the one before.
+inline StabilityScene cones_scene(double restitution, double duration) {
+  const auto fill = [=](World& world) {
+    MultibodyDef chain = rod_chain(5, 0.2, 1, {0, 0, 2});
+    chain.orientation = rotation_by(Vec3(0, 0.5 * pi, 0));
+    for (LinkDef& link : chain.links) {
+      link.joint.kind = multibody::JointKind::spherical;
+      link.joint.swinging = Vec3::UnitX();
+      link.joint.axes[0].upper = 0.5;
+      link.joint.axes[0].restitution = restitution;
+    }
+    const std::uint32_t number = world.add_multibody(chain);
+    world.advance(0);
+    world.edit(world.multibody(number).links[0], [](StateView& view) {
+      view.change_joints([](MultibodyState& joints) {
+        for (std::size_t i = 0; i < joints.u.size(); ++i) joints.u[i] = i % 3 == 0 ? 0 : 4;
+      });
+    });
+  };
+  return {"cones-e" + show(restitution),
+          "five rods whirl, each in a cone of 0.5 rad about the one before, restitution " +
+              show(restitution),
+          duration, false, fill};
+}
+
+// Five rods fall from the level, with friction at the joints that holds a third of their weight.
+inline StabilityScene dry_chain_scene(double ratio, double duration) {
+  const auto fill = [=](World& world) {
+    MultibodyDef chain = rod_chain(5, 0.2, ratio, {0, 0, 2});
+    for (LinkDef& link : chain.links) link.joint.axes[0].friction = 0.5 * ratio;
+    world.add_multibody(chain);
+  };
+  return {"dry-" + show(ratio),
+          "the chain of 5 rods, the last " + show(ratio) + " times as heavy, with joint friction",
+          duration, false, fill};
+}
+
+// Three rods on a hinge, the last `ratio` times as heavy, whose end is held to where it begins.
+inline StabilityScene loop_scene(double ratio, double duration) {
+  const auto fill = [=](World& world) {
+    BodyDef post;
+    post.name = "post";
+    post.shape = make_box(Vec3::Constant(0.1));
+    post.position = {0.4, 0.5, 2};
+    post.fixed = true;
+    const BodyId end = world.add_body(post);
+    const std::uint32_t bars = world.add_multibody(rod_chain(3, 0.3, ratio, {0, 0, 2}));
+    world.advance(0);
+    const std::vector<BodyId>& links = world.multibody(bars).links;
+    world.edit(links[0], [](StateView& view) {
+      view.change_joints([](MultibodyState& joints) { joints.q = {1.2, -1.0, -1.0}; });
+    });
+    HoldDef hold;
+    hold.at = Vec3(0.3, 0, 0);
+    world.attach(links[2], end, hold);
+  };
+  return {"loop-" + show(ratio),
+          "three rods on a hinge, the last " + show(ratio) + " times as heavy, its end held",
+          duration, false, fill};
+}
+
 // A procedure's motion of a body as large as a metre.
 inline TrajectoryPtr motion_of(std::function<Pose(double)> pose) {
   return std::make_shared<SampledMotion>(std::make_unique<FunctionMotion>(std::move(pose), 100));
@@ -163,6 +225,37 @@ inline StabilityScene spring_column_scene(double ratio, double stiffness, double
   return {"springs-" + show(ratio),
           "six balls of 1:" + show(ratio) + " in turn on springs of " + show(stiffness) + " N/m",
           duration, false, fill};
+}
+
+// Pulls to a point by a spring that nothing but its procedure knows.
+class Pull final : public ForceProcedure {
+ public:
+  Pull(const Vec3& to, double stiffness) : to_(to), stiffness_(stiffness) {}
+  Wrench force(double, const BodyState& body) override {
+    return {stiffness_ * (to_ - body.position), Vec3::Zero()};
+  }
+  std::uint64_t number() const override { return 1; }
+
+ private:
+  Vec3 to_;
+  double stiffness_;  // N/m
+};
+
+// A box that a procedure draws down onto the floor and along it.
+inline StabilityScene drawn_box_scene(double stiffness, double duration) {
+  const auto fill = [=](World& world) {
+    set_contact_for_all(world, 0.2, 0.5);
+    add_floor(world);
+    const BodyId box = world.add_body(
+        named(body_of(make_box({0.3, 0.2, 0.2}), {0, 0, 0.3}, Vec3(0, 1, 0)), "box"));
+    world.add_force(box, std::make_shared<Pull>(Vec3(0.2, 0, 0.05), stiffness));
+  };
+  StabilityScene scene{
+      "drawn-" + show(stiffness),
+      "a box of 12 kg drawn onto the floor by a procedure, " + show(stiffness) + " N/m", duration,
+      false, fill};
+  scene.driven = true;
+  return scene;
 }
 
 // ---- shapes ----
@@ -257,10 +350,14 @@ inline std::vector<StabilityScene> feature_scenes() {
   for (const double ratio : {1e3, 1e6}) all.push_back(heavy_chain_scene(ratio, 10));
   for (const double e : {0.0, 0.9}) all.push_back(flaps_scene(e, 20));
   for (const double stiffness : {1e3, 1e6}) all.push_back(servo_scene(10, stiffness, 20));
+  for (const double e : {0.0, 0.9}) all.push_back(cones_scene(e, 10));
+  for (const double ratio : {1.0, 1e3}) all.push_back(dry_chain_scene(ratio, 10));
   all.push_back(shaken_base_scene(20));
   for (const double ratio : {1.0, 100.0}) all.push_back(held_beam_scene(10, ratio, 0.05, 20));
   all.push_back(held_beam_scene(10, 100, 0.002, 20));
+  for (const double ratio : {1.0, 1e3}) all.push_back(loop_scene(ratio, 10));
   for (const double ratio : {1.0, 1e3}) all.push_back(spring_column_scene(ratio, 1e5, 10));
+  for (const double stiffness : {1e3, 1e5}) all.push_back(drawn_box_scene(stiffness, 10));
   const FeatureHeap heaps[] = {
       {"hills", "30 stones, boxes, balls, drums on hills of cells of 15 cm", HeapOf::mixed, 30,
        true},
