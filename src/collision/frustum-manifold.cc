@@ -354,7 +354,7 @@ void witness_edge(const View& v, Vec3& tail, Vec3& along) {
 }
 
 // The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the
-// axis; zero where there is none that is square to the normal within 0.2 degrees.
+// axis, within 6 degrees, and square to the normal within 0.2; zero where there is none.
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
@@ -426,8 +426,8 @@ void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const C
     const PlacedFrustum c(frustum, frame_f);
     const Vec3 core = world * near.core;
     const double rolling = c.rolling_radius(c.radius_at(core), c.tilt(-p.normal));
-    p.reference_radius = frustum.margin + rolling;
-    p.reference_point = core - rolling * p.normal;
+    p.reference_radius = rolling;
+    p.reference_point = core - (rolling - frustum.margin) * p.normal;
   }
   const bool down = p.normal.dot(world.R.col(2)) < 0;
   p.feature = feature_name(pair, mode, {down ? 1u : 0u, 0, 0});

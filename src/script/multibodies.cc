@@ -49,8 +49,6 @@ void read_axes(JointSpec& joint, SCM value, const char* name, double AxisSpec::*
   for (AxisSpec& axis : joint.axes) axis.*member = to_real(value, name);
 }
 
-constexpr const char* limits_expected = "a list (LOWER UPPER); of a universal joint, one or two";
-
 void read_axis(JointSpec& joint, SCM value, const char* name) {
   const Vec3 axis = to_vec3(value, name);
   if (joint.kind == JointKind::spherical)
@@ -58,6 +56,8 @@ void read_axis(JointSpec& joint, SCM value, const char* name) {
   else
     joint.axis = axis;
 }
+
+constexpr const char* limits_expected = "a list (LOWER UPPER); of a universal joint, one or two";
 
 void read_limits(JointSpec& joint, SCM value, const char* name) {
   if (joint.kind == JointKind::spherical) {

@@ -114,7 +114,7 @@ inline StabilityScene cones_scene(double restitution, double duration) {
           duration, false, fill};
 }
 
-// Five rods fall from the level, with friction at the joints that holds a third of their weight.
+// Five rods fall from the level, with friction at each joint of 0.5 N m times the ratio.
 inline StabilityScene dry_chain_scene(double ratio, double duration) {
   const auto fill = [=](World& world) {
     MultibodyDef chain = rod_chain(5, 0.2, ratio, {0, 0, 2});

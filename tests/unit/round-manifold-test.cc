@@ -357,6 +357,13 @@ TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {
   EXPECT_NEAR(gap_by_feature(p), 0, 1e-15);
   // the rim rolls on the ball: spinning about the axis changes nothing
   EXPECT_NEAR(p.reference_point.head<2>().norm(), 0, 1e-15);
+  // a capsule's end is the ball that it is
+  const Points end = manifold_of(make_capsule(0.2, 0.6), Frame(), ball,
+                                 Frame(Mat3::Identity(), {0.15, 0, 0.55}), 0.1);
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_NEAR(end[0].reference_radius, 0.2, 1e-15);
+  EXPECT_NEAR((end[0].reference_point - Vec3(0, 0, 0.3)).norm(), 0, 1e-15);
+  EXPECT_NEAR(end[0].gap, std::hypot(0.15, 0.25) - 0.3, 1e-15);
 }
 
 }  // namespace
