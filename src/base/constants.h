@@ -37,6 +37,9 @@ inline constexpr double most_unequal = 1000;
 inline constexpr double damping_ratio = 0.5;
 // Depth beyond which a contact hardens no more, over its hardening depth; its square.
 inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
+// A gap of this share of the hardening depth is none to the derivatives: whether what just touches
+// presses already is rounding.
+inline constexpr double just_touching = 1e-9;
 // Smooth friction reaches three quarters of the cone at about this speed, m/s.
 inline constexpr double smooth_speed = 1e-4;
 // Tangential over normal stiffness (Mindlin: 2 (1 - nu) / (2 - nu), 2/3 to 1).
@@ -367,6 +370,9 @@ inline constexpr std::size_t most_points = 8;
 // of what is round, where a degree would make a depth wrong by r/6600.
 inline constexpr double aligned = 0.99939082701909573, aligned_sine = 0.0348994967025;
 inline constexpr double aligned_round = 0.99999390765779;
+// Points that are higher than the lowest by no more than this share of what they extend over are
+// about as low: which of them is the lowest changes nothing at once.
+inline constexpr double as_low = 1e-3;
 // Directions of a frustum this near to each other are parallel, this near to square are square:
 // sin 0.2 degrees.
 inline constexpr double level = 0.0034906514152237;

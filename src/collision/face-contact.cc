@@ -15,6 +15,9 @@ namespace {
 // be cut at every corner by rounding
 constexpr double on_side = 1e-12;
 
+// Pairs of faces that are looked at: those of a fine mesh are many.
+constexpr std::size_t most_pairs = 16;
+
 // A vertex by its number; a crossing by the ends of the incident edge and the side; a corner of the
 // reference face by its two sides.
 std::uint64_t vertex_key(int vertex) { return static_cast<std::uint64_t>(vertex); }
@@ -95,6 +98,80 @@ void straighten(std::vector<FacePoint>& polygon, double below,
   }
 }
 
+// A face of the reference and one of the incident polyhedron.
+struct FacePair {
+  int reference, incident;
+
+  bool operator==(const FacePair&) const = default;
+};
+
+// What of the one lies over the other.
+struct FaceOverlap {
+  const Polyhedron& reference;
+  const Polyhedron& incident;
+  const Frame& placed;  // the incident one in the frame of the reference
+  FacePair pair;
+
+  // Adds the corners of the overlap; the least gap of them.
+  double add_corners(double slack, double near, std::vector<FacePoint>& corners,
+                     std::vector<std::uint64_t>& left_out) const {
+    thread_local std::vector<ClipCorner> polygon;
+    thread_local std::vector<FacePoint> found;
+    const Polyhedron::Face& face = reference.face(pair.reference);
+    const Polyhedron::Face& incident_face = incident.face(pair.incident);
+    polygon.clear();
+    found.clear();
+    for (int i = 0; i < incident_face.count; ++i) {
+      const Vec3 point = placed * incident.vertex(incident.corner(incident_face.first + i));
+      polygon.push_back({point, face.normal.dot(point) - face.offset, i});
+    }
+    for (int i = 0; i < face.count && !polygon.empty(); ++i)
+      clip_by_side(polygon, reference.side(face.first + i), face.first + i, slack);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const int before = polygon[i > 0 ? i - 1 : polygon.size() - 1].next;
+      add_point(found,
+                {polygon[i].point, polygon[i].height,
+                 corner_key(incident, incident_face, before, polygon[i].next), pair.reference,
+                 pair.incident},
+                near);
+    }
+    straighten(found, patch::missed_floor * (reference.radius() + incident.radius()), left_out);
+    double least = 1e300;
+    for (const FacePoint& corner : found) {
+      least = std::min(least, corner.gap);
+      add_point(corners, corner, near);
+    }
+    return least;
+  }
+};
+
+// The faces beside those of the overlap that lie along the other one.
+void add_neighbours(const FaceOverlap& overlap, std::vector<FacePair>& pairs) {
+  const auto each_beside = [](const Polyhedron& p, int number, const Vec3& direction,
+                              const auto& visit) {
+    const Polyhedron::Face& face = p.face(number);
+    for (int i = face.first; i < face.first + face.count; ++i) {
+      const Polyhedron::Edge& edge = p.edges()[static_cast<std::size_t>(p.side(i).edge)];
+      const int other = edge.left == number ? edge.right : edge.left;
+      if (p.face(other).normal.dot(direction) >= patch::aligned) visit(other);
+    }
+  };
+  const auto add = [&](const FacePair& fresh) {
+    if (pairs.size() < most_pairs && std::find(pairs.begin(), pairs.end(), fresh) == pairs.end())
+      pairs.push_back(fresh);
+  };
+  const FacePair here = overlap.pair;
+  const Frame& placed = overlap.placed;
+  const Vec3 up = overlap.reference.face(here.reference).normal;
+  const Vec3 down = placed.R * overlap.incident.face(here.incident).normal;
+  each_beside(overlap.incident, here.incident, -(placed.R.transpose() * up), [&](int face) {
+    add({here.reference, face});
+  });
+  each_beside(overlap.reference, here.reference, -down, [&](int face) {
+    add({face, here.incident});
+  });
+}
+
 // How far a point lies beside the face, by its sides: negative over it.
 double beside(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point) {
   double most = -1e300;
@@ -131,51 +208,58 @@ void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side
 
 void face_contact(const Polyhedron& reference, int face_number, const Polyhedron& incident,
                   const Frame& incident_in_reference, int incident_number, double reach,
-                  std::size_t most, std::vector<FacePoint>& out) {
-  thread_local std::vector<ClipCorner> polygon;
-  const Polyhedron::Face& face = reference.face(face_number);
-  const Polyhedron::Face& incident_face = incident.face(incident_number);
+                  std::size_t most, std::vector<FacePoint>& out, std::vector<FacePoint>& higher) {
+  thread_local std::vector<std::uint64_t> left_out;
+  thread_local std::vector<FacePair> pairs;
+  thread_local std::vector<FacePoint> corners;
   const double size = reference.radius() + incident.radius();
   const double slack = on_side * size;
   const double near = coincident_ratio * size;
   out.clear();
-
-  // the incident face, cut down to what lies over the reference face
-  polygon.clear();
-  for (int i = 0; i < incident_face.count; ++i) {
-    const Vec3 point =
-        incident_in_reference * incident.vertex(incident.corner(incident_face.first + i));
-    polygon.push_back({point, face.normal.dot(point) - face.offset, i});
-  }
-  for (int i = 0; i < face.count && !polygon.empty(); ++i)
-    clip_by_side(polygon, reference.side(face.first + i), face.first + i, slack);
-  thread_local std::vector<FacePoint> corners;
-  thread_local std::vector<std::uint64_t> left_out;
-  corners.clear();
+  higher.clear();
   left_out.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const int before = polygon[i > 0 ? i - 1 : polygon.size() - 1].next;
-    add_point(corners,
-              {polygon[i].point, polygon[i].height,
-               corner_key(incident, incident_face, before, polygon[i].next)},
-              near);
+  corners.clear();
+  pairs.assign(1, {face_number, incident_number});
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const FaceOverlap overlap{reference, incident, incident_in_reference, pairs[i]};
+    if (overlap.add_corners(slack, near, corners, left_out) <= reach)
+      add_neighbours(overlap, pairs);
   }
-  straighten(corners, patch::missed_floor * size, left_out);
-  for (const FacePoint& corner : corners)
-    if (corner.gap <= reach) out.push_back(corner);
+  // under the edge between two faces a point is as deep as under the higher one
+  const auto is_under_another = [&](const FacePoint& p) {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const FacePair& pair) {
+      const Polyhedron::Face& face = reference.face(pair.reference);
+      const double height = face.normal.dot(p.point) - face.offset;
+      return height > p.gap + patch::missed_ratio * std::abs(p.gap) + near;
+    });
+  };
+  if (pairs.size() > 1)
+    corners.erase(std::remove_if(corners.begin(), corners.end(), is_under_another), corners.end());
+  for (const FacePoint& corner : corners) (corner.gap <= reach ? out : higher).push_back(corner);
 
-  // vertices that may come down
-  const Vec3 up = incident_in_reference.R.transpose() * face.normal;
-  const double base = face.normal.dot(incident_in_reference.p) - face.offset;
+  // vertices that may come down, each on the face that it is highest over
+  const Polyhedron::Face& first = reference.face(face_number);
+  const Vec3 up = incident_in_reference.R.transpose() * first.normal;
+  const double base = first.normal.dot(incident_in_reference.p) - first.offset;
   const int count = static_cast<int>(incident.vertices().size());
   for (int v = 0; v < count; ++v) {
     if (up.dot(incident.vertex(v)) + base > reach) continue;
     const Vec3 point = incident_in_reference * incident.vertex(v);
-    const double height = face.normal.dot(point) - face.offset;
-    if (!(height <= reach)) continue;
-    if (beside(reference, face, point) > std::max(height, slack)) continue;
-    if (std::find(left_out.begin(), left_out.end(), vertex_key(v)) != left_out.end()) continue;
-    add_point(out, {point, height, vertex_key(v)}, near);
+    FacePoint found{point, -1e300, vertex_key(v), face_number, incident_number};
+    for (const FacePair& pair : pairs) {
+      const Polyhedron::Face& face = reference.face(pair.reference);
+      const double height = face.normal.dot(point) - face.offset;
+      if (!(height > found.gap)) continue;
+      found.gap = height;
+      found.face = pair.reference;
+    }
+    if (!(found.gap <= reach)) continue;
+    if (beside(reference, reference.face(found.face), point) > std::max(found.gap, slack)) continue;
+    const auto is_it = [&](const FacePoint& p) { return p.key == found.key; };
+    if (std::find(left_out.begin(), left_out.end(), found.key) != left_out.end() ||
+        std::any_of(out.begin(), out.end(), is_it))
+      continue;
+    add_point(out, found, near);
   }
   thin_face_points(out, most);
 }

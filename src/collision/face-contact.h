@@ -22,6 +22,8 @@ struct FacePoint {
   Vec3 point = Vec3::Zero();  // on the incident polyhedron's surface
   double gap = 0;             // m, height over the reference plane
   std::uint64_t key = 0;      // names the point; vertices have the least keys
+  int face = 0;               // of the reference
+  int incident = 0;           // face of the other one
 };
 
 // Names of points, by key >> 60: a vertex of the incident body; where an edge of it, from vertex
@@ -46,10 +48,13 @@ inline constexpr double coincident_ratio = 1e-6;
 
 // All points with gap <= reach, at most `most`: the deepest, then always the one farthest from
 // those chosen.  A vertex beside the face counts when it stands higher over the plane than it is
-// beside: lower ones pass by.  Overwrites `out`.
+// beside: lower ones pass by.  Faces beside the two that are as parallel to the other one as these
+// may be (patch::aligned) and come within reach lie on it as well: a body whose facets hardly
+// differ rocks from one to the next.  Overwrites `out`, and `higher` by those that are farther than
+// `reach`.
 void face_contact(const Polyhedron& reference, int face, const Polyhedron& incident,
                   const Frame& incident_in_reference, int incident_face, double reach,
-                  std::size_t most, std::vector<FacePoint>& out);
+                  std::size_t most, std::vector<FacePoint>& out, std::vector<FacePoint>& higher);
 
 // Thins points to at most `most` as above; keeps their order.
 void thin_face_points(std::vector<FacePoint>& points, std::size_t most);

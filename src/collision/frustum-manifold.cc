@@ -53,6 +53,7 @@ bool face_ground(const View& v, Ground& ground) {
   ground.normal = world.R * face.normal;
   ground.point = world * (face.offset * face.normal);
   ground.name = static_cast<std::uint64_t>(number);
+  ground.parallel = 1 - face.normal.cross(local).norm() / patch::level;
   for (int i = face.first; i < face.first + face.count; ++i) {
     const Vec3 inward = world.R * core.side(i).inward;
     ground.sides.push_back({inward, core.side(i).offset + inward.dot(world.p), 0});
@@ -106,6 +107,7 @@ bool cap_ground(const View& v, Ground& ground) {
   ground.normal = along < 0 ? Vec3(-c.axis) : c.axis;
   ground.point = c.center + c.half_length * ground.normal;
   ground.name = along < 0 ? 1001 : 1000;
+  ground.parallel = 1 - c.axis.cross(v.normal).norm() / patch::level;
   const Vec3 beside = c.axis.cross(c.across);
   for (int k = 0; k < patch::disc_sides; ++k) {
     const double angle = 2 * pi * k / patch::disc_sides;
@@ -145,8 +147,11 @@ void add_on_ground(const View& v, const Ground& ground, std::vector<ManifoldPoin
 
 // A cap as reference and a polyhedron: its edges, cut off at the rim.
 void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& out) {
-  thread_local std::vector<FacePoint> points;
+  thread_local std::vector<FacePoint> points, farther;
+  thread_local std::vector<HigherPoint> higher;
   points.clear();
+  farther.clear();
+  higher.clear();
   const PlacedFrustum c(v.reference, v.reference_frame);
   const double radius = c.end_radius(cap.normal.dot(c.axis) > 0);
   const Frame world = v.other_frame * v.other.placement;
@@ -154,10 +159,10 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
   const double near = 1e-6 * radius;
   const auto add = [&](const Vec3& point, std::uint64_t key) {
     const double gap = cap.normal.dot(point - cap.point);
-    if (gap > v.reach) return;
-    for (const FacePoint& old : points)
+    std::vector<FacePoint>& found = gap > v.reach ? farther : points;
+    for (const FacePoint& old : found)
       if ((old.point - point).squaredNorm() < near * near) return;
-    points.push_back({point, gap, key});
+    found.push_back({point, gap, key});
   };
   for (std::size_t e = 0; e < core.edges().size(); ++e) {
     const Vec3 tail = world * core.vertex(core.edges()[e].tail) - c.center;
@@ -193,6 +198,8 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
     p.feature = feature_name(v.pair, FeatureMode::face, {cap.name, found.key, 0});
     out.push_back(p);
   }
+  for (const FacePoint& far : farther) higher.push_back({far.point, far.gap});
+  lie_on_each_other(cap.parallel, patch::aligned_sine, higher, out.size() - points.size(), out);
   if (points.empty()) add_witness(v, out);
 }
 
@@ -301,13 +308,18 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   p.direction = c.axis;
   p.reference_radius = c.radius;
   p.radius = radius;
+  thread_local std::vector<HigherPoint> higher;
+  higher.clear();
   const auto add = [&](const Vec3& core, std::uint64_t end) {
     const Vec3 from_axis = core - c.center;
     const Vec3 out_of_axis = from_axis - c.axis * c.axis.dot(from_axis);
     const double height = out_of_axis.norm();
     if (!(height > 0)) return;
     p.gap = height - c.radius - radius;
-    if (p.gap > v.reach) return;
+    if (p.gap > v.reach) {
+      higher.push_back({core, p.gap});
+      return;
+    }
     p.normal = out_of_axis / height;
     p.core_point = core;
     p.reference_point = core - out_of_axis;
@@ -330,6 +342,8 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
          keep_near_crossing(c, tail, along, round, patch::missed_along * round, t0, t1))) {
       add(tail + t0 * along, 1);
       if (t1 > t0) add(tail + t1 * along, 2);
+      // what is askew by more than this is seen as it stands
+      lie_on_each_other(1, patch::level, higher, from, out);
     }
   }
   if (out.size() == from) add(v.on_other + radius * v.normal, 0);

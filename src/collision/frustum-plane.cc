@@ -59,14 +59,23 @@ void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double 
     ++number;
   }
   if (from > to) return;
+  const std::size_t before = out.size();
+  thread_local std::vector<HigherPoint> higher;
+  higher.clear();
   const auto add = [&](double t, std::uint64_t name) {
     Found found{{tail + t * along, 0, name},
                 c.rolling_radius(c.bottom_radius + t * widening, tilt)};
     found.place.gap = ground.normal.dot(found.place.point - ground.point);
-    if (found.place.gap <= reach) emit(found, ground, FeatureMode::lying, p, out);
+    if (found.place.gap <= reach)
+      emit(found, ground, FeatureMode::lying, p, out);
+    else
+      higher.push_back({found.place.point, found.place.gap});
   };
   add(from, name_from);
   if (to > from) add(to, name_to);
+  // where the lower end is at a side of the outline, what is steeper is seen as it stands there
+  const bool cut = (ground.normal.dot(along) > 0 ? name_from : name_to) > 1;
+  lie_on_each_other(ground.parallel, cut ? patch::level : patch::aligned_sine, higher, before, out);
 }
 
 void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt& tilt,
@@ -86,8 +95,13 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
     clip_by_side(polygon, ground.sides[i], static_cast<int>(i), slack * radius);
   // names: a point of the rim by its number; a cut by the two edges or sides that meet
   points.clear();
+  thread_local std::vector<HigherPoint> higher;
+  higher.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    if (polygon[i].height > reach) continue;
+    if (polygon[i].height > reach) {
+      higher.push_back({polygon[i].point, polygon[i].height});
+      continue;
+    }
     const int before = polygon[i > 0 ? i - 1 : polygon.size() - 1].next;
     const int after = polygon[i].next;
     const bool on_rim = after >= 0 && before == (after + patch::rim_points - 1) % patch::rim_points;
@@ -98,12 +112,14 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
     points.push_back({polygon[i].point, polygon[i].height, key});
   }
   thin_face_points(points, patch::most_points);
+  const std::size_t before = out.size();
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the frustum
     const bool lowest = !tilt.upright() && point.key == 0;
     emit({point, lowest ? c.rolling_radius(radius, tilt) : 0}, ground,
          tilt.upright() ? FeatureMode::standing : FeatureMode::rim, p, out);
   }
+  lie_on_each_other(ground.parallel, patch::aligned_sine, higher, before, out);
 }
 
 }  // namespace

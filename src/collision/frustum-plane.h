@@ -51,6 +51,7 @@ struct Ground {
   Vec3 normal, point;  // unit, towards the frustum
   std::vector<Polyhedron::Side> sides;
   std::uint64_t name = 0;
+  double parallel = 1;  // to the axis of least distance; 0: taken for it no longer
 };
 
 // Appends the points with gap <= reach, at most `patch::most_points`; `p` has what they share.

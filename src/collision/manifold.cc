@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "base/work-count.h"
 #include "collision/manifold-parts.h"
 #include "collision/near-parts.h"
 #include "collision/nearest-to-point.h"
 #include "collision/separation.h"
+#include "math/aabb.h"
 
 namespace tw {
 
@@ -80,6 +82,47 @@ void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart&
   const bool smooth = a.kind == PartKind::ellipsoid || b.kind == PartKind::ellipsoid;
   (smooth ? ellipsoid_manifold_at : frustum_manifold_at)(a, frame_a, b, frame_b, near, reach, pair,
                                                          out);
+}
+
+void lie_on_each_other(double parallel, double steepest, std::vector<HigherPoint>& higher,
+                       std::size_t from, std::vector<ManifoldPoint>& out) {
+  const std::size_t here = out.size() - from;
+  if (here == 0 || here + higher.size() < 2 || !(parallel > 0)) return;
+  thread_local std::vector<HigherPoint> points;
+  points.clear();
+  Aabb extent;
+  double lowest = 1e300;
+  for (std::size_t i = from; i < out.size(); ++i) {
+    const ManifoldPoint& p = out[i];
+    points.push_back({p.core_point - p.radius * p.normal, p.gap});
+    extent.add(points.back().point);
+    lowest = std::min(lowest, p.gap);
+  }
+  for (const HigherPoint& p : higher) extent.add(p.point);
+  const double slack = patch::as_low * extent.size().norm();
+  // the steepest slope down to one of the lowest counts
+  const auto flatness = [&](const HigherPoint& p) {
+    double flat = 1;
+    for (const HigherPoint& low : points) {
+      const double weight = 1 - (low.gap - lowest) / slack, height = p.gap - low.gap;
+      if (!(weight > 0 && height > 0)) continue;
+      flat = std::min(flat, 1 - weight * height / (steepest * (p.point - low.point).norm()));
+    }
+    return std::max(flat, 0.0) * parallel;
+  };
+  const auto lower = [](const HigherPoint& p, const HigherPoint& q) { return p.gap < q.gap; };
+  const std::size_t room = patch::most_points - std::min(here, patch::most_points);
+  if (higher.size() > room) {
+    std::partial_sort(higher.begin(), higher.begin() + static_cast<std::ptrdiff_t>(room),
+                      higher.end(), lower);
+    higher.resize(room);
+  }
+  double beyond = 0;
+  for (const HigherPoint& p : higher) beyond += flatness(p);
+  for (std::size_t i = from; i < out.size(); ++i) {
+    out[i].flatness = flatness(points[i - from]);
+    out[i].beyond = beyond / static_cast<double>(here);
+  }
 }
 
 void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,

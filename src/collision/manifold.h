@@ -32,8 +32,12 @@ struct ManifoldPoint {
   double radius = 0;                     // m: about the core point
   double rim = 0;                        // m: of the other body's rim
   double gap = 0;                        // m, signed; > 0: not yet touching
-  int pair = 0;                          // pair of parts, part_a * parts of b + part_b
-  std::uint64_t feature = 0;             // stable while the same features meet
+  // How flat it lies with the lowest points of its pair of parts: 1 as low, down to 0 where a line
+  // to one of these, or the parts there, are no longer taken for parallel.  `beyond`: the sum of
+  // that over the points that are farther than the reach, for each that is here.
+  double flatness = 0, beyond = 0;
+  int pair = 0;               // pair of parts, part_a * parts of b + part_b
+  std::uint64_t feature = 0;  // stable while the same features meet
 };
 
 // Which face is the reference where faces of both bodies could be.

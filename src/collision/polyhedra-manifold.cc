@@ -20,11 +20,21 @@ struct AlignedFace {
 AlignedFace aligned_face(const Polyhedron& p, const CoreFeature& feature, const Vec3& direction) {
   if (feature.face >= 0) return {feature.face, p.face(feature.face).normal.dot(direction)};
   AlignedFace best;
-  for (int i = 0; i < feature.count; ++i) {
-    const int f = p.face_at_vertex(feature.vertex[static_cast<std::size_t>(i)], direction);
-    const double cosine = p.face(f).normal.dot(direction);
-    if (cosine > best.cosine) best = {f, cosine};
-  }
+  const auto look_at = [&](int face) {
+    const double cosine = p.face(face).normal.dot(direction);
+    if (cosine > best.cosine) best = {face, cosine};
+  };
+  // a face at one end of an edge has nothing of the rest of it
+  if (feature.count == 2)
+    for (const Polyhedron::Link& link : p.links(feature.vertex[0])) {
+      if (link.vertex != feature.vertex[1]) continue;
+      const Polyhedron::Edge& edge = p.edges()[static_cast<std::size_t>(link.edge)];
+      look_at(edge.left);
+      look_at(edge.right);
+      return best;
+    }
+  for (int i = 0; i < feature.count; ++i)
+    look_at(p.face_at_vertex(feature.vertex[static_cast<std::size_t>(i)], direction));
   return best;
 }
 
@@ -119,6 +129,9 @@ bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach,
   const Frame a_in_b = cores.a_in_b();
   const Vec3 down = -(a_in_b.R * near.normal);
   double deepest = 1e300;
+  const std::size_t before = out.size();
+  thread_local std::vector<HigherPoint> higher;
+  higher.clear();
   for (const double at : {from, to}) {
     const Vec3 on_a = a->tail + at * a->along;
     const Vec3 on_b = b->tail + turn * (at - start) * b->along;
@@ -126,7 +139,10 @@ bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach,
     p.gap = std::min(height_over(cores.a, a->number, on_b, near.normal),
                      height_over(cores.b, b->number, a_in_b * on_a, down));
     deepest = std::min(deepest, p.gap);
-    if (p.gap > reach) continue;
+    if (p.gap > reach) {
+      higher.push_back({cores.world_a * on_b, p.gap});
+      continue;
+    }
     p.normal = cores.world_a.R * near.normal;
     p.core_point = cores.world_a * on_b;
     p.reference_point = p.core_point - p.gap * p.normal;
@@ -136,6 +152,7 @@ bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach,
                               static_cast<std::uint64_t>(b->number), at == from ? 0U : 1U});
     out.push_back(p);
   }
+  lie_on_each_other(1, patch::aligned_sine, higher, before, out);
   return deepest <=
          near.distance + patch::missed_ratio * std::abs(near.distance) + patch::missed_floor * size;
 }
@@ -194,9 +211,12 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
   const Polyhedron& incident = reference_is_a ? cores.b : cores.a;
   const Frame placed = reference_is_a ? cores.b_in_a : cores.a_in_b();
   const Frame world = reference_is_a ? cores.world_a : cores.world_a * cores.b_in_a;
-  face_contact(reference, face, incident, placed, incident_face, reach, patch::most_points, points);
+  thread_local std::vector<FacePoint> higher;
+  face_contact(reference, face, incident, placed, incident_face, reach, patch::most_points, points,
+               higher);
 
   // what the face does not show of the distance, its features do
+  const std::size_t before = out.size();
   double least = 1e300;
   for (const FacePoint& p : points) least = std::min(least, p.gap);
   const double allowed = patch::missed_ratio * std::abs(near.distance) +
@@ -209,23 +229,32 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
   for (const FacePoint& found : points) {
     ManifoldPoint p;
     p.reference_is_a = reference_is_a;
-    p.normal = world.R * reference.face(face).normal;
+    const Vec3& face_normal = reference.face(found.face).normal;
+    p.normal = world.R * face_normal;
     p.pair = pair;
     p.core_point = world * found.point;
     p.gap = found.gap;
     p.reference_point = p.core_point - found.gap * p.normal;
-    p.feature = feature_name(
-        pair, FeatureMode::face,
-        {static_cast<std::uint64_t>(face), static_cast<std::uint64_t>(reference_is_a), found.key});
+    p.feature = feature_name(pair, FeatureMode::face,
+                             {static_cast<std::uint64_t>(found.face),
+                              static_cast<std::uint64_t>(reference_is_a), found.key});
     if (found.key >> 60 == edge_crossing) {
-      if (edges_stay)
-        follow_edge(incident, placed, reference.face(face).normal, world, found.key, p);
-      if (both_move) stand_on_edges(reference, face, incident, placed, world, found.key, p);
+      if (edges_stay) follow_edge(incident, placed, face_normal, world, found.key, p);
+      if (both_move) stand_on_edges(reference, found.face, incident, placed, world, found.key, p);
     }
     if (found.key >> 60 == face_corner && both_move)
-      stand_on_face(world.R * (placed.R * incident.face(incident_face).normal), p);
+      stand_on_face(world.R * (placed.R * incident.face(found.incident).normal), p);
     out.push_back(p);
   }
+  thread_local std::vector<HigherPoint> lifted;
+  lifted.clear();
+  for (const FacePoint& p : higher) lifted.push_back({world * p.point, p.gap});
+  // either face may be the reference
+  const Vec3 axis = reference_is_a ? near.normal : cores.b_in_a.R.transpose() * near.normal;
+  const Vec3 incident_normal = placed.R * incident.face(incident_face).normal;
+  const double sine =
+      std::min(axis.cross(reference.face(face).normal).norm(), axis.cross(incident_normal).norm());
+  lie_on_each_other(1 - sine / patch::aligned_sine, patch::aligned_sine, lifted, before, out);
 }
 
 }  // namespace
@@ -268,12 +297,18 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
   p.reference_is_a = reference_is_a;
   p.normal = frame_h.R * half_space.normal;
   p.pair = pair;
+  thread_local std::vector<HigherPoint> higher;
   points.clear();
+  higher.clear();
+  const std::size_t before = out.size();
   const int count = static_cast<int>(polyhedron.core->vertices().size());
   for (int v = 0; v < count; ++v) {
     const Vec3 point = world * polyhedron.core->vertex(v);
     const double gap = p.normal.dot(point - frame_h.p) - half_space.offset;
-    if (gap <= reach) points.push_back({point, gap, static_cast<std::uint64_t>(v)});
+    if (gap <= reach)
+      points.push_back({point, gap, static_cast<std::uint64_t>(v)});
+    else
+      higher.push_back({point, gap});
   }
   thin_face_points(points, patch::most_points);
   for (const FacePoint& found : points) {
@@ -283,6 +318,7 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
     p.feature = feature_name(pair, FeatureMode::half_space, {found.key, 0, 0});
     out.push_back(p);
   }
+  lie_on_each_other(1, patch::aligned_sine, higher, before, out);
 }
 
 }  // namespace tw

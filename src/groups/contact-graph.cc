@@ -64,7 +64,7 @@ NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const Placed
   result.contact =
       followed_contact(p, reference.frame, other.frame, part_at(p, *other.body, *b.body));
   result.contact.law = law;
-  result.tag = {reference.body->id(), other.body->id(), p.pair, p.feature};
+  result.tag = {reference.body->id(), other.body->id(), p.pair, p.feature, p.flatness, p.beyond};
   result.gap = p.gap;
   result.normal = p.normal;
   result.point = p.core_point - p.radius * p.normal;
@@ -432,6 +432,7 @@ void carry(Regrouping& work, const PairBefore& old) {
     const ContactForce f = group.arc->contact_force(static_cast<int>(c), now);
     const GroupContact& known = group.arc->start().contacts[c];
     NewContact contact{known, group.tags[c], f.gap, f.normal, f.point, known.law};
+    contact.share_before = known.share;
     // the side on which the other one is: what it was may have turned away with the body
     if (known.feature != ContactFeature::plane)
       contact.contact.normal = work.attitude(group.tags[c].reference).conjugate() * f.normal;

@@ -60,6 +60,8 @@ void each_word(const ContactTag& tag, Put&& put) {
   put(pair_id(tag.reference, tag.other));
   put(static_cast<std::uint64_t>(tag.parts));
   put(tag.feature);
+  put(tag.flatness);
+  put(tag.beyond);
 }
 template <class Put>
 void each_word(const GroupContact& contact, Put&& put) {

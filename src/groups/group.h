@@ -49,6 +49,7 @@ struct ContactTag {
   BodyId reference = 0, other = 0;  // a and b of the contact
   int parts = 0;                    // pair of parts
   std::uint64_t feature = 0;
+  double flatness = 0, beyond = 0;  // collision/manifold.h
 };
 
 struct Group : Counted<Group> {

@@ -107,6 +107,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     const ContactTag& tag = before.tags[old->first + best];
     const GroupContact& was = arc.start().contacts[old->first + best];
     fresh.law_before = was.law;
+    fresh.share_before = was.share;
     fresh.foreseen = is_foreseen(fresh, there[best].followed, tag.reference, size);
     fresh.contact.offset = released(was.offset, fresh.gap);
     // of another side of the body

@@ -47,6 +47,7 @@ struct NewContact {
   Vec3 normal = Vec3::UnitZ();  // from the reference body to the other
   Vec3 point = Vec3::Zero();
   std::optional<ContactConstants> law_before;  // none: nothing of it was there
+  double share_before = 1;
   bool foreseen = false;  // it is where the one before was followed to (foreseen.h)
 
   // The gap up to which it presses, but for the law's own depth, m.

@@ -220,7 +220,10 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   // and dN/dd = K' = k (1 + cap)
   const Lanes slope = hardens ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
                               : lanes(1 + answer::hardening_cap);
-  const Lanes by_depth = s.N > zero ? pack.k * slope : zero;
+  // whether what just touches presses already is rounding
+  const LaneMask touches =
+      (ratio > lanes(-answer::just_touching)) & (one - s.damping * s.vn > zero);
+  const Lanes by_depth = touches ? pack.k * slope : zero;
   o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
   if (rolls(pack.feature)) o.roll = s.roll;

@@ -9,8 +9,7 @@ namespace {
 
 const KnownFault table[] = {
     // beyond what make check-long runs
-    {"drum", 16086, Fault::energy, 0.12, "a cylinder is squeezed by 9 %, and a point of it leaves"},
-    {"stack", 16122, Fault::energy, 0.0012, "a cylinder topples over its rim, its points leave"},
+    {"drum", 17430, Fault::energy, 0.0026, "a cross of bars tumbles over a box's edge"},
     {"chains", 106, Fault::energy, 0.001, "at accuracy 1e-4 (at 1e-6 it is 2e-5)"},
     {"bonds", 79, Fault::slow, 0.27, "springs pull hulls into each other: 4100 blows"},
     {"bonds", 124, Fault::slow, 0.19, "a union of 10 g on a stiff spring turns at 1800 rad/s"},
@@ -76,6 +75,11 @@ const MendedSeed mended[] = {
     {"lattice", 19553, "faces that lay on each other to rounding were not apart by a plane"},
     {"lattice", 19035,
      "the same, and bodies that turn about the normal of a face they are next to"},
+    {"drum", 16086, "a cylinder was squeezed by 9 %, a point of it left and the others held more"},
+    {"drum", 19759, "the same of a hull, which gained 11 %"},
+    {"stack", 16122, "a cylinder toppled over its rim, and points left it while it was pressed"},
+    {"hills", 87, "what rocked on a hill was driven by its own springs"},
+    {"plates", 190, "a cone was deep in a plate whose edge it lay on"},
 };
 
 }  // namespace

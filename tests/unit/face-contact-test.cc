@@ -24,8 +24,9 @@ std::vector<FacePoint> top_of_cube(double turn, const Vec3& aside, double tilt =
   const Frame upper(
       Pose{Vec3(0, 0, 1) + aside, rotation_by(Vec3(0, tilt, 0)) * rotation_by(Vec3(0, 0, turn))});
   std::vector<FacePoint> points;
+  std::vector<FacePoint> higher;
   face_contact(cube, face_towards(Vec3::UnitZ()), cube, upper, face_towards(-Vec3::UnitZ()), 1e-2,
-               8, points);
+               8, points, higher);
   return points;
 }
 

@@ -104,6 +104,94 @@ TEST(Manifold, stacked_cubes_lie_on_four_corners) {
   }
 }
 
+// How much all points count that lie on each other, those beyond the reach as well.
+double lying(const Points& points) {
+  double sum = 0;
+  for (const ManifoldPoint& p : points) sum += p.flatness + p.beyond;
+  return sum;
+}
+
+// A cube that is tilted about one of its lower edges has all four points, as flat as the two others
+// lie, until it is no longer parallel to what it lies on: on a plane, a larger box and a cap.
+TEST(Manifold, what_tilts_loses_its_points_little_by_little) {
+  const ShapePtr plane = make_half_space(Vec3::UnitZ(), 0);
+  const ShapePtr plate = make_box({3, 3, 1}), disc = make_cylinder(2, 1);
+  for (const double share : {0.0, 1e-3, 0.25, 0.5, 0.99, 1.5}) {
+    const double angle = std::asin(share * patch::aligned_sine);
+    const Frame tilted(Pose{Vec3(0.5 - 0.5 * std::cos(angle) + 0.5 * std::sin(angle), 0,
+                                 0.5 * std::cos(angle) + 0.5 * std::sin(angle) - 1e-6),
+                            rotation_by(Vec3(0, -angle, 0))});
+    const double expected = 2 + 2 * std::max(0.0, 1 - share);
+    EXPECT_NEAR(lying(manifold_of(plane, Frame(), cube(), tilted, 1e-4)), expected, 1e-4) << share;
+    EXPECT_NEAR(lying(manifold_of(plate, at(0, 0, -0.5), cube(), tilted, 1e-4)), expected, 1e-4)
+        << share;
+    EXPECT_NEAR(lying(manifold_of(disc, at(0, 0, -0.5), cube(), tilted, 1e-4)), expected, 0.05)
+        << share;
+  }
+}
+
+// The two ends of a cylinder's lowest line, and the points of a rim.
+TEST(Manifold, round_bodies_that_tilt_lose_their_points_little_by_little) {
+  const ShapePtr plane = make_half_space(Vec3::UnitZ(), 0), cylinder = make_cylinder(0.5, 1);
+  const double angle = std::asin(0.5 * patch::aligned_sine);
+  const auto height = [&](double turn) {
+    return 0.5 * std::abs(std::cos(turn)) + 0.5 * std::abs(std::sin(turn)) - 1e-6;
+  };
+  const double lies = pi / 2 + angle, stands = angle;
+  const auto placed = [&](double turn) {
+    return Frame(Pose{Vec3(0, 0, height(turn)), rotation_by(Vec3(0, turn, 0))});
+  };
+  EXPECT_NEAR(lying(manifold_of(plane, Frame(), cylinder, placed(lies), 1e-4)), 1.5, 1e-3);
+  const double of_rim = lying(manifold_of(plane, Frame(), cylinder, placed(stands), 1e-4));
+  EXPECT_GT(of_rim, 4);
+  EXPECT_LT(of_rim, 6);
+}
+
+// A prism whose lower side is folded by `fold` along its middle.
+ShapePtr folded(double fold) {
+  const double low = 0.5 * std::tan(fold);
+  std::vector<Vec3> points;
+  for (const double y : {-1.0, 1.0})
+    for (const Vec3& p :
+         {Vec3(-0.5, y, low), Vec3(0, y, 0), Vec3(0.5, y, low), Vec3(-0.5, y, 1), Vec3(0.5, y, 1)})
+      points.push_back(p);
+  return make_hull(points);
+}
+
+// On facets that hardly differ a body rocks from one to the other: both lie there, also where the
+// plate is shorter than these.
+TEST(Manifold, facets_that_hardly_differ_lie_there_together) {
+  const double fold = 0.5 * patch::aligned_sine;
+  const ShapePtr prism = folded(fold), plate = make_box({3, 1.6, 1});
+  for (const double angle : {-0.9 * fold, 0.0, 0.9 * fold}) {
+    const Frame tilted(Pose{Vec3(0, 0, -1e-6), rotation_by(Vec3(0, angle, 0))});
+    const Points points = manifold_of(plate, at(0, 0, -0.5), prism, tilted, 0.02);
+    EXPECT_EQ(points.size(), 6u) << angle;
+    for (const double end : {-1.0, 1.0})
+      EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const auto& p) {
+        return std::abs(p.core_point.x()) < 1e-6 && std::abs(p.core_point.y() - 0.8 * end) < 1e-9;
+      })) << angle;
+  }
+}
+
+// An edge over a strip no wider than it: the strip's borders cut it twice, however the faces beside
+// it lean, and whatever other face there is at its ends.
+TEST(Manifold, an_edge_over_a_strip_has_two_points) {
+  const ShapePtr strip = make_box({0.2, 2, 0.2});
+  // beside the edge the faces lean by 45 and 60 degrees, at its ends there are flatter ones
+  std::vector<Vec3> points = {{0, 0, 1.5}};
+  for (const double side : {-1.0, 1.0}) {
+    points.push_back({0.5 * side, 0, 0});
+    points.push_back({0.8 * side, 0, 0.03});
+    points.push_back({2 * side, -0.3, 0.3});
+    points.push_back({2 * side, 0.3, 0.3 * std::sqrt(3.0)});
+  }
+  const ShapePtr keel = make_hull(points);
+  const Points found = manifold_of(strip, at(0, 0, -0.1), keel, at(0, 0, -1e-5), 1e-3);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(std::abs(found[0].core_point.x() - found[1].core_point.x()), 0.2, 1e-9);
+}
+
 TEST(Manifold, the_deepest_point_is_as_deep_as_the_separating_axis_test_says) {
   Random random(2);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
