@@ -366,6 +366,8 @@ namespace tw::patch {
 
 // Points a pair of parts has at most.
 inline constexpr std::size_t most_points = 8;
+// Pairs of faces that are clipped for them: of a fine mesh many are nearly parallel.
+inline constexpr std::size_t most_face_pairs = 16;
 // Normals this near to that of a face are taken for it: cos 2 degrees of polyhedra, cos 0.2 degrees
 // of what is round, where a degree would make a depth wrong by r/6600.
 inline constexpr double aligned = 0.99939082701909573, aligned_sine = 0.0348994967025;

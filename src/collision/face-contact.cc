@@ -15,9 +15,6 @@ namespace {
 // be cut at every corner by rounding
 constexpr double on_side = 1e-12;
 
-// Pairs of faces that are looked at: those of a fine mesh are many.
-constexpr std::size_t most_pairs = 16;
-
 // A vertex by its number; a crossing by the ends of the incident edge and the side; a corner of the
 // reference face by its two sides.
 std::uint64_t vertex_key(int vertex) { return static_cast<std::uint64_t>(vertex); }
@@ -157,7 +154,8 @@ void add_neighbours(const FaceOverlap& overlap, std::vector<FacePair>& pairs) {
     }
   };
   const auto add = [&](const FacePair& fresh) {
-    if (pairs.size() < most_pairs && std::find(pairs.begin(), pairs.end(), fresh) == pairs.end())
+    if (pairs.size() < patch::most_face_pairs &&
+        std::find(pairs.begin(), pairs.end(), fresh) == pairs.end())
       pairs.push_back(fresh);
   };
   const FacePair here = overlap.pair;

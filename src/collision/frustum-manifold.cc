@@ -147,21 +147,23 @@ void add_on_ground(const View& v, const Ground& ground, std::vector<ManifoldPoin
 
 // A cap as reference and a polyhedron: its edges, cut off at the rim.
 void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& out) {
-  thread_local std::vector<FacePoint> points, farther;
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> points, higher;
   points.clear();
-  farther.clear();
   higher.clear();
   const PlacedFrustum c(v.reference, v.reference_frame);
   const double radius = c.end_radius(cap.normal.dot(c.axis) > 0);
   const Frame world = v.other_frame * v.other.placement;
   const Polyhedron& core = *v.other.core;
   const double near = 1e-6 * radius;
+  // what is this much beyond the reach lies flat with nothing on the cap
+  const double steep = 2.1 * patch::aligned_sine * radius;
   const auto add = [&](const Vec3& point, std::uint64_t key) {
     const double gap = cap.normal.dot(point - cap.point);
-    std::vector<FacePoint>& found = gap > v.reach ? farther : points;
-    for (const FacePoint& old : found)
-      if ((old.point - point).squaredNorm() < near * near) return;
+    std::vector<FacePoint>& found = gap > v.reach ? higher : points;
+    // nor does it matter how often it is there
+    if (gap <= v.reach + steep)
+      for (const FacePoint& old : found)
+        if ((old.point - point).squaredNorm() < near * near) return;
     found.push_back({point, gap, key});
   };
   for (std::size_t e = 0; e < core.edges().size(); ++e) {
@@ -198,7 +200,6 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
     p.feature = feature_name(v.pair, FeatureMode::face, {cap.name, found.key, 0});
     out.push_back(p);
   }
-  for (const FacePoint& far : farther) higher.push_back({far.point, far.gap});
   lie_on_each_other(cap.parallel, patch::aligned_sine, higher, out.size() - points.size(), out);
   if (points.empty()) add_witness(v, out);
 }
@@ -308,7 +309,7 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
   p.direction = c.axis;
   p.reference_radius = c.radius;
   p.radius = radius;
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> higher;
   higher.clear();
   const auto add = [&](const Vec3& core, std::uint64_t end) {
     const Vec3 from_axis = core - c.center;

@@ -60,7 +60,7 @@ void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double 
   }
   if (from > to) return;
   const std::size_t before = out.size();
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> higher;
   higher.clear();
   const auto add = [&](double t, std::uint64_t name) {
     Found found{{tail + t * along, 0, name},
@@ -95,7 +95,7 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
     clip_by_side(polygon, ground.sides[i], static_cast<int>(i), slack * radius);
   // names: a point of the rim by its number; a cut by the two edges or sides that meet
   points.clear();
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> higher;
   higher.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (polygon[i].height > reach) {

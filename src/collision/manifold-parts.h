@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/constants.h"
 #include "base/hash.h"
+#include "collision/face-contact.h"
 #include "collision/nearest-features.h"
 #include "collision/part-pairs.h"
 #include "collision/round-distance.h"
@@ -46,17 +46,11 @@ inline std::uint64_t feature_name(int pair, FeatureMode mode,
   return hasher.value();
 }
 
-// A point of what lies on each other, farther than the reach.
-struct HigherPoint {
-  Vec3 point;  // any frame: distances count
-  double gap;
-};
-
 // Sets `flatness` and `beyond` of the points from `from` on, where two parts lie on each other.
 // `parallel`: 1 where they are, 0 where they are taken for it no longer; `steepest`: the sine of
-// the slope between two points from which on they are not.  Of `higher` ones the lowest count where
-// there are more than `patch::most_points`.
-void lie_on_each_other(double parallel, double steepest, std::vector<HigherPoint>& higher,
+// the slope between two points from which on they are not.  `higher` (world) are farther than the
+// reach: of more than there is room for the lowest count; their order changes.
+void lie_on_each_other(double parallel, double steepest, std::vector<FacePoint>& higher,
                        std::size_t from, std::vector<ManifoldPoint>& out);
 
 // Any pair of kinds.

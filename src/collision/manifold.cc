@@ -84,11 +84,11 @@ void round_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart&
                                                          out);
 }
 
-void lie_on_each_other(double parallel, double steepest, std::vector<HigherPoint>& higher,
+void lie_on_each_other(double parallel, double steepest, std::vector<FacePoint>& higher,
                        std::size_t from, std::vector<ManifoldPoint>& out) {
   const std::size_t here = out.size() - from;
   if (here == 0 || here + higher.size() < 2 || !(parallel > 0)) return;
-  thread_local std::vector<HigherPoint> points;
+  thread_local std::vector<FacePoint> points;
   points.clear();
   Aabb extent;
   double lowest = 1e300;
@@ -98,19 +98,19 @@ void lie_on_each_other(double parallel, double steepest, std::vector<HigherPoint
     extent.add(points.back().point);
     lowest = std::min(lowest, p.gap);
   }
-  for (const HigherPoint& p : higher) extent.add(p.point);
+  for (const FacePoint& p : higher) extent.add(p.point);
   const double slack = patch::as_low * extent.size().norm();
   // the steepest slope down to one of the lowest counts
-  const auto flatness = [&](const HigherPoint& p) {
+  const auto flatness = [&](const FacePoint& p) {
     double flat = 1;
-    for (const HigherPoint& low : points) {
+    for (const FacePoint& low : points) {
       const double weight = 1 - (low.gap - lowest) / slack, height = p.gap - low.gap;
       if (!(weight > 0 && height > 0)) continue;
       flat = std::min(flat, 1 - weight * height / (steepest * (p.point - low.point).norm()));
     }
     return std::max(flat, 0.0) * parallel;
   };
-  const auto lower = [](const HigherPoint& p, const HigherPoint& q) { return p.gap < q.gap; };
+  const auto lower = [](const FacePoint& p, const FacePoint& q) { return p.gap < q.gap; };
   const std::size_t room = patch::most_points - std::min(here, patch::most_points);
   if (higher.size() > room) {
     std::partial_sort(higher.begin(), higher.begin() + static_cast<std::ptrdiff_t>(room),
@@ -118,7 +118,7 @@ void lie_on_each_other(double parallel, double steepest, std::vector<HigherPoint
     higher.resize(room);
   }
   double beyond = 0;
-  for (const HigherPoint& p : higher) beyond += flatness(p);
+  for (const FacePoint& p : higher) beyond += flatness(p);
   for (std::size_t i = from; i < out.size(); ++i) {
     out[i].flatness = flatness(points[i - from]);
     out[i].beyond = beyond / static_cast<double>(here);

@@ -130,7 +130,7 @@ bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach,
   const Vec3 down = -(a_in_b.R * near.normal);
   double deepest = 1e300;
   const std::size_t before = out.size();
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> higher;
   higher.clear();
   for (const double at : {from, to}) {
     const Vec3 on_a = a->tail + at * a->along;
@@ -246,15 +246,13 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
       stand_on_face(world.R * (placed.R * incident.face(found.incident).normal), p);
     out.push_back(p);
   }
-  thread_local std::vector<HigherPoint> lifted;
-  lifted.clear();
-  for (const FacePoint& p : higher) lifted.push_back({world * p.point, p.gap});
+  for (FacePoint& p : higher) p.point = world * p.point;
   // either face may be the reference
   const Vec3 axis = reference_is_a ? near.normal : cores.b_in_a.R.transpose() * near.normal;
   const Vec3 incident_normal = placed.R * incident.face(incident_face).normal;
   const double sine =
       std::min(axis.cross(reference.face(face).normal).norm(), axis.cross(incident_normal).norm());
-  lie_on_each_other(1 - sine / patch::aligned_sine, patch::aligned_sine, lifted, before, out);
+  lie_on_each_other(1 - sine / patch::aligned_sine, patch::aligned_sine, higher, before, out);
 }
 
 }  // namespace
@@ -297,7 +295,7 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
   p.reference_is_a = reference_is_a;
   p.normal = frame_h.R * half_space.normal;
   p.pair = pair;
-  thread_local std::vector<HigherPoint> higher;
+  thread_local std::vector<FacePoint> higher;
   points.clear();
   higher.clear();
   const std::size_t before = out.size();

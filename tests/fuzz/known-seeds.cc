@@ -78,8 +78,8 @@ const MendedSeed mended[] = {
     {"drum", 16086, "a cylinder was squeezed by 9 %, a point of it left and the others held more"},
     {"drum", 19759, "the same of a hull, which gained 11 %"},
     {"stack", 16122, "a cylinder toppled over its rim, and points left it while it was pressed"},
-    {"hills", 87, "what rocked on a hill was driven by its own springs"},
-    {"plates", 190, "a cone was deep in a plate whose edge it lay on"},
+    {"hills", 87, "a body that rocked on a height field gained 1.9 %"},
+    {"plates", 190, "a cone went 6 % of its width deep between plates"},
 };
 
 }  // namespace
