@@ -389,10 +389,11 @@ void PairChecks::look_up(Meeting& m) const {
         has_time && pair.from != last_key ? PairOutcome::Kind::wait : PairOutcome::Kind::nothing;
     return;
   }
-  if (pieces_.in_contact_from(std::min(m.a, m.b), std::max(m.a, m.b), m.from)) return;
+  const Piece first = pieces_.at(std::min(m.a, m.b), std::max(m.a, m.b), m.from);
+  if (pieces_.in_contact_from(first)) return;
   // an exact pair gets a record only when it will meet
   bool all_exact = true;
-  const auto impact = pieces_.first_exact_impact(m.a, m.b, m.from, all_exact);
+  const auto impact = pieces_.first_exact_impact(first, all_exact);
   m.is_new = impact || !all_exact;
   if (impact) m.outcome = {PairOutcome::Kind::schedule, *impact};
 }

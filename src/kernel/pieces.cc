@@ -43,12 +43,10 @@ bool in_contact(const Piece& piece) {
   return owner && owner->find(pair_id(piece.body_a->id(), piece.body_b->id()));
 }
 
-bool Pieces::in_contact_from(BodyId a, BodyId b, const Key& from) const {
-  for (Key at = from;;) {
-    const Piece piece = this->at(a, b, at);
+bool Pieces::in_contact_from(Piece piece) const {
+  for (;; piece = next(piece)) {
     if (!in_contact(piece)) return false;
     if (piece.ends_naturally || piece.end == last_key) return true;
-    at = piece.end;
   }
 }
 
@@ -67,11 +65,8 @@ Key Pieces::impact_key(const Piece& piece, double impact_time) const {
           pair_id(piece.body_a->id(), piece.body_b->id())};
 }
 
-std::optional<Key> Pieces::first_exact_impact(BodyId a, BodyId b, const Key& from,
-                                              bool& all_exact) const {
-  const BodyId first = std::min(a, b), second = std::max(a, b);
-  for (Key at = from;;) {
-    const Piece piece = this->at(first, second, at);
+std::optional<Key> Pieces::first_exact_impact(Piece piece, bool& all_exact) const {
+  for (;; piece = next(piece)) {
     all_exact = !piece.a->error && !piece.b->error && predicted_exactly(piece);
     if (!all_exact) return std::nullopt;
     const double impact_time = exact_impact(piece);
@@ -80,7 +75,6 @@ std::optional<Key> Pieces::first_exact_impact(BodyId a, BodyId b, const Key& fro
       if (key < piece.end) return key;
     }
     if (piece.end == last_key) return std::nullopt;
-    at = piece.end;
   }
 }
 

@@ -19,13 +19,18 @@ class Pieces {
 
   // That which holds at the key, a before b.
   Piece at(BodyId a, BodyId b, const Key& from) const;
-  // Whether the two are in contact from `from` on as far as is known.
-  bool in_contact_from(BodyId a, BodyId b, const Key& from) const;
+  // Whether the two are in contact from that piece on as far as is known.
+  bool in_contact_from(Piece piece) const;
   Key impact_key(const Piece& piece, double impact_time) const;
-  // Follows the pieces from `from` as long as they are exact; `all_exact`: they are for ever.
-  std::optional<Key> first_exact_impact(BodyId a, BodyId b, const Key& from, bool& all_exact) const;
+  // Follows the pieces from that one on as long as they are exact; `all_exact`: they are for ever.
+  std::optional<Key> first_exact_impact(Piece piece, bool& all_exact) const;
 
  private:
+  // That which follows: where it ends.
+  Piece next(const Piece& piece) const {
+    return at(piece.body_a->id(), piece.body_b->id(), piece.end);
+  }
+
   const Scene& scene_;
   const StateGraph& graph_;
 };

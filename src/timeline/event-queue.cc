@@ -59,19 +59,13 @@ void EventQueue::withdraw(Handle& handle) {
 // Priorities are key times or earlier: below a slot whose priority is later than what is sought
 // there is nothing.  In order that ends at once.
 template <class Visit>
-void EventQueue::visit_from_top(Visit&& visit) const {
-  std::vector<std::size_t> open;
-  if (!heap_.empty()) open.push_back(0);
-  while (!open.empty()) {
-    const std::size_t at = open.back();
-    open.pop_back();
-    if (!visit(heap_[at])) continue;
-    for (std::size_t c = 4 * at + 1; c < std::min(4 * at + 5, heap_.size()); ++c) open.push_back(c);
-  }
+void EventQueue::visit_down_from(std::size_t at, Visit&& visit) const {
+  if (at >= heap_.size() || !visit(heap_[at])) return;
+  for (std::size_t child = 4 * at + 1; child <= 4 * at + 4; ++child) visit_down_from(child, visit);
 }
 
 void EventQueue::first_ones(std::vector<Event>& events) const {
-  visit_from_top([&](const Slot& slot) {
+  visit_down_from(0, [&](const Slot& slot) {
     if (slot.priority > heap_[0].priority) return false;
     events.push_back(events_[slot.handle]);
     return true;
@@ -81,7 +75,7 @@ void EventQueue::first_ones(std::vector<Event>& events) const {
 template <class Wanted>
 double EventQueue::least_time_of(Wanted&& wanted) const {
   double least = never;
-  visit_from_top([&](const Slot& slot) {
+  visit_down_from(0, [&](const Slot& slot) {
     if (slot.priority >= least) return false;
     const Event& event = events_[slot.handle];
     if (wanted(event)) least = std::min(least, event.key.time);

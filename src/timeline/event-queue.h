@@ -67,9 +67,9 @@ class EventQueue {
     if (a.priority != b.priority) return a.priority < b.priority;
     return events_[a.handle].key < events_[b.handle].key;
   }
-  // Calls visit(slot) from the top down, and below a slot only where it answers true.
+  // Calls visit(slot) from that place down, and below a slot only where it answers true.
   template <class Visit>
-  void visit_from_top(Visit&& visit) const;
+  void visit_down_from(std::size_t at, Visit&& visit) const;
   // The least time of the keys of all events that are wanted; `never`: there is none.
   template <class Wanted>
   double least_time_of(Wanted&& wanted) const;

@@ -21,6 +21,7 @@ constexpr double duration = 2;  // s
 
 // Spheres get the gas's numbers as ids; the walls are six half-spaces.
 void fill(World& world, const Gas& gas) {
+  world.set_threads(1);  // as the other program
   world.set_gravity(Vec3::Zero());
   ContactSettings elastic;
   elastic.restitution = 1;
