@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <span>
 
 #include "base/constants.h"
 #include "groups/foreseen.h"
@@ -36,6 +38,37 @@ struct OldPoint {
   ContactForce followed;
   bool taken = false;
 };
+
+constexpr std::uint32_t unmatched = 0xffffffffu;
+// Of each new contact of the pair at hand its old one.
+thread_local std::vector<std::uint32_t> old_of;
+
+// Fills `old_of`, the nearest first: where a point becomes two, that which is where it was is it,
+// whichever is found first.
+void match_nearest(const Group& before, const ContactPair& old, std::vector<OldPoint>& there,
+                   std::span<const NewContact> fresh, double farthest) {
+  struct Match {
+    double distance;
+    std::uint32_t fresh, old;
+    auto operator<=>(const Match&) const = default;
+  };
+  thread_local std::vector<Match> matches;
+  matches.clear();
+  for (std::uint32_t c = 0; c < fresh.size(); ++c)
+    for (std::uint32_t o = 0; o < old.count; ++o) {
+      const ContactTag& tag = before.tags[old.first + o];
+      double distance = (there[o].followed.point - fresh[c].point).norm();
+      if (tag.feature == fresh[c].tag.feature && tag.parts == fresh[c].tag.parts) distance *= 0.5;
+      if (distance < farthest) matches.push_back({distance, c, o});
+    }
+  std::sort(matches.begin(), matches.end());
+  old_of.assign(fresh.size(), unmatched);
+  for (const Match& match : matches) {
+    if (there[match.old].taken || old_of[match.fresh] != unmatched) continue;
+    there[match.old].taken = true;
+    old_of[match.fresh] = match.old;
+  }
+}
 
 // A point that comes to a face which bears a load already presses as those beside it do: their
 // stiffness is shared with it, and so is the depth that they count from.
@@ -85,25 +118,16 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     each_contact(*old, [&](std::uint32_t c) {
       there.push_back({arc.contact_force(static_cast<int>(c), now)});
     });
-  for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-    NewContact& fresh = contacts[c];
-    double nearest = answer::same_point * size;
-    std::uint32_t best = old->count;
-    for (std::uint32_t o = 0; o < old->count; ++o) {
-      if (there[o].taken) continue;
-      const ContactTag& tag = before.tags[old->first + o];
-      double distance = (there[o].followed.point - fresh.point).norm();
-      if (tag.feature == fresh.tag.feature && tag.parts == fresh.tag.parts) distance *= 0.5;
-      if (distance >= nearest) continue;
-      nearest = distance;
-      best = o;
-    }
-    if (best == old->count) {
+  match_nearest(before, *old, there, std::span(contacts).subspan(pair.first, pair.count),
+                answer::same_point * size);
+  for (std::uint32_t c = 0; c < pair.count; ++c) {
+    NewContact& fresh = contacts[pair.first + c];
+    const std::uint32_t best = old_of[c];
+    if (best == unmatched) {
       start_unpressed(work, body_a, body_b, fresh);
       take_offset(before, *old, there, fresh);
       continue;
     }
-    there[best].taken = true;
     const ContactTag& tag = before.tags[old->first + best];
     const GroupContact& was = arc.start().contacts[old->first + best];
     fresh.law_before = was.law;
