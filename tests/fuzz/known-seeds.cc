@@ -80,6 +80,7 @@ const MendedSeed mended[] = {
     {"drum", 19759, "the same of a hull, which gained 11 %"},
     {"stack", 16122, "a cylinder toppled over its rim, and points left it while it was pressed"},
     {"hills", 87, "a body that rocked on a height field gained 1.9 %"},
+    {"plates", 20248, "a tip pressed into the wall where a slit ends fell into the slit"},
     {"plates", 190, "a cone went 6 % of its width deep between plates"},
 };
 

@@ -39,10 +39,11 @@ struct Beyond {
     return hold(neighbours, world * point, depth);
   }
 
-  // Whether none is between the two: they are on both sides of a slit, or in it.
+  // Whether none is between the two: they are on both sides of a slit, or in it.  What the body is
+  // pressed into beside the slit, as the wall where it ends, is not between.
   bool is_open(const Vec3& from, const Vec3& to) const {
     return std::none_of(std::begin(seam::between), std::end(seam::between), [&](double share) {
-      return is_held(from + share * (to - from), seam::flush * size);
+      return is_held(from + share * (to - from), seam::low * size);
     });
   }
 
