@@ -89,6 +89,8 @@ inline constexpr double joint_friction_speed = 3e-4;
 // such time sees does not exist, unless it gets deeper than this share of the thinner one
 // (detect/dip.h).
 inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
+// When contacts stop telling the truth is known to this share of the depth that they may miss.
+inline constexpr double end_resolution = 1e-6;
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a
 // distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
 inline constexpr double depth_slack = 1e-12;

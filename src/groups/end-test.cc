@@ -109,13 +109,14 @@ double unseen_depth(const PairOnArc& pair, double when) {
 // valley is no longer found there: so the stretch is gone through in quarters.
 double unseen_touch(const PairOnArc& pair, double from, double to, double allowed) {
   const auto excess = [&](double t) { return unseen_depth(pair, t) - allowed; };
+  const double fine = answer::end_resolution * allowed;
   constexpr int quarters = 4;
   double begin = from, first = excess(from);
   if (first >= 0) return never;
   for (int i = 1; i <= quarters; ++i) {
     const double end = i < quarters ? from + (to - from) * i / quarters : to;
     const double last = excess(end);
-    if (last > 0) return find_root(excess, begin, end, first, last).left;
+    if (last > 0) return find_root(excess, begin, end, first, last, fine).left;
     begin = end;
     first = last;
   }
@@ -131,7 +132,7 @@ double phantom_touch(const PairOnArc& pair, double from, double to, double allow
   };
   const double first = excess(from), last = excess(to);
   if (first >= 0 || last <= 0) return never;
-  return find_root(excess, from, to, first, last).left;
+  return find_root(excess, from, to, first, last, answer::end_resolution * allowed).left;
 }
 
 // When a contact whose gap goes from `first` > 0 to `last` < 0 closes, if faster than `slow`; else

@@ -245,7 +245,8 @@ bool PairChecks::find_crossing(Pair& pair, const Piece& piece, double start, dou
   if (left > -touch) {
     const double level = left > 0 ? 0 : touch;
     const auto f = [&](double t) { return distance_at(piece, t) + level; };
-    impact_time = find_root(f, start, when, left + level, right + level).left;
+    const double rounding = distance_rounding(*piece.body_a, piece.a->x, *piece.body_b, piece.b->x);
+    impact_time = find_root(f, start, when, left + level, right + level, rounding).left;
   }
   pair.impact = pieces_.impact_key(piece, impact_time);
   return true;

@@ -14,14 +14,17 @@ namespace tw {
 
 // A change of sign, narrowed until no double lies between the ends (or f is 0 at one).
 struct Bracket {
-  double left = 0, right = 0;      // left < right, or equal where f is exactly 0
-  double f_left = 0, f_right = 0;  // opposite signs, or one is 0
+  double left = 0, right = 0;      // left < right, or equal where f is as good as 0
+  double f_left = 0, f_right = 0;  // opposite signs, or equal
 };
 
 // Needs f(left) and f(right) of opposite signs (0 counts as either).  Full convergence: the ends
-// differ by at most two units in the last place.  A function of its arguments alone.
+// differ by at most two units in the last place; or, where |f| comes to be no more than
+// `rounding`, f is no more than a few of these at the end with the sign of f(left): nearer, signs
+// may be noise, which would be bisected on and on.  A function of its arguments alone.
 template <class F>
-Bracket find_root(F&& f, double left, double right, double f_left, double f_right) {
+Bracket find_root(F&& f, double left, double right, double f_left, double f_right,
+                  double rounding = 0) {
   // b is the best estimate, c the end with the other sign, a the one before b
   double a = left, b = right, fa = f_left, fb = f_right;
   double c = a, fc = fa, step = b - a, last_step = step;
@@ -70,6 +73,12 @@ Bracket find_root(F&& f, double left, double right, double f_left, double f_righ
     b += std::abs(step) > 0.5 * ulp ? step : std::copysign(0.5 * ulp, half);
     if (b == a) b = std::nextafter(a, c);
     fb = f(b);
+    if (std::abs(fb) > rounding || fb == 0) continue;
+    if ((fb > 0) == (f_left > 0)) return {b, b, fb, fb};
+    const double back = b - 2 * rounding * (right - left) / std::abs(f_right - f_left);
+    const double f_back = back > left ? f(back) : f_left;
+    if (back > left && (f_back > 0) == (f_left > 0)) return {back, b, f_back, fb};
+    rounding = 0;  // it is more than was thought
   }
 
   if (fb == 0) return {b, b, 0, 0};

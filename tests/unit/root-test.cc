@@ -57,6 +57,25 @@ TEST(Root, of_smooth_functions_takes_few_calls) {
   EXPECT_LE(calls, 12);
 }
 
+// Near its root it is one of two numbers, as a distance that is found in two ways.
+TEST(Root, of_what_is_rounded_is_on_the_side_of_the_left_end) {
+  for (int i = 0; i < 1000; ++i) {
+    const double root = 1e-3 * (i + 0.5), slope = i % 2 == 0 ? -3 : 3;
+    int calls = 0;
+    const auto f = [&](double x) {
+      ++calls;
+      const double exact = slope * (x - root);
+      return std::abs(exact) > 1e-15 ? exact : exact > 0 ? 2e-15 : -4e-16;
+    };
+    const double left = f(0), right = f(1);
+    calls = 0;
+    const Bracket b = find_root(f, 0, 1, left, right, 3e-15);
+    EXPECT_LT(std::abs(b.left - root), 1e-14);
+    EXPECT_EQ(b.f_left > 0, left > 0);
+    EXPECT_LE(calls, 4);
+  }
+}
+
 TEST(Root, random_cubics_are_bracketed_in_either_direction) {
   Random random(1);
   for (int i = 0; i < 2000; ++i) {
