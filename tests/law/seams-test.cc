@@ -108,6 +108,47 @@ TEST(Seams, slats_of_a_belt_do_not_catch) {
   }
 }
 
+// How deep a ball of 1 cm gets in a fixed body, m, that it meets at (x, 0, top) at 3 m/s.
+double depth_of_a_ball(const ShapePtr& shape, double x, double top) {
+  World world;
+  set_contact_for_all(world, 0.3, 0.3);
+  BodyDef fixed;
+  fixed.shape = shape;
+  fixed.fixed = true;
+  world.add_body(fixed);
+  world.add_body(body_of(make_sphere(0.01), {x, 0, top + 0.013}, {0, 0, -3}));
+  StabilityOutcome outcome;
+  for (int i = 1; i <= 60; ++i) {
+    world.advance(0.001 * i);
+    measure_depths(world, outcome);
+  }
+  return outcome.deepest;
+}
+
+// Beside the circle in which round parts meet flush, each is all but within the other.
+TEST(Seams, of_round_parts_that_meet_flush_let_nothing_through) {
+  constexpr double r = 0.02;
+  const auto turned = [](const ShapePtr& shape, double about_z, double along) {
+    Pose pose;
+    pose.q = Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ())) *
+             Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitY()));
+    pose.p = pose.q * Vec3(0, 0, along);
+    return place_shape(shape, pose);
+  };
+  const ShapePtr rod = turned(make_cylinder(r, 0.2), 0, 0),
+                 half = turned(make_cylinder(r, 0.1), 0, 0.05);
+  const std::pair<const char*, ShapePtr> cases[] = {
+      {"a bead on a rod", make_union({rod, make_sphere(r)})},
+      {"a rounded end", make_union({half, make_sphere(r)})},
+      {"an egg on a rod", make_union({rod, make_ellipsoid({0.03, r, r})})},
+      {"a knee", make_union({turned(make_capsule(r, 0.1), 0, 0.05),
+                             turned(make_capsule(r, 0.1), 2.6, 0.05)})}};
+  for (const auto& [name, shape] : cases)
+    for (const double off : {0., 1e-6, 5e-6, 1e-5, 2e-5, 5e-5, 7e-5, 1e-4, 2e-4, 5e-4, 1e-3})
+      for (const double x : {off, -off})
+        EXPECT_LT(depth_of_a_ball(shape, x, r), 1e-3 * r) << name << ", " << x;
+}
+
 // But a step is one.
 TEST(Seams, a_step_stops_what_slides) {
   World world;

@@ -57,7 +57,9 @@ bool surely_apart(const SeamNeighbour& q, const Vec3& point, double distance) {
   return q.part->core->face_separation(local, face) > distance;
 }
 
-// Whether a neighbour that holds the point has no such normal there.
+// Whether a neighbour that holds the point has no such normal there.  Where round parts meet flush,
+// as a cylinder and a ball of its radius, the one is over the other by r turn^2/2 before their
+// normals differ by `turn`: it is its own surface there, however near the other is.
 bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbour>& neighbours,
             double size, double angle) {
   for (const SeamNeighbour& q : neighbours) {
@@ -69,7 +71,8 @@ bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbo
     if (here.distance > seam::same_point * size) continue;
     if (here.distance < -seam::same_point * size) return true;
     const Nearest foot = nearest_of(q, point + seam::probe * size * normal);
-    const double allowed = angle * seam::probe * size + std::abs(here.distance);
+    const double turn = angle + seam::flush_turn * std::sqrt(std::max(here.distance, 0.0) / size);
+    const double allowed = turn * seam::probe * size + std::abs(here.distance);
     if ((foot.point - here.point).norm() > allowed) return true;
   }
   return false;
