@@ -83,6 +83,9 @@ inline constexpr double loose_steps = 1e-5;
 // Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 1 mm/s
 // at 1 m.
 inline constexpr double joint_friction_speed = 3e-4;
+// A step after which it is off its tangent at the start by more than this share is cut by that: a
+// long one damps the error by a stiffness that is there no more.
+inline constexpr double friction_unforeseen = 0.25, break_away_cut = 0.25;
 
 // ---- where bodies meet ----
 // Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no

@@ -157,6 +157,16 @@ double GroupStepper::error_norm(const GroupScratch& s) const {
                    (4.0 * std::max(system_.members(), 1)));
 }
 
+// Whether the friction of a joint lets go within the step, by more than the error knows of.
+bool GroupStepper::breaks_away(const GroupScratch& s) const {
+  for (std::size_t t = 0; t < joints_.size(); ++t) {
+    const TreeInGroup& tree = *system_.trees()[t];
+    const std::size_t u = system_.tree_row(t) + static_cast<std::size_t>(tree.freedoms());
+    if (tree.breaks_away(s.state.data() + u, s.trial.data() + u)) return true;
+  }
+  return false;
+}
+
 // What a rejected step is to be cut by.  Its error goes as h^4 where all is smooth, but as h to h^3
 // where a contact opens, closes or begins to slip within it: from the second one on the last two
 // say how, to a whole power.
@@ -271,7 +281,8 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    if (good && error <= 1) {
+    const bool off = good && error <= 1 && breaks_away(s);
+    if (good && error <= 1 && !off) {
       const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
                                        answer::least_step_change, answer::most_step_change);
       accept(last ? start_.end : time + h, s);
@@ -283,7 +294,7 @@ bool GroupStepper::implicit_step() {
       return true;
     }
     ++counts_.rejected;
-    h *= good ? last_one.cut(h, error) : 0.1;
+    h *= off ? answer::break_away_cut : good ? last_one.cut(h, error) : 0.1;
     if (!(time + 0.1 * h > time))
       return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/constants.h"
 #include "integrate/group-rows.h"
 #include "integrate/joint-record.h"
 
@@ -177,6 +178,11 @@ void TreeInGroup::gather(const BodyWrench* wrenches, double* row) const {
       row[k] += dot(linear_.axis(k), force[index(i)]);
     force[index(node.parent)] += force[index(i)];
   }
+}
+
+bool TreeInGroup::breaks_away(const double* from, const double* to) const {
+  const auto n = static_cast<std::size_t>(n_);
+  return multibody::friction_unforeseen(tree(), {from, n}, {to, n}) > answer::friction_unforeseen;
 }
 
 void TreeInGroup::accelerate(double* row) const {

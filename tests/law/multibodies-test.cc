@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "multibody/joint-laws.h"
 #include "multibody/limits.h"
 #include "multibody/multibody.h"
 #include "support/multibody-scenes.h"
@@ -133,7 +134,7 @@ TEST(Multibodies, a_stop_strikes_back_with_its_restitution) {
     MultibodyDef def = chain(1, 0.5, Vec3(0, 0, 2));
     const double e = 0.6;
     multibody::JointSpec& joint = def.links[0].joint;
-    if (kind > 0) joint.kind = JointKind::spherical;
+    if (kind > 0) joint.kind = multibody::JointKind::spherical;
     if (kind == 0) joint.axes[0].lower = -1;
     if (kind == 2) joint.swinging = Vec3(3, 0, 0);
     joint.axes[0].upper = 0.5 * pi;
@@ -219,6 +220,37 @@ TEST(Multibodies, servos_hold_and_stiff_ones_cost_little) {
     if (steps_of_soft == 0) steps_of_soft = steps;
     EXPECT_LT(steps, 10 * steps_of_soft) << stiffness;
   }
+}
+
+// A torque beyond a joint's friction speeds it up by what is beyond, from the first: friction that
+// lets go within a step is resolved.  It is less than its limit while it is smooth.
+TEST(Multibodies, a_joint_breaks_away_from_its_friction) {
+  constexpr double friction = 2, torque = 2.5;  // N m
+  for (const multibody::JointKind kind :
+       {multibody::JointKind::revolute, multibody::JointKind::spherical})
+    for (const double accuracy : {1e-3, 1e-4, 1e-6}) {
+      World world;
+      world.set_gravity(Vec3::Zero());
+      world.set_accuracy(accuracy);
+      MultibodyDef def = chain(1, 1, Vec3(0, 0, 2));
+      def.links[0].joint.kind = kind;
+      def.links[0].joint.axes[0].friction = friction;
+      const Multibody& rod = world.multibody(world.add_multibody(def));
+      world.edit(rod.links[0], [&](StateView& view) {
+        view.change_joints([&](MultibodyState& joints) {
+          joints.torques.assign(joints.u.size(), 0);
+          joints.torques[kind == multibody::JointKind::revolute ? 0 : 1] = torque;
+        });
+      });
+      const double mass = world.body(rod.links[0]).mass, inertia = mass * (1.01 / 12 + 0.25);
+      const double smooth = multibody::friction_speed(rod.tree.axes()[0]);
+      for (const double t : {0.01, 0.1, 1.0}) {
+        world.advance(t);
+        const double u = world.state(rod.links[0]).angular_velocity.y();
+        EXPECT_GT(u, (torque - friction) / inertia * t - 1e-5) << t << ", " << accuracy;
+        EXPECT_LT(u, (torque - friction) / inertia * t + 3 * smooth) << t << ", " << accuracy;
+      }
+    }
 }
 
 // A ball that strikes the end of a free rod of two welded halves does to it what it does to a rod.
