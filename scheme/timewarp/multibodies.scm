@@ -56,7 +56,7 @@ return."
 #:orientation  of the joint's frame there, a quaternion #(w x y z); #(1 0 0 0)
 #:limits       (LOWER UPPER), rad; none.  The joint begins at 0, or at the limit nearest to it
 #:damping      N m s/rad, 0 or more; 0
-#:friction     N m, 0 or more: the torque against the motion, however slow; 0
+#:friction     N m, 0 or more: the torque against the motion; what it holds creeps by um/s; 0
 #:stiffness    N m/rad, of a spring, 0 or more; 0
 #:rest         rad, where the spring is relaxed; 0
 #:restitution  the share of the speed that is left after a stop is struck, 0 to 1; 0
@@ -71,7 +71,7 @@ return."
 #:orientation  of the joint's frame there, a quaternion #(w x y z); #(1 0 0 0)
 #:limits       (LOWER UPPER), m; none.  The joint begins at 0, or at the limit nearest to it
 #:damping      N s/m, 0 or more; 0
-#:friction     N, 0 or more: the force against the motion, however slow; 0
+#:friction     N, 0 or more: the force against the motion; what it holds creeps by um/s; 0
 #:stiffness    N/m, of a spring, 0 or more; 0
 #:rest         m, where the spring is relaxed; 0
 #:restitution  the share of the speed that is left after a stop is struck, 0 to 1; 0
@@ -106,7 +106,7 @@ angular velocity #(x y z), rad/s, in the link's frame.
 #:orientation  of the joint's frame there, a quaternion #(w x y z); #(1 0 0 0)
 #:limits       an angle, 0.001 to 3 rad; none
 #:damping      N m s/rad, 0 or more; 0
-#:friction     N m, 0 or more: the torque against the motion, however slow; 0
+#:friction     N m, 0 or more: the torque against the motion; what it holds creeps by um/s; 0
 #:stiffness    N m, of a spring whose torque is stiffness times the sine of the angle; 0
 #:rest         a quaternion, where the spring is relaxed; #(1 0 0 0)
 #:restitution  the share of the speed that is left after the stop is struck, 0 to 1; 0

@@ -80,12 +80,11 @@ inline constexpr double explicit_share = 0.2;
 inline constexpr std::uint64_t steps_between_choices = 16;
 // Looser steps than this are made by a method of order 5.
 inline constexpr double loose_steps = 1e-5;
-// Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 1 mm/s
-// at 1 m.
-inline constexpr double joint_friction_speed = 3e-4;
-// A step after which it is off its tangent at the start by more than this share is cut by that: a
-// long one damps the error by a stiffness that is there no more.
-inline constexpr double friction_unforeseen = 0.25, break_away_cut = 0.25;
+// Coulomb friction of a joint is smooth below about this speed, in the units of stop_speed: 10 um/s
+// at 1 m, by which what it holds creeps.
+inline constexpr double joint_friction_speed = 3e-6;
+// What a step is cut by in which it lets go, and does more than its derivative and tolerance allow.
+inline constexpr double break_away_cut = 0.25;
 
 // ---- where bodies meet ----
 // Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no

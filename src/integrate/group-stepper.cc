@@ -157,14 +157,19 @@ double GroupStepper::error_norm(const GroupScratch& s) const {
                    (4.0 * std::max(system_.members(), 1)));
 }
 
-// Whether the friction of a joint lets go within the step, by more than the error knows of.
-bool GroupStepper::breaks_away(const GroupScratch& s) const {
+// What the friction of joints that let go within the step does, over tolerance: at rest it is
+// stiff, and the error is damped by a stiffness that is there no more.
+double GroupStepper::unforeseen_friction(double h, GroupScratch& s) const {
+  if (joints_.empty()) return 0;
+  std::fill(s.changes.begin(), s.changes.end(), BodyChange{});
+  bool any = false;
   for (std::size_t t = 0; t < joints_.size(); ++t) {
     const TreeInGroup& tree = *system_.trees()[t];
     const std::size_t u = system_.tree_row(t) + static_cast<std::size_t>(tree.freedoms());
-    if (tree.breaks_away(s.state.data() + u, s.trial.data() + u)) return true;
+    any |=
+        tree.add_unforeseen_friction(h, s.state.data() + u, s.trial.data() + u, s.changes.data());
   }
-  return false;
+  return any ? error_norm(s) : 0;
 }
 
 // What a rejected step is to be cut by.  Its error goes as h^4 where all is smooth, but as h to h^3
@@ -281,8 +286,8 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const bool off = good && error <= 1 && breaks_away(s);
-    if (good && error <= 1 && !off) {
+    const bool breaks_away = good && error <= 1 && unforeseen_friction(h, s) > 1;
+    if (good && error <= 1 && !breaks_away) {
       const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
                                        answer::least_step_change, answer::most_step_change);
       accept(last ? start_.end : time + h, s);
@@ -294,7 +299,7 @@ bool GroupStepper::implicit_step() {
       return true;
     }
     ++counts_.rejected;
-    h *= off ? answer::break_away_cut : good ? last_one.cut(h, error) : 0.1;
+    h *= breaks_away ? answer::break_away_cut : good ? last_one.cut(h, error) : 0.1;
     if (!(time + 0.1 * h > time))
       return failure_ = good ? "step size under the spacing of doubles" : "state not finite", false;
   }

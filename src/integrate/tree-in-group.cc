@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/constants.h"
 #include "integrate/group-rows.h"
 #include "integrate/joint-record.h"
 
@@ -180,9 +179,17 @@ void TreeInGroup::gather(const BodyWrench* wrenches, double* row) const {
   }
 }
 
-bool TreeInGroup::breaks_away(const double* from, const double* to) const {
-  const auto n = static_cast<std::size_t>(n_);
-  return multibody::friction_unforeseen(tree(), {from, n}, {to, n}) > answer::friction_unforeseen;
+bool TreeInGroup::add_unforeseen_friction(double h, const double* from, const double* to,
+                                          BodyChange* changes) const {
+  const std::size_t n = index(n_);
+  thread_local std::vector<double> row, still;
+  row.resize(n);
+  still.assign(n, 0);
+  if (!multibody::friction_unforeseen(tree(), {from, n}, {to, n}, row)) return false;
+  accelerate(row.data());
+  for (double& du : row) du *= h;
+  spread(still.data(), row.data(), changes);
+  return true;
 }
 
 void TreeInGroup::accelerate(double* row) const {

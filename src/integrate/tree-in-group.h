@@ -61,9 +61,10 @@ class TreeInGroup {
   void spread(const double* kq, const double* ku, BodyChange* changes) const;
   // Adds J^T W, W the wrenches on the links about their centres of mass.
   void gather(const BodyWrench* wrenches, double* row) const;
-  // Whether between two rows of velocities, a step apart, the friction of a joint lets go as its
-  // derivative at the first does not tell.
-  bool breaks_away(const double* from, const double* to) const;
+  // Adds what friction does to the links in a step of h that its derivative at the start does not
+  // tell, where joints have come to be faster.  False: nothing.
+  bool add_unforeseen_friction(double h, const double* from, const double* to,
+                               BodyChange* changes) const;
   // M^-1 times a row of torques, in place.
   void accelerate(double* row) const;
 

@@ -157,24 +157,29 @@ void require_gain(double value, bool may_be_infinite, const std::string& what) {
 
 double friction_speed(const Axis& axis) { return answer::joint_friction_speed * axis.slow; }
 
-double friction_unforeseen(const Tree& tree, In from, In to) {
+bool friction_unforeseen(const Tree& tree, In from, In to, Out tau) {
   // of x = u/v0: x/r with r^2 = x^2 + 1, and along its tangent x0/r0 + (1 - x0 x0^T/r0^2) dx/r0
-  const auto off_tangent = [](const auto& x0, const auto& x1) {
-    if (!(x1.squaredNorm() > x0.squaredNorm())) return 0.0;
+  bool any = false;
+  const auto add = [&](double friction, const auto& x0, const auto& x1, auto&& torque) {
+    if (!(x1.squaredNorm() > x0.squaredNorm())) return;
+    any = true;
     const double r0 = std::sqrt(x0.squaredNorm() + 1), r1 = std::sqrt(x1.squaredNorm() + 1);
     const auto dx = (x1 - x0).eval();
-    return (x1 / r1 - x0 / r0 - (dx - x0.dot(dx) / (r0 * r0) * x0) / r0).norm();
+    torque = -friction * (x1 / r1 - x0 / r0 - (dx - x0.dot(dx) / (r0 * r0) * x0) / r0);
   };
-  double most = 0;
+  std::fill(tau.begin(), tau.end(), 0.0);
   for (const Axis& axis : tree.axes()) {
     if (!(axis.law.friction > 0)) continue;
     const auto u = static_cast<std::size_t>(axis.u);
     const double v0 = friction_speed(axis);
     using One = Eigen::Matrix<double, 1, 1>;
-    most = std::max(most, axis.ball ? off_tangent(vector_at(&from[u]) / v0, vector_at(&to[u]) / v0)
-                                    : off_tangent(One(from[u] / v0), One(to[u] / v0)));
+    if (axis.ball)
+      add(axis.law.friction, Vec3(vector_at(&from[u]) / v0), Vec3(vector_at(&to[u]) / v0),
+          Eigen::Map<Vec3>(&tau[u]));
+    else
+      add(axis.law.friction, One(from[u] / v0), One(to[u] / v0), Eigen::Map<One>(&tau[u]));
   }
-  return most;
+  return any;
 }
 
 double stop_damping(const Axis& axis) {

@@ -63,9 +63,8 @@ double spring_energy(const Tree& tree, In q);
 // v0, rad/s or m/s.
 double friction_speed(const Axis& axis);
 // By how much friction is off its tangent at the joint velocities `from` (nv) when they have come
-// to be `to`: the most of all joints that are faster by then, as a share of their greatest
-// friction.
-double friction_unforeseen(const Tree& tree, In from, In to);
+// to be `to`, at the joints that are faster by then; elsewhere 0.  False: there is none.
+bool friction_unforeseen(const Tree& tree, In from, In to, Out tau);
 // b, s/rad or s/m, of an axis' stop: restitution e at stop_speed.
 double stop_damping(const Axis& axis);
 // What is slower than this at its stop leans on it, rad/s or m/s.

@@ -127,16 +127,50 @@ TEST(MultibodyDerivatives, of_friction_about_standstill) {
   wheel.inertia = Mat3::Identity();
   wheel.joint.axes[0].friction = 2;
   const Tree tree({wheel});
-  for (double speed : {0.0, 5e-4, -2e-3}) {
+  const double v0 = friction_speed(tree.axes()[0]);
+  for (double speed : {0.0, 0.5 * v0, -2 * v0}) {
     Numbers q{0.3}, u{speed}, Kq{0}, Ku{0};
     add_joint_derivatives(tree, q, u, {}, Kq, Ku);
-    const double by = difference_of_order_8(1e-5, [&](double h) {
+    const double by = difference_of_order_8(1e-2 * v0, [&](double h) {
       Numbers tau(1);
       joint_torques(tree, q, Numbers{speed + h}, {}, tau);
       return tau[0];
     });
     EXPECT_NEAR(Ku[0], by, 1e-6 * std::abs(by));
     EXPECT_EQ(Kq[0], 0);
+  }
+}
+
+// Where it is faster by then: the torque less that along the tangent at the first velocity.
+TEST(MultibodyDerivatives, leave_friction_that_lets_go_unforeseen) {
+  Random random(7);
+  for (const JointKind kind : {JointKind::revolute, JointKind::spherical}) {
+    LinkSpec wheel;
+    wheel.name = "wheel";
+    wheel.mass = 1;
+    wheel.inertia = Mat3::Identity();
+    wheel.joint.kind = kind;
+    wheel.joint.axes[0].friction = 2;
+    const Tree tree({wheel});
+    const auto n = static_cast<std::size_t>(tree.nv());
+    const Numbers q = kind == JointKind::revolute ? Numbers{0.3} : Numbers{1, 0, 0, 0};
+    const double v0 = friction_speed(tree.axes()[0]);
+    Numbers from(n), to(n), before(n), after(n), unforeseen(n), Kq(n * n), Ku(n * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      from[i] = random.real(-v0, v0);
+      to[i] = from[i] + random.real(5, 9) * std::copysign(v0, from[i]);
+    }
+    joint_torques(tree, q, from, {}, before);
+    joint_torques(tree, q, to, {}, after);
+    add_joint_derivatives(tree, q, from, {}, Kq, Ku);
+    EXPECT_TRUE(friction_unforeseen(tree, from, to, unforeseen));
+    for (std::size_t i = 0; i < n; ++i) {
+      double tangent = before[i];
+      for (std::size_t j = 0; j < n; ++j) tangent += Ku[i + n * j] * (to[j] - from[j]);
+      EXPECT_NEAR(unforeseen[i], after[i] - tangent, 1e-12);
+    }
+    EXPECT_FALSE(friction_unforeseen(tree, to, from, unforeseen));
+    for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(unforeseen[i], 0);
   }
 }
 
