@@ -129,12 +129,12 @@ before the first and after the last.
 
 (define-accessor position
   "Return the position of the body frame's origin of BODY, a body or a view, in metres.
-(set! (position BODY) #(x y z)) moves a body between runs."
+(set! (position BODY) #(x y z)) moves a body between runs; one that is fixed stays where it is, an error."
   %position %set-position!)
 
 (define-accessor orientation
   "Return the orientation of the body frame of BODY, a body or a view, as #(w x y z).
-(set! (orientation BODY) #(w x y z)) turns a body between runs."
+(set! (orientation BODY) #(w x y z)) turns a body between runs, but not a fixed one."
   %orientation %set-orientation!)
 
 (define-accessor velocity

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "base/random.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
 #include "seam-ground.h"
@@ -215,6 +216,43 @@ struct Mountain : Ground {
 // A rod across one of two bars that cross, a hair's breadth deep: the axis along which it is
 // nearest to the other bar is buried.  Over an edge of that bar it would be deep, but it crosses
 // the edge's line beyond the end of the edge (a scene of the fuzzer, whose energy rose fourfold).
+// Whatever of its parts' surfaces is inside others: what is in a union is held by some of it.
+TEST(Seams, a_union_does_not_bury_all_that_a_body_is_in) {
+  tw::Random random(3);
+  const auto draw = [&]() -> ShapePtr {
+    const double size = random.real(0.1, 0.3);
+    switch (static_cast<int>(random.real(0, 5))) {
+      case 0: return make_sphere(size);
+      case 1: return make_box({size, 2 * size, size});
+      case 2: return make_cylinder(size, size);
+      case 3: return make_capsule(0.5 * size, size);
+    }
+    return make_ellipsoid({size, 0.5 * size, 0.7 * size});
+  };
+  const auto place = [&](double room) {
+    Pose pose;
+    for (int k = 0; k < 3; ++k) pose.p[k] = random.real(-room, room);
+    for (int k = 0; k < 4; ++k) pose.q.coeffs()[k] = random.real(-1, 1);
+    pose.q.normalize();
+    return pose;
+  };
+  int in = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<ShapePtr> parts;
+    for (int k = 0; k < 3; ++k) parts.push_back(place_shape(draw(), place(0.15)));
+    const ShapePtr whole = make_union(parts), other = draw();
+    const Frame here(place(0.4));
+    const double size = std::min(whole->least_width(), other->least_width());
+    const double distance = separation(*whole, Frame(), *other, here).distance;
+    if (distance > -0.003 * size || distance < -0.1 * size) continue;
+    ++in;
+    Points points;
+    manifold_at_seams(*whole, Frame(), {}, *other, here, {}, 0.01 * size, size, points);
+    EXPECT_FALSE(points.empty()) << i << ", " << distance / size;
+  }
+  EXPECT_GT(in, 100);
+}
+
 TEST(Seams, a_rod_is_not_on_an_edge_that_it_crosses_beyond_its_end) {
   const double rod = 5.507701874066766e-05, wide = 0.00011096680843160528;
   const ShapePtr cylinder = make_cylinder(rod, 0.00059205701022086);
