@@ -121,6 +121,51 @@ std::vector<Solid> Draft::union_shape(double diameter) {
   }
 }
 
+std::vector<Solid> Draft::flush_rod(double radius, double length, double& seam) {
+  const double r = radius;
+  seam = 0;
+  switch (random.below(3)) {
+    case 0:  // a bead on it
+      seam = random.real(-0.5, 0.5) * length;
+      return {cylinder(r, length), placed(ball(r), {0, 0, seam})};
+    case 1:  // round ends
+      seam = 0.5 * length;
+      return {cylinder(r, length), placed(ball(r), {0, 0, seam}), placed(ball(r), {0, 0, -seam})};
+    default:  // an egg
+      return {cylinder(r, length), ellipsoid({2 * r, 2 * r, random.real(0.3, 0.9) * length})};
+  }
+}
+
+std::vector<Solid> Draft::flush_shape(double diameter) {
+  const double d = diameter, r = random.real(0.05, 0.2) * d, length = d - 2 * r;
+  const auto bone = [&](double reach, double turn) {
+    return placed(capsule(r, reach), rotation_by({0, 0, turn}) * Vec3(0.5 * reach, 0, 0),
+                  rotation_by({0, 0, turn}) * rotation_by({0, pi / 2, 0}));
+  };
+  switch (random.below(4)) {
+    case 0: return {bone(0.5 * length, 0), bone(0.5 * length, random.real(0.5, 3))};
+    case 1: {  // a ring of bones
+      const int count = whole(5, 10);
+      const double turn = 2 * pi / count, middle = 0.5 * length * std::cos(0.5 * turn);
+      std::vector<Solid> ring;
+      for (int i = 0; i < count; ++i)
+        ring.push_back(placed(capsule(r, length * std::sin(0.5 * turn)),
+                              rotation_by({0, 0, i * turn}) * Vec3(middle, 0, 0),
+                              rotation_by({0, 0, i * turn}) * rotation_by({pi / 2, 0, 0})));
+      return ring;
+    }
+    case 2: {  // a bar with rounded ends
+      const double high = random.real(0.5, 3) * r;
+      return {box({length, 2 * r, high}), placed(cylinder(r, high), {0.5 * length, 0, 0}),
+              placed(cylinder(r, high), {-0.5 * length, 0, 0})};
+    }
+    default: {
+      double seam;
+      return flush_rod(r, length, seam);
+    }
+  }
+}
+
 std::vector<Solid> Draft::shape(double diameter) {
   const double d = diameter;
   switch (random.below(6)) {

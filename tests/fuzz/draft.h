@@ -41,6 +41,9 @@ class Draft {
   // A solid or a union that fits into a ball of this diameter about the origin.
   std::vector<Solid> shape(double diameter);
   std::vector<Solid> union_shape(double diameter);
+  // Round parts that meet flush along z, in a circle at `seam`; unions of such parts.
+  std::vector<Solid> flush_rod(double radius, double length, double& seam);
+  std::vector<Solid> flush_shape(double diameter);
   Solid rock(double diameter, int points);
   // A capsule, cone, ellipsoid or cylinder.
   Solid round_shape(double diameter);

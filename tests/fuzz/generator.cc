@@ -50,6 +50,7 @@ constexpr Kind table[] = {
      "bonds and chains with servos, forces by procedures and drag; callbacks push against "
      "what gyroscopes, contacts, holds and joints feel",
      draw_driven},
+    {"flush", "unions of round parts that meet flush fall on a fixed one in a pit", draw_flush},
 };
 
 // Which the seeds take in turn; the others are asked for by name, so that what is known of a seed

@@ -61,6 +61,28 @@ void draw_rolls(Draft& draft) {
   if (draft.chance(0.8)) draft.scene.spinning = draft.size * draft.log_uniform(1e-4, 1);
 }
 
+// In the pit lies one that is fixed; a ball comes down on it, a hair beside the circle where its
+// parts meet.
+void draw_flush(Draft& draft) {
+  const double half = draft.size * draft.random.real(0.8, 1.5), thin = 0.15 * draft.size;
+  const int count = draft.whole(1, 5);
+  draft.add_pit(half, 20 * draft.size);
+  double seam;
+  DescribedBody rail;
+  rail.solids = draft.flush_rod(thin, draft.size, seam);
+  rail.pose = Pose{{0, 0, 0.6 * draft.size}, rotation_by({0, pi / 2, 0})};
+  rail.fixed = true;
+  draft.add(rail, "rail");
+  const double radius = thin * draft.log_uniform(0.3, 2), drop = thin * draft.log_uniform(1e-3, 3);
+  const double beside = thin * draft.log_uniform(1e-5, 1e-2) * (draft.chance(0.5) ? 1 : -1);
+  draft.add_moving({ball(radius)}, rail.pose.p + Vec3(seam + beside, 0, thin + radius + drop));
+  draft.pour(count, half, 2 * draft.size, 1.02 * draft.size, [&] {
+    const double size = draft.size * draft.log_uniform(0.3, 1);
+    return draft.chance(0.3) ? draft.shape(size) : draft.flush_shape(size);
+  });
+  draft.last(10);
+}
+
 void draw_thin(Draft& draft) {
   const double half = draft.size * draft.random.real(0.8, 1.6);
   const int count = draft.whole(2, 6);

@@ -10,6 +10,7 @@ class Draft;
 void draw_heap(Draft& draft);
 void draw_round(Draft& draft);
 void draw_rolls(Draft& draft);
+void draw_flush(Draft& draft);
 void draw_thin(Draft& draft);
 void draw_spin(Draft& draft);
 void draw_piston(Draft& draft);
