@@ -11,7 +11,6 @@ const KnownFault table[] = {
     // beyond what make check-long runs
     {"drum", 17430, Fault::energy, 0.0026, "a cross of bars tumbles over a box's edge"},
     {"plates", 20145, Fault::deep, 0.041, "a cone in the corner of a trough and a wall"},
-    {"chains", 106, Fault::energy, 0.001, "at accuracy 1e-4 (at 1e-6 it is 2e-5)"},
     {"bonds", 79, Fault::slow, 0.27, "springs pull hulls into each other: 4100 blows"},
     {"bonds", 124, Fault::slow, 0.19, "a union of 10 g on a stiff spring turns at 1800 rad/s"},
     {"bonds", 148, Fault::slow, 0.18, "bodies on stiff springs without damping"},
