@@ -94,20 +94,24 @@ double time_to_reach(const MovingBody& side, const Frame& frame, const ConvexPar
   const double speed =
       (plane.u - side.point.v).norm() + side.point.w.norm() * radius + change * plane.until;
   const double distance = (plane.c - side.point.x).norm() + radius;
-  const double pull = n.dot(relative) - n.cwiseAbs().dot(side.spread) - side.bend * radius -
-                      plane.turn * (2 * speed + plane.turn * distance + plane.until * change);
+  double pull = n.dot(relative) - n.cwiseAbs().dot(side.spread) - side.bend * radius -
+                plane.turn * (2 * speed + plane.turn * distance + plane.until * change);
 
   // gap = n.(c - p), and its rate n.(u - v - w x (p - x)) + n'.(c - p), linear in p = R p_P + p_0
   const Vec3 m = n.cross(side.point.w);
   const Vec3 slope = -m - rate;
   const double gap0 = n.dot(plane.c - frame.p) + plane.allowance;
-  const double speed0 =
+  double speed0 =
       n.dot(plane.u - side.point.v) + m.dot(side.point.x) + rate.dot(plane.c) + slope.dot(frame.p);
   const Vec3 n_P = frame.R.transpose() * n, slope_P = frame.R.transpose() * slope;
   double least = plane.until;
   if (part.kind != PartKind::polyhedron) {
     const bool ball = part.kind == PartKind::sphere;
-    const double gap = gap0 - (ball ? part.radius : round_top(part, n_P) + part.margin);
+    const double about = ball ? part.radius : part.margin;
+    const double gap = gap0 - about - (ball ? 0 : round_top(part, n_P));
+    // what is about the core lies |n + t rate| <= 1 + t n.rate + t^2 rate^2/2 as far along
+    speed0 -= about * n.dot(rate);
+    pull -= about * plane.turn * plane.turn;
     if (!(gap > 0)) return 0;
     return std::min(least, ball ? first_zero(gap, speed0, pull)
                                 : round_reach(part, gap, speed0, pull, n_P, -slope_P));

@@ -15,6 +15,7 @@
 
 #include "support/scene.h"
 #include "support/schedule.h"
+#include "support/stability-scenes.h"
 
 namespace tw::test {
 namespace {
@@ -312,6 +313,30 @@ TEST(Tunnelling, bullet_does_not_pass_a_moving_plate) {
     EXPECT_NEAR(times[0], impact_time, 1e-12);
     EXPECT_NEAR(world.state(bullet).velocity.z(), 2 * plate_speed + speed, 1e-9);
   }
+}
+
+// Two capsules that are nearly parallel and close like scissors: a plane between them turns fast,
+// and what is about their axes lies the farther along its normal the longer that grows.
+TEST(Tunnelling, capsules_that_close_like_scissors_meet_where_they_touch) {
+  for (const double tilt : {0.015, -0.005, -0.01, -0.015, -0.03})
+    for (const double speed : {1.0, 4.24, 20.0}) {
+      World world;
+      world.set_gravity(Vec3::Zero());
+      set_contact_for_all(world, 0, 0.3);
+      const ShapePtr capsule =
+          place_shape(make_capsule(0.06, 0.1),
+                      Pose{Vec3::Zero(), Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitX()))});
+      BodyDef turning = body_of(capsule, Vec3::Zero(), Vec3::Zero(), {0.5, 0, 0.1});
+      turning.orientation = Quat(Eigen::AngleAxisd(tilt, Vec3(1, 0, 0.0016 / tilt).normalized()));
+      world.add_body(turning);
+      world.add_body(body_of(capsule, {0, 0, 0.14}, {0, 0, -speed}));
+      StabilityOutcome outcome;
+      for (int i = 1; i <= 200; ++i) {
+        world.advance(0.02 / speed * i / 100);
+        measure_depths(world, outcome);
+      }
+      EXPECT_LT(outcome.deepest, 1.2e-4) << tilt << ", " << speed;
+    }
 }
 
 }  // namespace
