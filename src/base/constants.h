@@ -421,9 +421,9 @@ namespace tw::seam {
 
 // Normals that agree so far are the same, rad; as a cosine.
 inline constexpr double same_angle = 1e-4, same_normal = 1 - 5e-9;
-// A point over a neighbour by h may have a normal that is off by this times sqrt(h/size): the radius
-// of what is round is half the size or more.
-inline constexpr double flush_turn = 3;
+// A point over a round neighbour by h may have a normal that is off by this times sqrt(h/r), r its
+// sharpest radius, at most half the size: flush with it, it is over it by r turn^2/2.
+inline constexpr double flush_turn = 2.2;
 // Points on a face of the other body have its normal, up to 2 degrees from that of the nearest
 // features and a little more, rad.
 inline constexpr double face_angle = 0.04;

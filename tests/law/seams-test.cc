@@ -108,45 +108,71 @@ TEST(Seams, slats_of_a_belt_do_not_catch) {
   }
 }
 
-// How deep a ball of 1 cm gets in a fixed body, m, that it meets at (x, 0, top) at 3 m/s.
-double depth_of_a_ball(const ShapePtr& shape, double x, double top) {
+// How deep what falls at 3 m/s gets in fixed bodies, m.
+double depth_of(const ShapePtr& falling, const Vec3& from, const std::vector<ShapePtr>& fixed) {
   World world;
-  set_contact_for_all(world, 0.3, 0.3);
-  BodyDef fixed;
-  fixed.shape = shape;
-  fixed.fixed = true;
-  world.add_body(fixed);
-  world.add_body(body_of(make_sphere(0.01), {x, 0, top + 0.013}, {0, 0, -3}));
+  set_contact_for_all(world, 0, 0.3);
+  for (const ShapePtr& shape : fixed) {
+    BodyDef def;
+    def.shape = shape;
+    def.fixed = true;
+    world.add_body(def);
+  }
+  world.add_body(body_of(falling, from, {0, 0, -3}));
   StabilityOutcome outcome;
-  for (int i = 1; i <= 60; ++i) {
+  for (int i = 1; i <= 150; ++i) {
     world.advance(0.001 * i);
     measure_depths(world, outcome);
   }
   return outcome.deepest;
 }
 
+// Along x, from `along` on its axis, turned about z.
+ShapePtr lying(const ShapePtr& shape, double about_z, double along) {
+  Pose pose;
+  pose.q = Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ())) *
+           Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitY()));
+  pose.p = pose.q * Vec3(0, 0, along);
+  return place_shape(shape, pose);
+}
+
 // Beside the circle in which round parts meet flush, each is all but within the other.
 TEST(Seams, of_round_parts_that_meet_flush_let_nothing_through) {
   constexpr double r = 0.02;
-  const auto turned = [](const ShapePtr& shape, double about_z, double along) {
-    Pose pose;
-    pose.q = Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ())) *
-             Quat(Eigen::AngleAxisd(0.5 * pi, Vec3::UnitY()));
-    pose.p = pose.q * Vec3(0, 0, along);
-    return place_shape(shape, pose);
-  };
-  const ShapePtr rod = turned(make_cylinder(r, 0.2), 0, 0),
-                 half = turned(make_cylinder(r, 0.1), 0, 0.05);
+  const ShapePtr rod = lying(make_cylinder(r, 0.2), 0, 0),
+                 half = lying(make_cylinder(r, 0.1), 0, 0.05), ball = make_sphere(0.01);
   const std::pair<const char*, ShapePtr> cases[] = {
       {"a bead on a rod", make_union({rod, make_sphere(r)})},
       {"a rounded end", make_union({half, make_sphere(r)})},
       {"an egg on a rod", make_union({rod, make_ellipsoid({0.03, r, r})})},
-      {"a knee", make_union({turned(make_capsule(r, 0.1), 0, 0.05),
-                             turned(make_capsule(r, 0.1), 2.6, 0.05)})}};
+      {"a dish at an end", make_union({half, make_ellipsoid({0.2 * r, r, r})})},
+      {"a knee",
+       make_union({lying(make_capsule(r, 0.1), 0, 0.05), lying(make_capsule(r, 0.1), 2.6, 0.05)})}};
   for (const auto& [name, shape] : cases)
     for (const double off : {0., 1e-6, 5e-6, 1e-5, 2e-5, 5e-5, 7e-5, 1e-4, 2e-4, 5e-4, 1e-3})
       for (const double x : {off, -off})
-        EXPECT_LT(depth_of_a_ball(shape, x, r), 1e-3 * r) << name << ", " << x;
+        EXPECT_LT(depth_of(ball, {x, 0, r + 0.013}, {shape}), 1e-3 * r) << name << ", " << x;
+}
+
+// Under the ends of two rods, where a tip is deeper in either than it is beside its end.
+TEST(Seams, of_rods_end_to_end_hold_corners_and_edges) {
+  constexpr double r = 0.1;
+  const ShapePtr one = lying(make_cylinder(r, 0.2), 0, -0.1),
+                 other = lying(make_cylinder(r, 0.2), 0, 0.1);
+  const Quat askew(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  Pose on_corner, on_edge;
+  on_corner.q =
+      askew * Quat(Eigen::AngleAxisd(std::acos(1 / std::sqrt(3)), Vec3(-1, 1, 0).normalized()));
+  on_edge.q = Quat(Eigen::AngleAxisd(0.25 * pi, Vec3::UnitY()));
+  for (const auto& [pose, low] :
+       {std::pair{on_corner, 0.01 * std::sqrt(3)}, std::pair{on_edge, 0.01 * std::sqrt(2)}}) {
+    const ShapePtr cube = place_shape(make_box(Vec3::Constant(0.02)), pose);
+    for (const double x : {0., 1e-7, -1e-6, 1e-6, 1e-5}) {
+      const Vec3 from(x, 0, r + low + 0.003);
+      EXPECT_LT(depth_of(cube, from, {make_union({one, other})}), 5e-5) << x;
+      EXPECT_LT(depth_of(cube, from, {one, other}), 5e-5) << x;
+    }
+  }
 }
 
 // But a step is one.

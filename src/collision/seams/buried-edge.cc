@@ -4,6 +4,7 @@
 // Q to p + seam::probe n.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "base/constants.h"
@@ -57,6 +58,17 @@ bool surely_apart(const SeamNeighbour& q, const Vec3& point, double distance) {
   return q.part->core->face_separation(local, face) > distance;
 }
 
+// Of the part's surface where it is round, m, or `most`: of an ellipsoid's ends and of what is
+// about an axis.
+double sharpest_radius(const ConvexPart& part, double most) {
+  if (part.kind == PartKind::sphere) return std::min(most, part.radius);
+  if (part.kind == PartKind::ellipsoid) {
+    const double least = part.semi_axes.minCoeff();
+    return std::min(most, least * least / part.semi_axes.maxCoeff());
+  }
+  return part.margin > 0 ? std::min(most, part.margin) : most;
+}
+
 // Whether a neighbour that holds the point has no such normal there.  Where round parts meet flush,
 // as a cylinder and a ball of its radius, the one is over the other by r turn^2/2 before their
 // normals differ by `turn`: it is its own surface there, however near the other is.
@@ -71,7 +83,9 @@ bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbo
     if (here.distance > seam::same_point * size) continue;
     if (here.distance < -seam::same_point * size) return true;
     const Nearest foot = nearest_of(q, point + seam::probe * size * normal);
-    const double turn = angle + seam::flush_turn * std::sqrt(std::max(here.distance, 0.0) / size);
+    const double over = std::max(here.distance, 0.0);
+    const double turn =
+        angle + seam::flush_turn * std::sqrt(over / sharpest_radius(*q.part, 0.5 * size));
     const double allowed = turn * seam::probe * size + std::abs(here.distance);
     if ((foot.point - here.point).norm() > allowed) return true;
   }

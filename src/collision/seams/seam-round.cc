@@ -1,6 +1,8 @@
 // A frustum or an ellipsoid at a seam.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "base/constants.h"
 #include "collision/seams/seam-pair.h"
@@ -89,24 +91,40 @@ void add_in_valleys(const SeamPair& seam, bool of_a, std::size_t from,
   }
 }
 
-// What is nearest with a round part scaled down, where the neighbours of a (or of b) bury the axis
-// of least depth.
+// A polyhedron scaled about its center.
+Polyhedron scaled_down(const Polyhedron& whole, double factor) {
+  std::vector<Vec3> vertices;
+  for (const Vec3& v : whole.vertices())
+    vertices.push_back(whole.center() + factor * (v - whole.center()));
+  std::vector<std::vector<int>> faces;
+  for (const Polyhedron::Face& face : whole.faces()) {
+    faces.emplace_back();
+    for (int i = 0; i < face.count; ++i) faces.back().push_back(whole.corner(face.first + i));
+  }
+  return {std::move(vertices), faces};
+}
+
+// What is nearest with the part of the other side scaled down, where the neighbours of a (or of b)
+// bury the axis of least depth.
 void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out) {
   const ConvexPart& first = seam.first();
   const ConvexPart& second = seam.second();
-  if ((of_a ? second : first).kind == PartKind::polyhedron) return;
   const std::size_t from = out.size();
   for (double factor : seam::shrinking) {
     SupportCore core_a(first, seam.a.frame * first.placement);
     SupportCore core_b(second, seam.b.frame * second.placement);
     SupportCore& scaled = of_a ? core_b : core_a;
+    const Vec3 center = scaled.center();
+    std::optional<Polyhedron> smaller;
+    if (scaled.polyhedron)
+      scaled.polyhedron = &smaller.emplace(scaled_down(*scaled.polyhedron, factor));
     scaled.scale(factor);
     RoundDistance near = round_distance(core_a, core_b);
     if (!(near.distance > 0)) continue;
     if (buries(seam, of_a, near)) return;
     // the same point of the part itself
     Vec3& point = of_a ? near.point_b : near.point_a;
-    point = scaled.place.p + (point - scaled.place.p) / factor;
+    point = center + (point - center) / factor;
     near.distance = near.normal.dot(near.point_b - near.point_a);
     if (near.distance > seam.reach) return;
     // a depth that is real: half of it farther out the parts still hold the point
