@@ -327,10 +327,12 @@ inline constexpr double longest_window = 8;
 inline constexpr double hardly_turns = 0.5;
 
 // ---- impacts ----
-// So many pending impacts are decided at once, of so many events that come soon, if they are so
-// many radii apart: of those nearer to each other every tenth is taken back.
-inline constexpr std::size_t impacts_at_once = 4, events_looked_ahead = 341;
+// So many impacts and checks are decided at once, of so many events that come soon.  Those that are
+// so many radii apart enter at once: of those nearer to each other every tenth is taken back.
+inline constexpr std::size_t decided_at_once = 6, events_looked_ahead = 341;
 inline constexpr double felt_in_radii = 3;
+// So many pairs are followed at once: the first of so many events that come soon.
+inline constexpr std::size_t pairs_at_once = 16, events_looked_over = 85;
 
 // ---- broad phase ----
 // A zone reaches beyond its box by this share of the longest edge.

@@ -17,12 +17,13 @@
 namespace tw {
 
 GroupEvents::GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
-                         const Delivery& delivery)
+                         const Delivery& delivery, DecidedAhead& ahead)
     : sim_(simulation),
       counters_(simulation.present.counters),
       claims_(claims),
       discontinuities_(discontinuities),
-      delivery_(delivery) {}
+      delivery_(delivery),
+      ahead_(ahead) {}
 
 // Whether the process's arc ends at the time of the key, and the check that stands there comes
 // first.
@@ -142,7 +143,63 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
   return regrouped(before, is_known, {cause, {}}, successors, counters);
 }
 
-// ---- many checks at once ----
+// ---- ahead of their events ----
+
+// Those whose arcs end at the key's time with the group's check.
+std::vector<ProcessId> GroupEvents::concerned(const Before& before,
+                                              const std::shared_ptr<Group>& group) const {
+  return before.key().time < group->next_check ? early_members(before, *group)
+                                               : family(before, group);
+}
+
+std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
+  const State& tail = *sim_.graph.tail(ProcessId{event.subject});
+  const std::shared_ptr<Group>& group = tail.group;
+  const double when = event.key.time;
+  if (!group || tail.error || group->at_rest || !group->end_tested || !group->arc->complete() ||
+      group->key.time >= when || tail.arc_end() != when)
+    return nullptr;
+  for (const BodyId mover : sim_.kinematic) {
+    const Body& body = sim_.body(mover);
+    if (!sim_.graph.tail(body.process)->error && sim_.process(body).claim.time < when)
+      return nullptr;
+  }
+  return group;
+}
+
+std::unique_ptr<Decision> GroupEvents::decide_ahead(const std::shared_ptr<Group>& group,
+                                                    double when) const {
+  auto decision = std::make_unique<Decision>();
+  Key& key = decision->key = group_check_key(*group, when);
+  std::vector<ProcessId>& all = decision->concerned;
+  do {
+    if (!all.empty()) key.id = number(all.front());
+    all = concerned(sim_.before(key, &decision->log), group);
+    if (all.empty()) return nullptr;
+  } while (key.id != number(all.front()));
+  const Known is_known = [&](ProcessId member) { return may_be_read(member, sim_.before(key)); };
+  // each family once
+  if (!group->contains(all.front()) || !std::all_of(all.begin(), all.end(), is_known))
+    return nullptr;
+  const Cause cause = when < group->next_check ? Cause::early_check : Cause::check;
+  Decided decided =
+      decide(sim_.before(key, &decision->log), all, cause, is_known, decision->counters);
+  return made(std::move(decision), std::move(decided));
+}
+
+std::unique_ptr<Decision> GroupEvents::made(std::unique_ptr<Decision> decision,
+                                            Decided decided) const {
+  Regrouped* regrouped = std::get_if<Regrouped>(&decided);
+  if (!regrouped) return nullptr;
+  decision->successors = std::move(regrouped->successors);
+  // (what is redone is compared as it enters, untested)
+  for (const Successor& successor : decision->successors)
+    if (const auto& group = successor.data.group;
+        group && group->key == decision->key && !sim_.options.undo_redo)
+      test_end(sim_.scene, sim_.surroundings, *group, decision->counters);
+  decision->log.close(sim_.graph);
+  return decision;
+}
 
 // The groups whose checks are due at the queue's first instant, in the order of their members.
 Groups GroupEvents::due_groups(double when) const {
@@ -151,75 +208,30 @@ Groups GroupEvents::due_groups(double when) const {
   Groups groups;
   for (const Event& event : events) {
     if (event.kind != EventKind::group_check || event.key.time != when) continue;
-    const State& tail = *sim_.graph.tail(ProcessId{event.subject});
-    const std::shared_ptr<Group>& group = tail.group;
-    if (group && !tail.error && group->end_tested && group->arc->complete() &&
-        group->key.time < when && group->next_check == when)
-      groups.push_back(group);
+    const std::shared_ptr<Group> group = checked_by(event);
+    if (group && group->next_check == when) groups.push_back(group);
   }
   sort_once(groups);
   return groups;
 }
 
-// Null: it is for its event to decide.
-std::unique_ptr<GroupEvents::Decision> GroupEvents::decide_ahead(
-    const std::shared_ptr<Group>& group, double when) const {
-  auto decision = std::make_unique<Decision>();
-  Key& key = decision->key = group_check_key(*group, when);
-  decision->concerned = family(sim_.before(key), group);
-  if (decision->concerned.empty()) return nullptr;
-  key.id = number(decision->concerned.front());
-  const Known is_known = [&](ProcessId member) { return may_be_read(member, sim_.before(key)); };
-  // each family once
-  if (!group->contains(decision->concerned.front()) ||
-      !std::all_of(decision->concerned.begin(), decision->concerned.end(), is_known))
-    return nullptr;
-  Decided decided = decide(sim_.before(key, &decision->log), decision->concerned, Cause::check,
-                           is_known, decision->counters);
-  Regrouped* regrouped = std::get_if<Regrouped>(&decided);
-  if (!regrouped) return nullptr;
-  decision->successors = std::move(regrouped->successors);
-  // (what is redone is compared as it enters, untested)
-  for (const Successor& successor : decision->successors)
-    if (const auto& made = successor.data.group;
-        made && made->key == key && !sim_.options.undo_redo)
-      test_end(sim_.scene, sim_.surroundings, *made, decision->counters);
-  decision->log.close(sim_.graph);
-  return decision;
-}
-
 // Checks of one instant hardly ever concern each other: they are decided side by side, each as if
 // it were the first; what has to do with another one after all is decided anew by its event.
-void GroupEvents::decide_ahead(double when) {
+void GroupEvents::decide_instant(double when) {
   if (decided_at_ == when || !Team::current()) return;
   const Groups groups = due_groups(when);
   // (a single one in between, an early end, forgets nothing)
   if (groups.size() < 2) return;
   decided_at_ = when;
-  decisions_.clear();
-  decisions_.resize(groups.size());
+  ahead_.forget_before(sim_.present.gvt);
+  std::vector<std::unique_ptr<Decision>> decisions(groups.size());
   each_in_parallel(groups.size(), 1,
-                   [&](std::size_t i) { decisions_[i] = decide_ahead(groups[i], when); });
-  std::erase(decisions_, nullptr);
-  std::sort(decisions_.begin(), decisions_.end(),
-            [](const auto& x, const auto& y) { return x->key < y->key; });
+                   [&](std::size_t i) { decisions[i] = decide_ahead(groups[i], when); });
+  ahead_.add(std::move(decisions));
 }
 
 bool GroupEvents::amid_decisions() const {
-  return !decisions_.empty() && !sim_.queue.empty() && sim_.queue.top().key.time == decided_at_;
-}
-
-// What was decided ahead for this check; null: nothing, or it no longer holds.
-std::unique_ptr<GroupEvents::Decision> GroupEvents::decided(
-    const Key& key, const std::vector<ProcessId>& concerned) {
-  const auto at = std::lower_bound(
-      decisions_.begin(), decisions_.end(), key,
-      [](const auto& decision, const Key& sought) { return decision && decision->key < sought; });
-  if (at == decisions_.end() || !*at || (*at)->key != key) return nullptr;
-  std::unique_ptr<Decision> decision = std::move(*at);
-  decisions_.erase(at);
-  const bool holds = decision->concerned == concerned && decision->log.holds(sim_.graph);
-  return holds ? std::move(decision) : nullptr;
+  return !sim_.queue.empty() && ahead_.has_at(sim_.queue.top().key.time);
 }
 
 bool GroupEvents::may_be_read(ProcessId id, const Before& before) const {
@@ -259,30 +271,26 @@ Progress GroupEvents::check(ProcessId id) {
       claims_.claim_window(body);
   }
   if (claimed) return Progress::try_again;
-  const bool early = when < group->next_check;
-  const auto all_concerned = [&] {
-    return early ? early_members(sim_.before(key), *group) : family(sim_.before(key), group);
-  };
-  std::vector<ProcessId> concerned = all_concerned();
+  std::vector<ProcessId> all = concerned(sim_.before(key), group);
   bool all_known = true;
-  for (const ProcessId member : concerned) all_known = await(member, key) && all_known;
+  for (const ProcessId member : all) all_known = await(member, key) && all_known;
   if (!all_known) return Progress::try_again;
 
   // the least of them gives the key; some may have left by lesser keys of this instant: the more,
   // the larger the id, so it only rises, and this ends
-  while (key.id != number(concerned.front())) {
-    key.id = number(concerned.front());
-    concerned = all_concerned();
+  while (key.id != number(all.front())) {
+    key.id = number(all.front());
+    all = concerned(sim_.before(key), group);
   }
-  decide_ahead(when);
-  if (const auto decision = decided(key, concerned)) {
+  decide_instant(when);
+  if (const auto decision = ahead_.take(key, sim_.graph); decision && decision->concerned == all) {
     counters_.add(decision->counters);
     discontinuities_.enter(key, decision->successors);
     return Progress::done;
   }
   const Known is_known = [&](ProcessId member) { return known(member, key); };
-  Decided decision = decide(sim_.before(key), concerned, early ? Cause::early_check : Cause::check,
-                            is_known, counters_);
+  const Cause cause = when < group->next_check ? Cause::early_check : Cause::check;
+  Decided decision = decide(sim_.before(key), all, cause, is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decision)) {
     await(waits->region, key);
     return Progress::try_again;

@@ -13,7 +13,9 @@
 
 #include "groups/regroup.h"
 #include "kernel/counters.h"
+#include "kernel/decided-ahead.h"
 #include "kernel/progress.h"
+#include "timeline/event-queue.h"
 
 namespace tw {
 
@@ -26,7 +28,7 @@ struct Simulation;
 class GroupEvents {
  public:
   GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
-              const Delivery& delivery);
+              const Delivery& delivery, DecidedAhead& ahead);
 
   // Claims windows of a process until its arcs are known to `key`.  False: something else comes
   // first, perhaps; whoever asked has done nothing, and is asked again when its event is due once
@@ -57,29 +59,28 @@ class GroupEvents {
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.
   Progress check(ProcessId id);
+  // The group that the event is to check, if that can be decided ahead of it; else null.
+  std::shared_ptr<Group> checked_by(const Event& event) const;
+  // What its check at that time (s) comes to, if it can be said now; else null.  Several threads
+  // may ask at once.
+  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
+  // The decision with what was decided, and the arcs of its groups up to their ends; null if that
+  // has to wait.
+  std::unique_ptr<Decision> made(std::unique_ptr<Decision> decision, Decided decided) const;
   // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
   bool amid_decisions() const;
   // Between runs anything may have changed: what was decided ahead no longer holds.
   void begin_run() {
     decided_at_ = -never;
-    decisions_.clear();
+    ahead_.forget();
   }
 
  private:
-  // What a check comes to, decided ahead of its event together with the others of its instant.
-  struct Decision {
-    Key key;
-    std::vector<ProcessId> concerned;
-    std::vector<Successor> successors;
-    GroupCounters counters;
-    ReadLog log;
-  };
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
                  const Known& is_known, GroupCounters& counters) const;
-  void decide_ahead(double when);
+  std::vector<ProcessId> concerned(const Before& before, const std::shared_ptr<Group>& group) const;
+  void decide_instant(double when);
   Groups due_groups(double when) const;
-  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
-  std::unique_ptr<Decision> decided(const Key& key, const std::vector<ProcessId>& concerned);
   Progress stop_driven(ProcessId id);
   Region region_struck(std::span<const BodyId> bodies, const Before& before) const;
   bool own_check_before(ProcessId id, const Key& key) const;
@@ -90,8 +91,8 @@ class GroupEvents {
   Claims& claims_;
   Discontinuities& discontinuities_;
   const Delivery& delivery_;
-  double decided_at_ = -never;                        // s
-  std::vector<std::unique_ptr<Decision>> decisions_;  // for that instant, by key
+  DecidedAhead& ahead_;
+  double decided_at_ = -never;  // s: the instant whose checks were decided together
 };
 
 }  // namespace tw

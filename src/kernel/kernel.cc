@@ -65,9 +65,14 @@ Progress Kernel::process(const Event& event) {
   switch (event.kind) {
     case EventKind::advance: claims.claim_due(event); break;
     case EventKind::callback: return callback_events.process(event.subject);
-    case EventKind::group_check: return groups.check(ProcessId{event.subject});
+    case EventKind::group_check:
+      if (look_ahead.process(event)) break;
+      return groups.check(ProcessId{event.subject});
     case EventKind::pair:
-      if (pairs[event.subject].pending) return impacts.process(event.subject);
+      if (pairs[event.subject].pending) {
+        if (look_ahead.process(event)) break;
+        return impacts.process(event.subject);
+      }
       checks.pursue(event.subject);
       break;
   }

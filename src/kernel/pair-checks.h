@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "kernel/counters.h"
@@ -56,6 +57,7 @@ class PairChecks {
  private:
   const State& tail_of(BodyId body) const;
   std::uint32_t make(BodyId a, BodyId b, const Key& from);
+  void pursue_soon(std::uint32_t first);
   void schedule(std::uint32_t index, const Key& key);
   void look_up(Meeting& meeting) const;
   void apply(std::uint32_t index, const PairOutcome& outcome);
@@ -77,6 +79,14 @@ class PairChecks {
   Counters& counters_;
   ActivePairs& pairs_;
   Pieces pieces_;
+  // scratch
+  struct Pursuit {
+    std::uint32_t pair;
+    PairOutcome outcome;
+    PairCounts counts;
+  };
+  std::vector<Pursuit> pursuits_;
+  std::vector<std::pair<Key, std::uint32_t>> soon_;
 };
 
 }  // namespace tw

@@ -1,0 +1,41 @@
+// What discontinuities come to, decided ahead of their events: each is used if none of the queues
+// that it was made of has changed by then.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "groups/group-counters.h"
+#include "groups/read-log.h"
+#include "timeline/successor.h"
+
+namespace tw {
+
+// A function of what stands before the key.
+struct Decision {
+  Key key;
+  std::vector<ProcessId> concerned;  // of a check: whose it is; ascending
+  std::vector<Successor> successors;
+  GroupCounters counters;
+  ReadLog log;
+};
+
+class DecidedAhead {
+ public:
+  // Adds those that are not null; one of the same key goes.
+  void add(std::vector<std::unique_ptr<Decision>> decisions);
+  bool has(const Key& key) const;
+  // Whether anything was decided for that instant.
+  bool has_at(double time) const;
+  // What was decided for the key; null: nothing, or it holds no more.
+  std::unique_ptr<Decision> take(const Key& key, const StateGraph& graph);
+  // Those before the time, s, are past.
+  void forget_before(double time);
+  void forget() { decisions_.clear(); }
+
+ private:
+  std::vector<std::unique_ptr<Decision>> decisions_;  // by key
+};
+
+}  // namespace tw
