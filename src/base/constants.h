@@ -371,7 +371,10 @@ inline constexpr std::size_t frame_batch = 512, most_waiting_states = 20000;
 namespace tw::patch {
 
 // Points a pair of parts has at most.
-inline constexpr std::size_t most_points = 8;
+inline constexpr std::size_t most_points = 16;
+// Of more those are taken that may come below the others by a turn of reach over extent and this
+// much more, rad; differences of this share of the extent say nothing.
+inline constexpr double least_slope = 1e-3, about_as_low = 1e-5;
 // Pairs of faces that are clipped for them: of a fine mesh many are nearly parallel.
 inline constexpr std::size_t most_face_pairs = 16;
 // Normals this near to that of a face are taken for it: cos 2 degrees of polyhedra, cos 0.2 degrees

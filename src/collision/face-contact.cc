@@ -6,6 +6,7 @@
 
 #include "base/constants.h"
 #include "base/never.h"
+#include "math/aabb.h"
 
 namespace tw {
 
@@ -259,27 +260,44 @@ void face_contact(const Polyhedron& reference, int face_number, const Polyhedron
       continue;
     add_point(out, found, near);
   }
-  thin_face_points(out, most);
+  thin_face_points(out, most, reach);
 }
 
-void thin_face_points(std::vector<FacePoint>& points, std::size_t most) {
+void thin_face_points(std::vector<FacePoint>& points, std::size_t most, double reach) {
   if (points.size() <= most) return;
-  const auto deeper = [](const FacePoint& p, const FacePoint& q) { return p.gap < q.gap; };
-  // squared distance to the nearest chosen point; -1: chosen
-  thread_local std::vector<double> away;
-  away.assign(points.size(), 1e300);
-  auto pick = static_cast<std::size_t>(std::min_element(points.begin(), points.end(), deeper) -
-                                       points.begin());
+  std::sort(points.begin(), points.end(),
+            [](const FacePoint& p, const FacePoint& q) { return p.key < q.key; });
+  Aabb extent;
+  double lowest = 1e300;
+  for (const FacePoint& p : points) {
+    extent.add(p.point);
+    lowest = std::min(lowest, p.gap);
+  }
+  const double across = extent.size().norm(), about = patch::about_as_low * across;
+  const double slope = reach / across + patch::least_slope;
+  // how far a point may come below those chosen; -1e300: it is one
+  thread_local std::vector<double> below, height;
+  below.assign(points.size(), 1e299);
+  height.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    height[i] = std::max(0.0, points[i].gap - lowest - about);
+  auto pick =
+      static_cast<std::size_t>(std::find(height.begin(), height.end(), 0.0) - height.begin());
   for (std::size_t n = 0; n < most; ++n) {
-    away[pick] = -1;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (away[i] >= 0)
-        away[i] = std::min(away[i], (points[i].point - points[pick].point).squaredNorm());
-    pick = static_cast<std::size_t>(std::max_element(away.begin(), away.end()) - away.begin());
+    below[pick] = -1e300;
+    std::size_t next = pick;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (below[i] == -1e300) continue;
+      const double distance = (points[i].point - points[pick].point).norm();
+      below[i] = std::min(below[i], slope * distance + height[pick] - height[i]);
+      // of equals the first one, whatever rounding says
+      if (next == pick || below[i] > below[next] + 1e-9 * slope * across) next = i;
+    }
+    pick = next;
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (away[i] < 0) points[kept++] = points[i];
+    if (below[i] == -1e300) points[kept++] = points[i];
   points.resize(kept);
 }
 

@@ -46,17 +46,18 @@ void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side
 // Points closer than this to each other, relative to the size, are one.
 inline constexpr double coincident_ratio = 1e-6;
 
-// All points with gap <= reach, at most `most`: the deepest, then always the one farthest from
-// those chosen.  A vertex beside the face counts when it stands higher over the plane than it is
-// beside: lower ones pass by.  Faces beside the two that are as parallel to the other one as these
-// may be (patch::aligned) and come within reach lie on it as well: a body whose facets hardly
-// differ rocks from one to the next.  Overwrites `out`, and `higher` by those that are farther than
-// `reach`.
+// All points with gap <= reach, at most `most` (thin_face_points).  A vertex beside the face counts
+// when it stands higher over the plane than it is beside: lower ones pass by.  Faces beside the two
+// that are as parallel to the other one as these may be (patch::aligned) and come within reach lie
+// on it as well: a body whose facets hardly differ rocks from one to the next.  Overwrites `out`,
+// and `higher` by those that are farther than `reach`.
 void face_contact(const Polyhedron& reference, int face, const Polyhedron& incident,
                   const Frame& incident_in_reference, int incident_face, double reach,
                   std::size_t most, std::vector<FacePoint>& out, std::vector<FacePoint>& higher);
 
-// Thins points to at most `most` as above; keeps their order.
-void thin_face_points(std::vector<FacePoint>& points, std::size_t most);
+// Leaves at most `most` points, ordered by key if it leaves out any: the first that is about as low
+// as the lowest, then always the one that a motion of `reach` may bring farthest below those
+// chosen.  What is at rest keeps its points, whatever rounding says.
+void thin_face_points(std::vector<FacePoint>& points, std::size_t most, double reach);
 
 }  // namespace tw

@@ -190,7 +190,7 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
     add(c.center + tail + from * along, name(from, true));
     add(c.center + tail + to * along, name(to, false));
   }
-  thin_face_points(points, patch::most_points);
+  thin_face_points(points, patch::most_points, v.reach);
   ManifoldPoint p = v.point();
   p.normal = cap.normal;
   for (const FacePoint& found : points) {

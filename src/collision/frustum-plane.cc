@@ -111,7 +111,7 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
     const std::uint64_t key = on_rim ? word(after) : (word(before) + 1) << 20 | word(after);
     points.push_back({polygon[i].point, polygon[i].height, key});
   }
-  thin_face_points(points, patch::most_points);
+  thin_face_points(points, patch::most_points, reach);
   const std::size_t before = out.size();
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the frustum

@@ -222,7 +222,7 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
   const double allowed = patch::missed_ratio * std::abs(near.distance) +
                          patch::missed_floor * (cores.a.radius() + cores.b.radius());
   if (!(least <= near.distance + allowed)) {
-    thin_face_points(points, patch::most_points - 1);
+    thin_face_points(points, patch::most_points - 1, reach);
     add_corners(cores, near, pair, out);
   }
 
@@ -308,7 +308,7 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
     else
       higher.push_back({point, gap});
   }
-  thin_face_points(points, patch::most_points);
+  thin_face_points(points, patch::most_points, reach);
   for (const FacePoint& found : points) {
     p.core_point = found.point;
     p.gap = found.gap;

@@ -277,6 +277,56 @@ TEST(Rolling, spinning_friction_holds_a_torque_up_to_its_limit) {
   }
 }
 
+// A right prism along y on the corners of a regular polygon.
+ShapePtr make_prism(int sides, double radius, double length) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * pi * (i + 0.5) / sides;
+    for (const double y : {-0.5, 0.5})
+      corners.push_back({radius * std::sin(angle), y * length, -radius * std::cos(angle)});
+  }
+  return make_hull(corners);
+}
+
+// Of its many corners those hold it that are lowest at either end: with others, which changed from
+// check to check, it began to roll, and got faster (5.7 J within 20 s).
+TEST(Rolling, a_prism_of_many_sides_gets_no_faster) {
+  for (const int sides : {100, 200, 500})
+    for (const double speed : {0.0, 0.1}) {
+      const double radius = 0.12;
+      World world;
+      set_contact_for_all(world, 0, 0.5);
+      add_wall(world, Vec3::UnitZ(), 0);
+      BodyDef def = body_of(make_prism(sides, radius, 2 * radius),
+                            {0, 0, radius * std::cos(pi / sides)}, {speed, 0, 0});
+      def.angular_velocity = {0, speed / radius, 0};
+      const BodyId id = world.add_body(def);
+      const double start = world.total_energy(), weight = g * world.body(id).mass;
+      double most = start;
+      for (int i = 1; i <= 20; ++i) {
+        world.advance(0.25 * i);
+        most = std::max(most, world.total_energy());
+      }
+      EXPECT_LE(most, start + 1e-6 * weight * radius) << sides << " sides, " << speed << " m/s";
+    }
+}
+
+// Corners of a base, more than a contact has points: it stays where it is put.
+TEST(Rolling, what_stands_on_many_corners_rests_on_a_slope) {
+  for (const int sides : {12, 19, 64}) {
+    World world;
+    set_contact_for_all(world, 0, 0.6);
+    const double angle = 0.35;
+    const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+    add_wall(world, normal, 0);
+    BodyDef def = body_of(make_prism(sides, 0.2, 0.2), 0.1 * normal, Vec3::Zero());
+    def.orientation = rotation_by({0, angle, 0}) * rotation_by({0.5 * pi, 0, 0});
+    const BodyId id = world.add_body(def);
+    world.advance(5);
+    EXPECT_LT((world.state(id).position - def.position).norm(), 1e-9) << sides;
+  }
+}
+
 TEST(Rolling, ball_keeps_rolling) {
   World world;
   set_contact_for_all(world, 0, 0.5);
