@@ -293,8 +293,8 @@ inline constexpr double grazing = 1e-5;
 // More impacts at one instant are a heavy body that comes down on a light one, which impulses would
 // stop too slowly: they fuse.  Counted.
 inline constexpr std::uint32_t most_repeated = 2000;
-// More microsteps at one instant are an error that stops the two.
-inline constexpr std::uint32_t most_microsteps = 100000;
+// More microsteps at one instant are an error that stops the two, or the group.
+inline constexpr std::uint32_t most_microsteps = 1 << 14;
 
 // Loads at the start: inertia is so many times softer than the springs; Newton's steps at most, how
 // far each is cut, and what they leave, share of the weight; rounds.

@@ -61,6 +61,14 @@ double finest_check(const Scene& scene, const Body& body) {
                                             std::sqrt(check_size(body) / scene.gravity_scale()));
 }
 
+double least_arc(const Scene& scene, const std::vector<ProcessId>& members) {
+  double finest = never;
+  for (const ProcessId member : members)
+    if (const Body& body = scene.body_of(member); body.shape_P)
+      finest = std::min(finest, finest_check(scene, body));
+  return finest < never ? answer::least_arc * finest : 0;
+}
+
 double interval_within(const Scene& scene, double time) {
   const double rate = scene.options.group_check_rate;
   return on_lattice(rate > 0 ? 1 / rate : answer::check_unit, time);

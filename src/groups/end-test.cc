@@ -274,11 +274,8 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   if (early_ends.empty() && !(first_stop < group.next_check)) return;
   ++counters.early_ends;
 
-  double finest = never;
-  for (const ProcessId member : group.members)
-    finest = std::min(finest, finest_check(scene, scene.body_of(member)));
   const double least =
-      std::min(group.next_check, group.arc->start().time + answer::least_arc * finest);
+      std::min(group.next_check, group.arc->start().time + least_arc(scene, group.members));
   for (EarlyEnd& early : early_ends) early.time = std::max(early.time, least);
   if (group.members.size() < answer::least_divided) {
     group.next_check = std::min(group.next_check, first_stop);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "groups/check-times.h"
 
 namespace tw {
@@ -46,21 +47,36 @@ std::vector<ProcessId> early_members(const Before& before, const Group& group) {
   return all;
 }
 
-std::string failure_of(const Scene& scene, const Group& group) {
+namespace {
+
+std::string names_of(const Scene& scene, const Group& group) {
   std::string all;
   constexpr std::size_t most_names = 8;
   for (std::size_t i = 0; i < std::min(most_names, group.members.size()); ++i)
     all += (i ? ", " : "") + scene.body_of(group.members[i]).info.name;
   if (group.members.size() > most_names)
     all += " and " + std::to_string(group.members.size() - most_names) + " more";
+  return all;
+}
+
+}  // namespace
+
+std::string standstill_of(const Scene& scene, const Group& group, double when) {
+  return "time stands still at " + show(when) + " s: the contact group of " +
+         names_of(scene, group) + " changed " + std::to_string(guard::most_microsteps) +
+         " times at that instant, which is a fault of the program; another --group-check-rate or "
+         "--accuracy may get past it";
+}
+
+std::string failure_of(const Scene& scene, const Group& group) {
   std::string where;
   if (const int c = group.arc->failed_contact(); c >= 0) {
     const ContactTag& tag = group.tags[static_cast<std::size_t>(c)];
     where = ", at the contact of " + scene.body(tag.reference).info.name + " and " +
             scene.body(tag.other).info.name;
   }
-  return "the contact group of " + all + " cannot be followed past " + show(group.arc->reached()) +
-         " s: " + group.arc->failure() + where +
+  return "the contact group of " + names_of(scene, group) + " cannot be followed past " +
+         show(group.arc->reached()) + " s: " + group.arc->failure() + where +
          "; expected finite forces (look at #:stiffness, #:damping and the masses)";
 }
 

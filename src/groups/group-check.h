@@ -22,5 +22,7 @@ std::vector<ProcessId> early_members(const Before& before, const Group& group);
 
 // Whose motion could not be followed, when and where: for the error that stops them.
 std::string failure_of(const Scene& scene, const Group& group);
+// Whose time does not go on past `when`: for the error that ends it.
+std::string standstill_of(const Scene& scene, const Group& group, double when);
 
 }  // namespace tw

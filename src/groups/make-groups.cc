@@ -247,10 +247,7 @@ double patience_of(const Regrouping& work, const Group& group, double interval) 
       patience = std::min(patience, answer::patience_growth * lasted);
   }
   if (!(patience < interval)) return never;
-  double finest = never;
-  for (const ProcessId member : group.members)
-    finest = std::min(finest, finest_check(work.scene(), work.scene().body_of(member)));
-  return interval_within(work.scene(), std::max(patience, answer::least_arc * finest));
+  return interval_within(work.scene(), std::max(patience, least_arc(work.scene(), group.members)));
 }
 
 // The check that is due stays due where there is something to look at, unless this is it.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "base/parallel.h"
 #include "groups/check-times.h"
 #include "groups/end-test.h"
@@ -134,9 +135,12 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
     if (!theirs.arc->failure().empty()) failed = &theirs;
     successors.push_back(make_successor(before, member, true));
   }
-  if (failed) {
-    const UserError error(failure_of(sim_.scene, *failed),
-                          sim_.body_of(concerned.front()).info.place);
+  const bool stands = key.microstep > guard::most_microsteps;
+  if (failed || stands) {
+    const Group& group = failed ? *failed : *before.state(concerned.front()).group;
+    const UserError error(
+        failed ? failure_of(sim_.scene, group) : standstill_of(sim_.scene, group, key.time),
+        sim_.body_of(concerned.front()).info.place);
     for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
     return Regrouped{std::move(successors)};
   }

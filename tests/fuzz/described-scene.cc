@@ -147,8 +147,14 @@ namespace {
 BodyDef definition(const DescribedBody& body, bool counts) {
   BodyDef def;
   def.name = body.name;
-  def.shape = shape_of(body);
   if (counts) def.slots = test::make_counter();
+  if (body.bare()) {
+    def.mass = body.bare_mass;
+    def.inertia = body.bare_moment * Mat3::Identity();
+    def.center_of_mass = Vec3::Zero();
+    return def;
+  }
+  def.shape = shape_of(body);
   if (body.dynamic()) def.density = body.density;
   if (body.hanging) return def;
   def.fixed = body.fixed;

@@ -78,6 +78,7 @@ struct DescribedBody {
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
   double density = 1000;
+  double bare_mass = 0, bare_moment = 0;  // kg, kg m^2: of a link without a shape
   bool fixed = false;
   std::vector<Keyframe> keyframes;  // kinematic where there are any
   bool smooth = false;
@@ -92,6 +93,7 @@ struct DescribedBody {
   }
   bool kinematic() const { return !keyframes.empty() || swing; }
   bool dynamic() const { return !fixed && !kinematic(); }
+  bool bare() const { return solids.empty() && !hills; }
 };
 
 // A spring between two points, or a hold; of bodies by name.

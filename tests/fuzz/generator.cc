@@ -50,6 +50,7 @@ constexpr Kind table[] = {
      "bonds and chains with servos, forces by procedures and drag; callbacks push against "
      "what gyroscopes, contacts, holds and joints feel",
      draw_driven},
+    {"tools", "what hangs on links without a shape is dragged over flat bodies", draw_tools},
     {"flush", "unions of round parts that meet flush fall on a fixed one in a pit", draw_flush},
 };
 

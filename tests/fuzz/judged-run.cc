@@ -168,7 +168,8 @@ class JudgedRun {
   }
 
   Vec3 mass_center(std::size_t i) const {
-    return world_.body(static_cast<BodyId>(i)).shape->mass_properties().centroid;
+    const ShapePtr& shape = world_.body(static_cast<BodyId>(i)).shape;
+    return shape ? shape->mass_properties().centroid : Vec3(Vec3::Zero());
   }
 
   // The scale is what was given: energy at the start above the least without motion so far, the
@@ -181,7 +182,7 @@ class JudgedRun {
     for (BodyId id = 0; id < world_.body_count(); ++id) {
       if (!test::is_dynamic(world_, id)) continue;
       kinetic += world_.kinetic_energy(id);
-      weights += world_.body(id).mass * acceleration * widths_[id];
+      if (!parts_[id].empty()) weights += world_.body(id).mass * acceleration * widths_[id];
     }
     if (when == 0) given_ = total;
     lowest_still_ = std::min(lowest_still_, total - kinetic);

@@ -64,6 +64,27 @@ void draw_called(Draft& draft) {
   draft.last(8);
 }
 
+void draw_tools(Draft& draft) {
+  const double half = draft.size * draft.random.real(2, 4), size = draft.size;
+  draft.add_pit(half, 8 * size);
+  const int count = draft.whole(1, 3);
+  for (int i = 0; i < count; ++i) {
+    const double width = size * draft.random.real(0.4, 0.9),
+                 flat = size * draft.log_uniform(0.03, 0.5);
+    const Vec3 at((2.0 * i - count + 1) * 0.5 * size, size * draft.random.real(-0.7, 0.7),
+                  0.5 * flat);
+    switch (draft.random.below(3)) {
+      case 0: draft.add_moving({cylinder(0.5 * width, flat)}, at); break;
+      case 1: draft.add_moving({box({width, width * draft.random.real(0.3, 1), flat})}, at); break;
+      default:
+        draft.add_moving({box({width, 0.3 * width, flat}), box({0.3 * width, width, flat})}, at);
+    }
+  }
+  add_tool(draft, {-0.85 * half + 0.5 * size, 0, size * draft.random.real(0.5001, 0.7)},
+           size * draft.random.real(0.6, 1), draft.speed * draft.log_uniform(0.1, 1));
+  draft.last(8);
+}
+
 void draw_sensed(Draft& draft) {
   draw_bonds(draft);
   const double g = draft.speed * draft.speed / draft.size;

@@ -35,6 +35,7 @@ void draw_hills(Draft& draft);
 void draw_chains(Draft& draft);
 void draw_bonds(Draft& draft);
 void draw_called(Draft& draft);
+void draw_tools(Draft& draft);
 void draw_sensed(Draft& draft);
 
 // kinds-asked.cc

@@ -60,7 +60,11 @@ std::string link_text(const DescribedScene& scene, const DescribedBody& link) {
   const Hanging& hanging = *link.hanging;
   std::string form = "\n  (link '" + short_name(link);
   if (!hanging.free) form += " #:joint " + joint_text(hanging.joint);
-  form += "\n    #:density " + show(link.density) + " #:shape " + shape_text(link);
+  if (link.bare())
+    form += "\n    #:mass " + show(link.bare_mass) + " #:inertia " +
+            text(link.bare_moment * Vec3::Ones()) + " #:center-of-mass #(0 0 0)";
+  else
+    form += "\n    #:density " + show(link.density) + " #:shape " + shape_text(link);
   if (!scene.callbacks.empty()) form += slots_text;
   for (const DescribedBody& other : scene.bodies)
     if (other.hanging && other.hanging->parent == link.name) form += link_text(scene, other);

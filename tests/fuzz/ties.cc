@@ -210,6 +210,39 @@ std::string add_cart(Draft& draft, const Vec3& middle, double length) {
   return chassis;
 }
 
+void add_tool(Draft& draft, const Vec3& start, double size, double speed) {
+  Tying tool(draft, "tool", {start, Quat::Identity()});
+  const double mass = 1000 * size * size * size * draft.log_uniform(0.1, 10);
+  const auto slide = [](const Vec3& axis) {
+    JointSpec spec;
+    spec.kind = JointKind::prismatic;
+    spec.axis = axis;
+    return spec;
+  };
+  const auto make_bare = [&] {
+    DescribedBody& link = draft.scene.bodies.back();
+    link.bare_mass = mass;
+    link.bare_moment = mass * size * size;
+    return &*link.hanging;
+  };
+  const std::string along = tool.add_first({}, slide(Vec3::UnitX()));
+  make_bare()->velocity = {speed};
+  const std::string up = tool.add({}, along, slide(Vec3::UnitZ()));
+  make_bare()->velocity = {0};
+  JointSpec spec;
+  spec.kind = draft.chance(0.4)   ? JointKind::revolute
+              : draft.chance(0.5) ? JointKind::weld
+                                  : JointKind::spherical;
+  spec.axis = Vec3::UnitY();
+  const double r = 0.5 * size, wide = size * draft.random.real(0.1, 1);
+  const Solid shapes[] = {placed(cylinder(r, wide), Vec3::Zero(), z_to_y), ball(r),
+                          box({size, wide, size}), cone(r, size),
+                          placed(capsule(0.5 * wide, size - wide), Vec3::Zero(), z_to_y)};
+  tool.add({shapes[draft.random.below(5)]}, up, spec);
+  if (spec.kind == JointKind::revolute)
+    draft.scene.bodies.back().hanging->velocity = {draft.chance(0.5) ? speed / r : 0};
+}
+
 void add_tree(Draft& draft, const Vec3& middle, double reach) {
   switch (draft.random.below(4)) {
     case 0: add_star(draft, middle, 0.5 * reach); return;

@@ -16,6 +16,9 @@ double typical_mass(const Draft& draft);
 
 // Return its first link.
 std::string add_cart(Draft& draft, const Vec3& middle, double length);
+// What is dragged along x over the ground, from `start` on, at about this speed (m/s): it hangs on
+// two links without a shape that slide along x and z.
+void add_tool(Draft& draft, const Vec3& start, double size, double speed);
 // A star, a cart or a chain.
 void add_tree(Draft& draft, const Vec3& middle, double reach);
 void add_spring(Draft& draft, const std::string& a, const std::string& b);
