@@ -68,22 +68,36 @@ void LookAhead::add(Coming coming) {
   const Aabb room = room_of(coming);
   for (const Aabb& other : rooms_) coming.apart = coming.apart && !other.overlaps(room);
   rooms_.push_back(room);
+  const auto note = [&](const Group* group) {
+    if (group) groups_chosen_.push_back(group);
+  };
+  if (coming.group)
+    note(coming.group.get());
+  else
+    for (const BodyId id : {pairs_[coming.pair].a, pairs_[coming.pair].b})
+      note(sim_.graph.tail(sim_.process_of(id))->group.get());
   next_.push_back(std::move(coming));
 }
 
-// Whether it is for another event of its pair or group.
-bool LookAhead::chosen(const Event& event) const {
-  return std::any_of(next_.begin(), next_.end(), [&](const Coming& coming) {
-    return event.kind == EventKind::pair
-               ? !coming.group && coming.pair == event.subject
-               : coming.group && coming.group->contains(ProcessId{event.subject});
-  });
+// Whether one of the two, or the member, is in a group that has to do with one of the chosen: what
+// that comes to is not known before it has entered.
+bool LookAhead::has_to_wait(const Event& event) const {
+  const auto group_of = [&](ProcessId process) { return sim_.graph.tail(process)->group.get(); };
+  const auto is_concerned = [&](ProcessId process) {
+    const Group* group = group_of(process);
+    return group &&
+           std::find(groups_chosen_.begin(), groups_chosen_.end(), group) != groups_chosen_.end();
+  };
+  if (event.kind != EventKind::pair) return is_concerned(ProcessId{event.subject});
+  const Pair& pair = pairs_[event.subject];
+  return is_concerned(sim_.process_of(pair.a)) || is_concerned(sim_.process_of(pair.b));
 }
 
 // The first one, and the next few that come soon.  False: there is nothing to be done at once.
 bool LookAhead::choose(const Event& first) {
   next_.clear();
   rooms_.clear();
+  groups_chosen_.clear();
   Coming coming;
   if (!find(first, coming)) return false;
   add(std::move(coming));
@@ -97,7 +111,7 @@ bool LookAhead::choose(const Event& first) {
             [](const Event& x, const Event& y) { return x.key < y.key; });
   for (std::size_t i = 0; i < soon_.size() && next_.size() < cost::decided_at_once; ++i) {
     const Event& event = soon_[i];
-    if (chosen(event)) continue;
+    if (has_to_wait(event)) continue;
     coming = {};
     if (!find(event, coming)) continue;
     // checks of one instant are decided together, and little holds beyond them

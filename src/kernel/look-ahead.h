@@ -47,7 +47,7 @@ class LookAhead {
   bool shared() const;
   bool find(const Event& event, Coming& coming) const;
   bool choose(const Event& first);
-  bool chosen(const Event& event) const;
+  bool has_to_wait(const Event& event) const;
   void add(Coming coming);
   Aabb room_of(const Coming& coming) const;
   void decide(Coming& coming) const;
@@ -66,6 +66,7 @@ class LookAhead {
   std::vector<Event> soon_;
   std::vector<Coming> next_;
   std::vector<Aabb> rooms_;
+  std::vector<const Group*> groups_chosen_;
   std::vector<const Body*> movers_;
 };
 

@@ -375,38 +375,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
 }
 
 void PairChecks::pursue(std::uint32_t index) {
-  if (Team::current() && !sim_.policy->synchronous()) return pursue_soon(index);
   apply(index, follow(pairs_[index], counters_, false, Travels()));
-}
-
-// Together with others that come before the next check of a group, each as far as its own event.
-void PairChecks::pursue_soon(std::uint32_t first) {
-  constexpr std::size_t grain = 8;
-  soon_.clear();
-  double changes = never;
-  sim_.queue.visit_soon(cost::events_looked_over, [&](const Event& event) {
-    if (event.kind == EventKind::group_check) changes = std::min(changes, event.key.time);
-    if (event.kind == EventKind::pair && event.subject != first && !pairs_[event.subject].pending)
-      soon_.push_back({event.key, event.subject});
-  });
-  std::erase_if(soon_, [&](const auto& pair) { return pair.first.time >= changes; });
-  const std::size_t count = std::min(soon_.size(), cost::pairs_at_once - 1);
-  std::nth_element(soon_.begin(), soon_.begin() + static_cast<std::ptrdiff_t>(count), soon_.end());
-  pursuits_.assign(1, {first, {}, {}});
-  for (std::size_t i = 0; i < count; ++i) pursuits_.push_back({soon_[i].second, {}, {}});
-  const Travels travels;
-  each_in_parallel(pursuits_.size(), grain, [&](std::size_t i) {
-    Pursuit& p = pursuits_[i];
-    p.outcome = follow(pairs_[p.pair], p.counts, true, travels);
-  });
-  for (Pursuit& p : pursuits_) {
-    if (p.outcome.kind == PairOutcome::Kind::alone) {
-      if (p.pair != first) continue;
-      p.outcome = follow(pairs_[p.pair], p.counts, false, travels);
-    }
-    counters_.add(p.counts);
-    apply(p.pair, p.outcome);
-  }
 }
 
 // ---- those that meet ----

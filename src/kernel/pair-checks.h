@@ -6,7 +6,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "kernel/counters.h"
@@ -57,7 +56,6 @@ class PairChecks {
  private:
   const State& tail_of(BodyId body) const;
   std::uint32_t make(BodyId a, BodyId b, const Key& from);
-  void pursue_soon(std::uint32_t first);
   void schedule(std::uint32_t index, const Key& key);
   void look_up(Meeting& meeting) const;
   void apply(std::uint32_t index, const PairOutcome& outcome);
@@ -79,14 +77,6 @@ class PairChecks {
   Counters& counters_;
   ActivePairs& pairs_;
   Pieces pieces_;
-  // scratch
-  struct Pursuit {
-    std::uint32_t pair;
-    PairOutcome outcome;
-    PairCounts counts;
-  };
-  std::vector<Pursuit> pursuits_;
-  std::vector<std::pair<Key, std::uint32_t>> soon_;
 };
 
 }  // namespace tw
