@@ -331,8 +331,10 @@ inline constexpr double hardly_turns = 0.5;
 // so many radii apart enter at once: of those nearer to each other every tenth is taken back.
 inline constexpr std::size_t decided_at_once = 6, events_looked_ahead = 341;
 inline constexpr double felt_in_radii = 3;
-// So many pairs are followed at once: the first of so many events that come soon.
-inline constexpr std::size_t pairs_at_once = 16, events_looked_over = 85;
+
+// ---- threads ----
+// A helper that finds nothing to do looks on for so long, s, before it sleeps.
+inline constexpr double helper_patience = 300e-6;
 
 // ---- broad phase ----
 // A zone reaches beyond its box by this share of the longest edge.

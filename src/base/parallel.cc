@@ -2,54 +2,202 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "base/parallel.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
+#include <pthread.h>
+#include <sched.h>
 
-#include <mutex>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <exception>
 #include <thread>
+#include <vector>
 
+#include "base/constants.h"
 #include "base/cpu-clock.h"
 #include "base/work-count.h"
-
-// ThreadSanitizer does not see into the pool, which is compiled without it as this file is: it is
-// told what the pool guarantees.
-extern "C" {
-__attribute__((weak)) void __tsan_acquire(void* where);
-__attribute__((weak)) void __tsan_release(void* where);
-}
 
 namespace tw {
 namespace {
 
 thread_local Team* team_of_thread = nullptr;
 
-// All that was done before hand_on comes before what is done after take_up of the same object.
-void hand_on(void* object) {
-  if (__tsan_release) __tsan_release(object);
+void pause_a_little() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#else
+  std::this_thread::yield();
+#endif
 }
-void take_up(void* object) {
-  if (__tsan_acquire) __tsan_acquire(object);
-}
+
+// Held for some dozen instructions.
+class SpinLock {
+ public:
+  void lock() {
+    while (busy_.test_and_set(std::memory_order_acquire)) pause_a_little();
+  }
+  void unlock() { busy_.clear(std::memory_order_release); }
+
+ private:
+  std::atomic_flag busy_;
+};
+
+class Locked {
+ public:
+  explicit Locked(SpinLock& lock) : lock_(lock) { lock_.lock(); }
+  ~Locked() { lock_.unlock(); }
+  Locked(const Locked&) = delete;
+  Locked& operator=(const Locked&) = delete;
+
+ private:
+  SpinLock& lock_;
+};
+
+// Helpers have no business with signals.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+// A loop while it is shared.
+struct Shared {
+  const std::size_t items, grain;
+  const Team::Item item;
+  void* const loop;
+  std::atomic<std::size_t> next{0};
+  std::atomic<int> helping{0};
+  SpinLock lock;  // of what follows
+  WorkCount helped;
+  std::exception_ptr error;
+
+  Shared(std::size_t all, std::size_t at_a_time, Team::Item of, void* whose)
+      : items(all), grain(at_a_time), item(of), loop(whose) {}
+  bool has_items() const { return next.load(std::memory_order_relaxed) < items; }
+  void work() {
+    try {
+      for (std::size_t i; (i = next.fetch_add(grain, std::memory_order_relaxed)) < items;)
+        for (std::size_t k = i; k < std::min(items, i + grain); ++k) item(loop, k);
+    } catch (...) {
+      next.store(items, std::memory_order_relaxed);
+      const Locked locked(lock);
+      error = std::current_exception();
+    }
+  }
+};
 
 }  // namespace
 
-struct Team::Pool {
-  explicit Pool(int threads)
-      : arena(threads, 1), allowed(parallelism, static_cast<std::size_t>(threads)) {}
+// Helpers look for loops that have items left.  Between two loops of a run there are some hundred
+// microseconds, and to be woken takes a helper half as long: so it looks on for a while before it
+// sleeps.
+class Team::Pool {
+ public:
+  explicit Pool(Team& team) : patience_(team.threads() > cores() ? 0 : cost::helper_patience) {
+    const SignalsBlocked blocked;
+    for (int i = 1; i < team.threads(); ++i) helpers_.emplace_back([this, &team] { help(team); });
+  }
+  ~Pool() {
+    stop_ = true;
+    published_.fetch_add(1);
+    published_.notify_all();
+    for (std::thread& helper : helpers_) helper.join();
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
 
-  // tests run more threads than there are cores
-  static constexpr auto parallelism = oneapi::tbb::global_control::max_allowed_parallelism;
-  oneapi::tbb::task_arena arena;
-  oneapi::tbb::global_control allowed;
+  // The caller takes items of this loop alone, for it may be in the midst of an item of another.
+  void run(Shared& shared) {
+    {
+      const Locked locked(lock_);
+      open_.push_back(&shared);
+    }
+    published_.fetch_add(1);
+    if (asleep_.load() > 0) published_.notify_all();
+    shared.work();
+    {
+      const Locked locked(lock_);
+      std::erase(open_, &shared);
+    }
+    for (int looks = 0; shared.helping.load(std::memory_order_acquire) > 0; ++looks)
+      looks < 4096 ? pause_a_little() : std::this_thread::yield();
+  }
+
+ private:
+  Shared* join() {
+    const Locked locked(lock_);
+    for (Shared* shared : open_)
+      if (shared->has_items()) {
+        shared->helping.fetch_add(1, std::memory_order_relaxed);
+        return shared;
+      }
+    return nullptr;
+  }
+
+  void help(Team& team) {
+    const Scope scope(&team);
+    while (!stop_) {
+      const std::uint32_t seen = published_.load();
+      if (Shared* shared = join())
+        help_with(*shared);
+      else
+        await_other_than(seen);
+    }
+  }
+
+  static void help_with(Shared& shared) {
+    const WorkCount before = work_count;
+    const double begun = thread_cpu_seconds();
+    shared.work();
+    WorkCount done = work_count.since(before);
+    done.helper_seconds += thread_cpu_seconds() - begun;
+    {
+      const Locked locked(shared.lock);
+      shared.helped.add(done);
+    }
+    shared.helping.fetch_sub(1, std::memory_order_release);
+  }
+
+  void await_other_than(std::uint32_t seen) {
+    using Clock = std::chrono::steady_clock;
+    const auto late = Clock::now() + std::chrono::duration<double>(patience_);
+    do {
+      for (int i = 0; i < 64; ++i) {
+        if (published_.load(std::memory_order_relaxed) != seen) return;
+        pause_a_little();
+      }
+    } while (Clock::now() < late);
+    ++asleep_;
+    published_.wait(seen);
+    --asleep_;
+  }
+
+  const double patience_;  // s
+  SpinLock lock_;          // of open_
+  std::vector<Shared*> open_;
+  std::atomic<std::uint32_t> published_{0};  // loops so far
+  std::atomic<int> asleep_{0};
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> helpers_;
 };
 
 Team::Team(int threads) : threads_(threads) {}
 Team::~Team() = default;
 
-int Team::cores() { return oneapi::tbb::info::default_concurrency(); }
+int Team::cores() {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 Team* Team::current() { return team_of_thread; }
 
@@ -59,38 +207,11 @@ Team::Scope::Scope(Team* team) : outer_(team_of_thread) {
 Team::Scope::~Scope() { team_of_thread = outer_; }
 
 void Team::run(std::size_t items, std::size_t grain, Item item, void* loop) {
-  if (!pool_) pool_ = std::make_unique<Pool>(threads_);
-  std::mutex mutex;
-  WorkCount helped;
-  const auto caller = std::this_thread::get_id();
-  const auto work = [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
-    const auto do_all = [&] {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) item(loop, i);
-    };
-    if (std::this_thread::get_id() == caller) return do_all();
-    take_up(&helped);
-    // what helps within an item of its own loop counts there
-    const bool idle = !current();
-    const WorkCount before = work_count;
-    const double begun = idle ? thread_cpu_seconds() : 0;
-    const Scope scope(this);
-    do_all();
-    WorkCount done = work_count.since(before);
-    if (idle) done.helper_seconds += thread_cpu_seconds() - begun;
-    hand_on(&mutex);
-    const std::lock_guard lock(mutex);
-    helped.add(done);
-  };
-  const oneapi::tbb::blocked_range<std::size_t> all(0, items, grain);
-  const auto share = [&] {
-    oneapi::tbb::parallel_for(all, work, oneapi::tbb::simple_partitioner());
-  };
-  // isolated: a thread that waits for the end of a loop within a loop takes up nothing else, for it
-  // is in the midst of an item and its scratch is in use
-  hand_on(&helped);
-  pool_->arena.execute([&] { oneapi::tbb::this_task_arena::isolate(share); });
-  take_up(&mutex);
-  work_count.add(helped);
+  if (!pool_) pool_ = std::make_unique<Pool>(*this);
+  Shared shared(items, grain, item, loop);
+  pool_->run(shared);
+  work_count.add(shared.helped);
+  if (shared.error) std::rethrow_exception(shared.error);
 }
 
 }  // namespace tw

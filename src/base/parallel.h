@@ -7,8 +7,6 @@
 // The team belongs to the thread that works for a world: Team::Scope lends it to that thread's
 // loops, and to the loops within its loops.  Without one, or in a team of one, a loop is a loop.
 //
-// Source of the pool: oneTBB.
-//
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -51,7 +49,7 @@ class Team {
   void run(std::size_t items, std::size_t grain, Item item, void* loop);
 
  private:
-  struct Pool;
+  class Pool;
   int threads_;
   std::unique_ptr<Pool> pool_;
 };

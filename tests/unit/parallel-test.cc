@@ -85,6 +85,26 @@ TEST(Parallel, loops_within_loops_are_shared_and_keep_apart) {
     for (std::size_t j = 0; j < sums.size(); ++j) EXPECT_EQ(sums[i][j], static_cast<int>(i * j));
 }
 
+// Helpers that have gone to sleep between two loops come back.
+TEST(Parallel, loops_far_apart_are_shared_as_well) {
+  Team team(2);
+  const Team::Scope scope(&team);
+  const auto self = std::this_thread::get_id();
+  const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  for (int round = 0; round < 20; ++round) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::atomic<bool> helped = false;
+    std::vector<int> done(8, 0);
+    each_in_parallel(done.size(), 1, [&](std::size_t i) {
+      ++done[i];
+      if (std::this_thread::get_id() != self) helped = true;
+      while (!helped && std::chrono::steady_clock::now() < late) wait_a_little();
+    });
+    EXPECT_TRUE(helped) << round;
+    for (const int times : done) EXPECT_EQ(times, 1);
+  }
+}
+
 TEST(Parallel, an_exception_of_an_item_comes_out) {
   Team team(3);
   const Team::Scope scope(&team);
