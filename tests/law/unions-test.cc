@@ -83,5 +83,26 @@ TEST(Unions, wedges_are_held_by_shorter_grooves) {
   EXPECT_LT(number_of(world.statistics(), "max_penetration"), 0.01);
 }
 
+// An L of two square bars that share a corner: their soles lie in one plane, and the corners that
+// are lifted as it rocks were taken for buried by one another.  So stiffness went to the others at
+// once, and it never came to rest.
+TEST(Unions, soles_in_one_plane_come_to_rest) {
+  const ShapePtr foot = make_box({0.29, 0.05, 0.05});
+  const ShapePtr leg =
+      place_shape(make_box({0.05, 0.05, 0.25}), Pose{{-0.12, 0, 0.1}, Quat::Identity()});
+  for (const double tilt : {0.05, -0.05, 0.3}) {
+    World world;
+    set_contact_for_all(world, 0.3, 0.5);
+    add_wall(world, Vec3::UnitZ(), 0);
+    BodyDef def =
+        body_of(make_union({foot, leg}), {0, 0, 0.026 + 0.025 * std::abs(tilt)}, {0, 0, 0});
+    def.orientation = rotation_by({tilt, 0, 0});
+    const BodyId id = world.add_body(def);
+    world.advance(8);
+    EXPECT_LT(world.state(id).velocity.norm(), 1e-9) << tilt;
+    EXPECT_LT(world.state(id).angular_velocity.norm(), 1e-9) << tilt;
+  }
+}
+
 }  // namespace
 }  // namespace tw::test

@@ -173,6 +173,12 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   const Polyhedron& core = *part.core;
   const int number = face_with(core, world.R.transpose() * normal);
   if (number < 0) {
+    // a corner that is higher than others of its part has not this normal itself: what denies it no
+    // more than the part does, as one whose face lies in the same plane, does not bury it
+    const SeamNeighbour self{&part, frame};
+    const Vec3 here = nearest_of(self, point).point;
+    const Vec3 foot = nearest_of(self, point + seam::probe * size * normal).point;
+    angle += (foot - here).norm() / (seam::probe * size);
     if (!denied(point, normal, neighbours, size, angle)) return false;
     // along an edge that dives into a neighbour the two make a valley: what presses there is a
     // little way inside both
