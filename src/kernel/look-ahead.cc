@@ -133,8 +133,9 @@ void LookAhead::decide(Coming& coming) const {
 // Whether what was decided of it holds, now that others have entered.
 bool LookAhead::stands(const Coming& coming) const {
   if (!coming.decision->log.holds(sim_.graph)) return false;
+  if (coming.group) return true;
   const Pair& pair = pairs_[coming.pair];
-  return coming.group || (pair.pending && pair.impact == coming.key);
+  return pair.pending && pair.impact == coming.key;
 }
 
 // Those that are apart, in order; those who have new arcs claim together.  False: the first one did
@@ -158,6 +159,7 @@ bool LookAhead::enter() {
     discontinuities_.enter(decision.key, decision.successors);
     first_entered |= &coming == &next_.front();
   }
+  next_.clear();
   ahead_.forget_before(sim_.present.gvt);
   ahead_.add(std::move(kept));
   std::sort(movers_.begin(), movers_.end(),

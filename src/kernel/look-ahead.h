@@ -1,6 +1,7 @@
 // Several discontinuities of contact groups at once, on several threads.
 //
-// Impacts and single checks that come soon are decided side by side, each as if it were the first.
+// Impacts and single checks that come soon and have no group in common are decided side by side,
+// each as if it were the first.
 // The first one enters, and with it all that are at some distance from those before them, and all
 // who have new arcs claim together: what should have come in between finds them entered, and takes
 // them back if it concerns them, as under any other schedule.  What is decided of the others is
