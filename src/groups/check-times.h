@@ -25,8 +25,8 @@ double check_interval(const Regrouping& work, const std::vector<ProcessId>& memb
 // The shortest time between two checks that a member asks for, s: by its size, or as set.
 double finest_check(const Scene& scene, const Body& body);
 
-// The shortest arc of a group, s: nothing that is found ends one sooner.  Links without a shape have
-// no size; 0 if there is nothing else.
+// The shortest arc of a group, s: nothing that is found ends one sooner.  Links without a shape
+// have no size; 0 if there is nothing else.
 double least_arc(const Scene& scene, const std::vector<ProcessId>& members);
 
 // The longest interval of the lattice that is no longer than a time, s.

@@ -69,11 +69,7 @@ class GroupEvents {
   std::unique_ptr<Decision> made(std::unique_ptr<Decision> decision, Decided decided) const;
   // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
   bool amid_decisions() const;
-  // Between runs anything may have changed: what was decided ahead no longer holds.
-  void begin_run() {
-    decided_at_ = -never;
-    ahead_.forget();
-  }
+  void begin_run() { decided_at_ = -never; }
 
  private:
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,

@@ -115,6 +115,22 @@ void Kernel::begin_run() {
   }
 }
 
+namespace {
+
+// Between runs anything may change: what was decided ahead holds no longer.
+class ForgetAtEnd {
+ public:
+  explicit ForgetAtEnd(DecidedAhead& ahead) : ahead_(ahead) {}
+  ~ForgetAtEnd() { ahead_.forget(); }
+  ForgetAtEnd(const ForgetAtEnd&) = delete;
+  ForgetAtEnd& operator=(const ForgetAtEnd&) = delete;
+
+ private:
+  DecidedAhead& ahead_;
+};
+
+}  // namespace
+
 RunStatus Kernel::advance(double until, double slice) {
   TW_REQUIRE(std::isfinite(until),
              "time to run to is " + show(until) + "; expected a finite number of seconds");
@@ -122,6 +138,7 @@ RunStatus Kernel::advance(double until, double slice) {
              "a run was started inside a callback or observer; expected to be between runs");
   if (until < simulation.present.time) return RunStatus::finished;
   const RunGuard guard(simulation);
+  const ForgetAtEnd forget(decided_ahead);
   begin_run();
 
   const double wall_end = slice < never ? wall_seconds() + slice : never;
@@ -144,6 +161,7 @@ bool Kernel::step(double until) {
   TW_REQUIRE(!simulation.running,
              "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(simulation);
+  const ForgetAtEnd forget(decided_ahead);
   begin_run();
   commit.begin_run(until, never);
   if (commit.finished()) return false;
