@@ -1,9 +1,12 @@
 // Contact manifolds of ellipsoids: one point each.
 //
-// Where it touches an ellipsoid is followed as the ball that osculates it in the mean, so that what
-// it meets is what the ball meets; on a plane the ellipsoid is followed itself (tangent_plane).
+// What it meets is what the ball meets that osculates it in the mean, and it is followed there
+// itself: on a plane as `tangent_plane`, elsewhere as `curved`.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include "collision/ellipsoid-point.h"
 #include "collision/manifold-parts.h"
 #include "collision/separation.h"
@@ -12,26 +15,54 @@ namespace tw {
 
 namespace {
 
-// The mean radius of curvature where the normal (unit, the ellipsoid's frame) is: half the trace of
-// A^2/h - A^2 n (A^2 n)^T/h^3, which is square to n.
-double mean_radius(const Vec3& semi_axes, const Vec3& n) {
+// Radii of curvature: the mean one and the least.
+struct Radii {
+  double mean = 0, least = 0;
+};
+
+// Where the normal (unit, the ellipsoid's frame) is: the eigenvalues of A^2/h - A^2 n (A^2
+// n)^T/h^3, which is square to n; their product is (det A/h^2)^2.
+Radii radii_at(const Vec3& semi_axes, const Vec3& n) {
   const Vec3 squares = semi_axes.cwiseAbs2(), point = squares.cwiseProduct(n);
   const double h = std::sqrt(n.dot(point));
-  return 0.5 * (squares.sum() / h - point.squaredNorm() / (h * h * h));
+  const double mean = 0.5 * (squares.sum() / h - point.squaredNorm() / (h * h * h));
+  const double root = semi_axes.prod() / (h * h);
+  const double difference = std::sqrt(std::max(mean * mean - root * root, 0.0));
+  return {mean, root * root / (mean + difference)};
 }
 
 // The ball inside the part at its surface point (world) with this outward normal; another part is
 // what it is.
-ConvexPart ball_at(const ConvexPart& part, const Frame& frame, const Vec3& point,
-                   const Vec3& outward) {
-  if (part.kind != PartKind::ellipsoid) return part;
-  const Frame world = frame * part.placement;
+struct Osculating {
+  Osculating(const ConvexPart& of, const Frame& frame, const Vec3& point, const Vec3& outward)
+      : is_ellipsoid(of.kind == PartKind::ellipsoid), part(of) {
+    if (!is_ellipsoid) return;
+    const Frame world = frame * of.placement;
+    radii = radii_at(of.semi_axes, world.R.transpose() * outward);
+    ball.radius = radii.mean;
+    ball.placement.p = frame.to_local(point - ball.radius * outward);
+    ball.bound_center = ball.placement.p;
+    ball.bound_radius = ball.radius;
+  }
+  const ConvexPart& shown() const { return is_ellipsoid ? ball : part; }
+  double least(double otherwise) const { return is_ellipsoid ? radii.least : otherwise; }
+
+  bool is_ellipsoid;
+  const ConvexPart& part;
   ConvexPart ball;
-  ball.radius = mean_radius(part.semi_axes, world.R.transpose() * outward);
-  ball.placement.p = frame.to_local(point - ball.radius * outward);
-  ball.bound_center = ball.placement.p;
-  ball.bound_radius = ball.radius;
-  return ball;
+  Radii radii;
+};
+
+// Of a sharp tip that is deeper than its radius no axis has the greatest gap: it stays a ball.
+void follow(ManifoldPoint& p, const Osculating& reference, const Osculating& other) {
+  if (p.kind == ReferenceFeature::plane) {
+    if (other.is_ellipsoid) p.kind = ReferenceFeature::tangent_plane;
+    return;
+  }
+  const double sharpest = reference.least(p.reference_radius) + other.least(p.radius);
+  if (p.gap < -0.5 * sharpest) return;
+  if (p.kind == ReferenceFeature::point) p.direction.setZero();
+  p.kind = ReferenceFeature::curved;
 }
 
 }  // namespace
@@ -40,11 +71,12 @@ void ellipsoid_manifold_at(const ConvexPart& a, const Frame& frame_a, const Conv
                            const Frame& frame_b, const RoundDistance& near, double reach, int pair,
                            std::vector<ManifoldPoint>& out) {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  part_manifold(ball_at(a, frame_a, near.point_a, near.normal), frame_a,
-                ball_at(b, frame_b, near.point_b, -near.normal), frame_b, reach,
-                ReferenceChoice::larger, pair, out);
+  const Osculating of_a(a, frame_a, near.point_a, near.normal);
+  const Osculating of_b(b, frame_b, near.point_b, -near.normal);
+  part_manifold(of_a.shown(), frame_a, of_b.shown(), frame_b, reach, ReferenceChoice::larger, pair,
+                out);
   for (auto p = out.begin() + first; p != out.end(); ++p)
-    if (p->kind == ReferenceFeature::plane) p->kind = ReferenceFeature::tangent_plane;
+    p->reference_is_a ? follow(*p, of_a, of_b) : follow(*p, of_b, of_a);
 }
 
 void ellipsoid_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,

@@ -15,15 +15,24 @@
 namespace tw {
 
 // What the reference body shows the other: see integrate/group-arc.h for what follows from it.  A
-// tangent plane is a plane that an ellipsoid of the other body is followed on as it rolls; the core
-// point and radius are those of a ball that osculates it.
-enum class ReferenceFeature : unsigned char { plane, line, point, crossing, rim, tangent_plane };
+// tangent plane is a plane that an ellipsoid of the other body is followed on as it rolls; `curved`
+// is a line (`direction`) or a point (`direction` 0), and one body's part, or both, an ellipsoid
+// that is followed.  Points and radii are those of balls that osculate the ellipsoids.
+enum class ReferenceFeature : unsigned char {
+  plane,
+  line,
+  point,
+  crossing,
+  rim,
+  tangent_plane,
+  curved
+};
 
 struct ManifoldPoint {
   bool reference_is_a = true;  // the reference body; the other has the core point
   ReferenceFeature kind = ReferenceFeature::plane;
   Vec3 normal = Vec3::UnitZ();           // unit, world, from the reference body to the other
-  Vec3 direction = Vec3::UnitX();        // unit, world: line, crossing, rim
+  Vec3 direction = Vec3::UnitX();        // unit, world: line, crossing, rim; curved: or 0
   Vec3 other_direction = Vec3::UnitY();  // unit, world: of the other body's line, or a rim's axis
   Vec3 rim_center = Vec3::Zero();        // world: rim only
   Vec3 reference_point = Vec3::Zero();   // world: a point of the plane or line, or the core point

@@ -47,7 +47,8 @@ void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) 
   for (const Polyhedron::Face& face : part.core->faces()) {
     const Vec3 normal = reference.frame.R * (part.placement.R * face.normal);
     if (normal.dot(p.normal) < 1 - 0.5 * answer::flat_angle * answer::flat_angle) continue;
-    p.kind = ReferenceFeature::plane;
+    p.kind = p.kind == ReferenceFeature::curved ? ReferenceFeature::tangent_plane
+                                                : ReferenceFeature::plane;
     p.normal = normal;
     p.gap = normal.dot(p.core_point - p.reference_point) - p.radius - p.reference_radius;
     p.radius += p.reference_radius;
@@ -61,8 +62,8 @@ NewContact new_contact(const ManifoldPoint& p, const PlacedBody& a, const Placed
   const PlacedBody& reference = p.reference_is_a ? a : b;
   const PlacedBody& other = p.reference_is_a ? b : a;
   NewContact result;
-  result.contact =
-      followed_contact(p, reference.frame, other.frame, part_at(p, *other.body, *b.body));
+  result.contact = followed_contact(p, reference.frame, part_at(p, *reference.body, *b.body),
+                                    other.frame, part_at(p, *other.body, *b.body));
   result.contact.law = law;
   result.tag = {reference.body->id(), other.body->id(), p.pair, p.feature, p.flatness, p.beyond};
   result.gap = p.gap;

@@ -3,8 +3,20 @@
 #include "groups/followed-contact.h"
 
 namespace tw {
+namespace {
 
-GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference, const Frame& other,
+// S of the part in the body's frame; false, and 0, where it is no ellipsoid.
+bool squares(const ConvexPart& part, Mat3& S) {
+  if (part.kind != PartKind::ellipsoid) return false;
+  const Mat3 axes = part.placement.R * part.semi_axes.asDiagonal();
+  S = axes * axes.transpose();
+  return true;
+}
+
+}  // namespace
+
+GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference,
+                              const ConvexPart& reference_part, const Frame& other,
                               const ConvexPart& other_part) {
   GroupContact c;
   c.feature = static_cast<ContactFeature>(p.kind);
@@ -19,14 +31,17 @@ GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference, co
     c.rim = p.rim;
     c.point_b = other.to_local(p.rim_center);
   }
-  if (p.kind == ReferenceFeature::tangent_plane) {
-    // the squares of the semi-axes along the axes of the part
-    const Mat3 axes = other_part.placement.R * other_part.semi_axes.asDiagonal();
-    const Mat3 squares = axes * axes.transpose();
-    c.direction = squares.diagonal();
-    c.other_direction = {squares(1, 2), squares(0, 2), squares(0, 1)};
-    c.point_b = other_part.placement.p;
-    c.radius_b = 0;
+  if (p.kind == ReferenceFeature::tangent_plane || p.kind == ReferenceFeature::curved) {
+    ContactEllipsoids ellipsoids;
+    if (squares(other_part, ellipsoids.b)) {
+      c.point_b = other_part.placement.p;
+      c.radius_b = 0;
+    }
+    if (squares(reference_part, ellipsoids.a)) {
+      c.point_a = reference_part.placement.p;
+      c.radius_a = 0;
+    }
+    c.ellipsoids = std::make_shared<ContactEllipsoids>(ellipsoids);
   }
   return c;
 }

@@ -8,9 +8,9 @@
 namespace tw {
 
 // The contact's geometry, in the frames of the bodies that the point names as reference and other;
-// `other_part` is the part of the other one that it is on.  Everything else is left as it is by
-// default.
-GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference, const Frame& other,
+// the parts are those that it is on.  Everything else is left as it is by default.
+GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference,
+                              const ConvexPart& reference_part, const Frame& other,
                               const ConvexPart& other_part);
 
 }  // namespace tw

@@ -127,16 +127,19 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   out.sa = dp;
   out.sb = turned_b;
   LaneVec dn, turned;
-  if constexpr (rolls(feature)) {
+  if constexpr (rolls(feature) || runs(feature)) {
     turned = b.th;
     if constexpr (!grounded) turned = turned - a.th;
-    const LaneVec along = o.roll * turned;
+  }
+  if constexpr (rolls(feature)) {
+    LaneVec along = o.roll * turned;
+    if constexpr (feature == ContactFeature::curved) {
+      dn = o.turn * (dp + along);
+      along = along - o.bulge * dn;
+    }
     out.sa = out.sa + along;
     out.sb = out.sb + along;
-  }
-  if constexpr (runs(feature)) {
-    turned = b.th;
-    if constexpr (!grounded) turned = turned - a.th;
+  } else if constexpr (runs(feature)) {
     const RunningPoint& r = o.running;
     dn = (dot(r.turn_p, dp) + dot(r.turn_om, turned)) * r.ma;
     const LaneVec along = (dot(r.along_p, dp) + dot(r.along_om, turned)) * r.path;
@@ -160,7 +163,7 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
 
   // force
   Lanes dN = normal_change(o, dp, dv);
-  if constexpr (runs(feature)) dN = dN + dot(o.h, turned);
+  if constexpr (turns_normal(feature)) dN = dN + dot(o.h, turned);
   const Lanes deeper = -dot(o.n, dp);
   const LaneVec friction = friction_change<flat>(o, dN, dn, dv) + deeper * o.harder;
   out.stretching = friction + deeper * o.relaxing;
@@ -227,7 +230,13 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   o.kb = s.stiffness * s.damping;
   o.g = -(by_depth * o.n);
   if (rolls(pack.feature)) o.roll = s.roll;
-  if (runs(pack.feature)) {
+  if (pack.feature == ContactFeature::curved) {
+    o.bulge = s.bulge;
+    o.turn = s.turn;
+    const LaneVec by_turn = o.turn * o.vr;
+    o.g = o.g - o.kb * by_turn;
+    o.h = -(o.kb * transposed_times(o.roll, by_turn));
+  } else if (runs(pack.feature)) {
     o.running = s.running;
     const Lanes by_turn = o.kb * dot(o.running.ma, o.vr);
     o.g = o.g - by_turn * o.running.turn_p;
@@ -264,10 +273,11 @@ void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyCh
   // a line and a point differ in turn_normal alone, what runs in how it does
   const auto chosen =
       pack.feature == F::plane ? choose(change<F::plane, true>, change<F::plane, false>)
-      : rolls(pack.feature)
+      : pack.feature == F::tangent_plane
           ? choose(change<F::tangent_plane, true>, change<F::tangent_plane, false>)
-      : runs(pack.feature) ? choose(change<F::crossing, true>, change<F::crossing, false>)
-                           : choose(change<F::point, true>, change<F::point, false>);
+      : pack.feature == F::curved ? choose(change<F::curved, true>, change<F::curved, false>)
+      : runs(pack.feature)        ? choose(change<F::crossing, true>, change<F::crossing, false>)
+                                  : choose(change<F::point, true>, change<F::point, false>);
   chosen(pack, linear, changes, sides, out);
 }
 
@@ -282,11 +292,12 @@ LaneMat columns(const LaneVec (&c)[3]) {
   return {{{c[0].x, c[1].x, c[2].x}, {c[0].y, c[1].y, c[2].y}, {c[0].z, c[1].z, c[2].z}}};
 }
 
-// df by dp and by dv', where the point runs by dom; stretches eliminated
+// df by dp and by dv', and by dom where n turns with it; stretches eliminated.  n_p, n_om: dn' by
+// dp and dom.
 template <ContactFeature feature>
-TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, LaneMat& by_p,
-                                LaneMat& by_v, LaneMat& by_turn) {
-  constexpr bool flat = is_flat(feature), running = runs(feature);
+TW_LANES void force_derivatives(const PackLinear& o, const LaneMat& n_p, const LaneMat& n_om,
+                                LaneMat& by_p, LaneMat& by_v, LaneMat& by_turn) {
+  constexpr bool flat = is_flat(feature);
   const Lanes zero = lanes(0), one = lanes(1);
   const LaneVec unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   // columns
@@ -294,10 +305,7 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
   LaneVec p[3], v[3], turn[3];
   for (int i = 0; i < 3; ++i) {
     LaneVec dn = none;
-    if constexpr (running)
-      dn = dot(o.running.turn_p, unit[i]) * o.running.ma;
-    else if constexpr (!flat)
-      dn = turn_normal(pack, o, unit[i]);
+    if constexpr (!flat) dn = n_p * unit[i];
     const Lanes dNp = normal_change(o, unit[i], none), dNv = normal_change(o, none, unit[i]);
     const Lanes deeper = -dot(o.n, unit[i]);
     const LaneVec Fp = friction_change<flat>(o, dNp, dn, none) + deeper * o.harder;
@@ -305,8 +313,8 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
     p[i] = dNp * o.n + Fp + stretched(o, Fp + deeper * o.relaxing);
     if constexpr (!flat) p[i] = p[i] + o.N * dn;
     v[i] = dNv * o.n + Fv + stretched(o, Fv);
-    if constexpr (running) {
-      const LaneVec turned = dot(o.running.turn_om, unit[i]) * o.running.ma;
+    if constexpr (turns_normal(feature)) {
+      const LaneVec turned = n_om * unit[i];
       const Lanes dNt = dot(o.h, unit[i]);
       const LaneVec Ft = friction_change<flat>(o, dNt, turned, none);
       turn[i] = dNt * o.n + Ft + stretched(o, Ft) + o.N * turned;
@@ -318,7 +326,7 @@ TW_LANES void force_derivatives(const ContactPack& pack, const PackLinear& o, La
   }
   by_p = columns(p);
   by_v = columns(v);
-  if constexpr (running) by_turn = columns(turn);
+  if constexpr (turns_normal(feature)) by_turn = columns(turn);
 }
 
 // Nn
@@ -355,22 +363,39 @@ template <ContactFeature feature>
 void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
             PackBlocks& out) {
   constexpr bool flat = is_flat(feature), running = runs(feature), rolling = rolls(feature);
-  LaneMat fp, fv, fom;
-  force_derivatives<feature>(pack, o, fp, fv, fom);
-  const Lanes inverse = lanes(1 / sigma);
+  constexpr bool turning = turns_normal(feature);
 
-  // point = (1 - radius_b Nn) dp, or where it runs
-  // point = (1 + path along_p^T - radius_b m_a turn_p^T) dp + point_om dom
+  // dn' by dp and dom
+  LaneMat n_p, n_om;
+  if constexpr (running) {
+    n_p = outer(o.running.ma, o.running.turn_p);
+    n_om = outer(o.running.ma, o.running.turn_om);
+  } else if constexpr (turning) {
+    n_p = o.turn;
+    n_om = o.turn * o.roll;
+  } else if constexpr (!flat) {
+    n_p = normal_turn(pack, o);
+  }
+
+  // the point by dp, keep = 1 - turn, and by dom: -radius_b dn', and what runs
   LaneMat turn, point_om, keep = scalar_matrix(lanes(1));
   if constexpr (running) {
     const RunningPoint& r = o.running;
     turn = outer(pack.radius_b * r.ma, r.turn_p) - outer(r.path, r.along_p);
-    keep = keep - turn;
     point_om = outer(r.path, r.along_om) - outer(pack.radius_b * r.ma, r.turn_om);
+  } else if constexpr (turning) {
+    turn = pack.radius_b * n_p + o.bulge * n_p;
+    point_om = o.roll - o.bulge * n_om - pack.radius_b * n_om;
+  } else if constexpr (rolling) {
+    point_om = o.roll;
   } else if constexpr (!flat) {
-    turn = pack.radius_b * normal_turn(pack, o);
-    keep = keep - turn;
+    turn = pack.radius_b * n_p;
   }
+  if constexpr (!flat) keep = keep - turn;
+
+  LaneMat fp, fv, fom;
+  force_derivatives<feature>(o, n_p, n_om, fp, fv, fom);
+  const Lanes inverse = lanes(1 / sigma);
 
   // by dp at fixed dv, dw, through dv' too: fq = fp + fv [dw]x keep
   const LaneMat fvw = times_cross(fv, o.dw);
@@ -380,25 +405,15 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
   else
     fq = fp + fvw * keep;
   LaneMat fq_om;
-  if constexpr (rolling) point_om = o.roll;
-  if constexpr (running) fq_om = fom + fvw * point_om;
-  if constexpr (rolling) fq_om = fvw * point_om;
+  if constexpr (rolling || running) fq_om = fvw * point_om;
+  if constexpr (turning) fq_om = fom + fq_om;
   // df by v of b
   const LaneMat by_v = fv + inverse * (fq - times_cross(fv, o.wb));
   const LaneVec arm[2] = {o.ra, o.rb}, reach[2] = {o.sa, o.sb};
 
-  // what resists, and dn' by dp and dom
-  Resisting resisting;
-  LaneMat n_p, n_om;
-  if (pack.bend >= 0) {
-    set_resisting<flat>(o, resisting);
-    if constexpr (running) {
-      n_p = outer(o.running.ma, o.running.turn_p);
-      n_om = outer(o.running.ma, o.running.turn_om);
-    } else if constexpr (!flat) {
-      n_p = normal_turn(pack, o);
-    }
-  }
+  const bool resists = pack.bend >= 0;
+  Resisting resisting = {};
+  if (resists) set_resisting<flat>(o, resisting);
 
   // outside bodies have no unknowns
   for (int X = pack.grounded ? 1 : 0; X < 2; ++X) {
@@ -418,16 +433,9 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
 
     // arms by v and th
     LaneMat sa_th, sb_th = scalar_matrix(lanes(0));
-    if constexpr (rolling) {
-      sb_th = sign * point_om;
-      sa_th = dp_th + sb_th;
-    } else if constexpr (flat) {
-      sa_th = dp_th;
-    } else {
-      sa_th = keep * dp_th;
-      if constexpr (running) sa_th = sa_th + sign * point_om;
-      sb_th = sa_th - dp_th;
-    }
+    sa_th = flat ? dp_th : keep * dp_th;
+    if constexpr (rolling || running) sa_th = sa_th + sign * point_om;
+    if constexpr (rolling || !flat) sb_th = sa_th - dp_th;
     if (X == 0) {
       sa_th = sa_th - cross_lanes(o.sa);
       sb_th = sb_th + pack.radius_b * cross_lanes(o.n);
@@ -441,7 +449,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
 
     // dM, with dN = n.df + f.dn' and dd = -n.dp
     LaneMat resist_v, resist_L;
-    if (pack.bend >= 0) {
+    if (resists) {
       const auto load_of = [&](const LaneMat& df) { return transposed_times(df, o.n); };
       const LaneMat by_depth = outer(resisting.by_depth, -o.n);
       resist_v = outer(resisting.m, load_of(f_v)) + (sign * inverse) * by_depth;
@@ -449,7 +457,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       if constexpr (!flat) {
         const LaneMat n_v = (sign * inverse) * n_p;
         LaneMat n_th = n_p * dp_th;
-        if constexpr (running) n_th = n_th + sign * n_om;
+        if constexpr (turning) n_th = n_th + sign * n_om;
         resist_v = resist_v + resisting.by_normal * n_v;
         resist_th = resist_th + resisting.by_normal * n_th;
       }
@@ -467,7 +475,7 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
       part[0][1] = side * f_L;
       part[1][0] = side * (cross_times(reach[Y], f_v) - cross_times(o.f, s_v[Y]));
       part[1][1] = side * (cross_times(reach[Y], f_L) - cross_times(o.f, s_L[Y]));
-      if (pack.bend >= 0) {
+      if (resists) {
         part[1][0] = part[1][0] + side * resist_v;
         part[1][1] = part[1][1] + side * resist_L;
       }
@@ -488,6 +496,7 @@ void pack_blocks(const ContactPack& pack, const PackLinear& linear, double sigma
   switch (pack.feature) {
     case F::plane: return blocks<F::plane>(pack, linear, sigma, body, out);
     case F::tangent_plane: return blocks<F::tangent_plane>(pack, linear, sigma, body, out);
+    case F::curved: return blocks<F::curved>(pack, linear, sigma, body, out);
     case F::crossing:
     case F::rim: return blocks<F::crossing>(pack, linear, sigma, body, out);
     case F::line:

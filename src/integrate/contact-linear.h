@@ -23,7 +23,9 @@
 // the point of the force moves (dv', arms), but not in dN, where the turn of n does:
 //   dN  = g.dp + h.dom - K b (n.dv'),  g = -(dN/dd) n - K b (m_a.v_r) turn_p,
 //   h = -K b (m_a.v_r) turn_om.
-// Where it rolls over the surface roll dom adds to dp likewise.
+// Where it rolls over the surface of an ellipsoid roll dom - bulge dn adds to dp likewise, and on
+// what is curved
+//   dn' = turn (dp + roll dom),  g = -(dN/dd) n - K b turn^T v_r,  h = -K b (turn roll)^T v_r.
 // smooth: m = F/N, and du instead of dF* with the derivative of the atan law in c0, c1.
 //
 // The stretch z (world frame) has z' = -(F + y kt z)/ct; dF/dz is -y kt q t t^T when slipping, with
@@ -57,7 +59,7 @@ struct PackLinear {
       bend;  // dw = w_b - w_a; bend = y (kt s + ct v_r), or v_r
   LaneVec e, t, m, g;
   RunningPoint running;
-  LaneMat roll;
+  LaneMat roll, bulge, turn;
   LaneVec h;
   Lanes N, kb, inverse_length, vbend;  // vbend = n.bend
   Lanes c0, c1, q, drag;               // drag = -y ct (anchored), 1 (smooth)

@@ -38,7 +38,12 @@ TW_LANES void gather(const ContactPack& pack, const BodyKinematics* bodies,
     out.R.row[r] = vec([r](const BodyKinematics* b) { return b->R + 3 * r; });
 }
 
-// n, gap and the signed 1/|arm| from D = P_b - P_a
+TW_LANES LaneVec unit(const LaneVec& v) {
+  const Lanes length = sqrt(dot(v, v));
+  const Lanes inverse = length > lanes(0) ? lanes(1) / length : lanes(0);
+  return inverse * v;
+}
+
 // Two lines that cross: l and lb, with D from a point of a's to one of b's.
 struct Crossing {
   LaneVec lb, ma, mb;  // n x l, n x lb
@@ -90,11 +95,6 @@ TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMa
                          const LaneVec& side, PackState& o) {
   constexpr int iterations = 5;
   const LaneVec k = Rb * pack.other_direction;
-  const auto unit = [&](const LaneVec& v) {
-    const Lanes length = sqrt(dot(v, v));
-    const Lanes inverse = length > lanes(0) ? lanes(1) / length : lanes(0);
-    return inverse * v;
-  };
   LaneVec e = -unit(D - dot(k, D) * k), t;
   Crossing c;
   Lanes inverse_rate, by_edge;
@@ -118,22 +118,83 @@ TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMa
   return pack.rim * e;
 }
 
-// The lowest point of an ellipsoid, from its centre: -S m/h with m the normal in b's frame, h =
-// sqrt(m.S m).  S/h - S m (S m)^T/h^3 =: H are the second derivatives of h, m turns by R_b^T (n x
-// dom), so that the point runs by -R_b H R_b^T (n x dom).
+// R S R^T of a symmetric S
+TW_LANES LaneMat turned(const LaneMat& R, const LaneMat& S) {
+  const LaneMat RS = R * S;
+  return {{R * RS.row[0], R * RS.row[1], R * RS.row[2]}};
+}
+
+// Of an ellipsoid S its point farthest along n, from its centre, S n/h with h = sqrt(n.S n), and
+// the second derivatives of h: how that point moves when n turns.
+struct Farthest {
+  LaneVec point;
+  LaneMat curvature;  // S/h - S n (S n)^T/h^3
+};
+
+TW_LANES Farthest farthest_along(const LaneMat& S, const LaneVec& n) {
+  const LaneVec along = S * n;
+  const Lanes inverse = lanes(1) / sqrt(max(dot(n, along), lanes(1e-300)));
+  Farthest result;
+  result.point = inverse * along;
+  result.curvature = inverse * (S - outer(result.point, result.point));
+  return result;
+}
+
+// The lowest point of b's ellipsoid, from its centre: with H its second derivatives it runs by
+// -H (n x dom).
 TW_LANES LaneVec set_tangent_plane(const ContactPack& pack, const LaneMat& Rb, PackState& o) {
   o.n = o.Ra * pack.normal;
-  const LaneVec &d = pack.direction, &e = pack.other_direction;
-  const LaneMat S = {{{d.x, e.z, e.y}, {e.z, d.y, e.x}, {e.y, e.x, d.z}}};
-  const LaneVec m = transposed_times(Rb, o.n), along = S * m;
-  const Lanes height = sqrt(max(dot(m, along), lanes(1e-300))), inverse = lanes(1) / height;
-  const LaneVec lowest = -(inverse * (Rb * along));
-  const LaneMat RS = Rb * S;
-  const LaneMat RSR = {{Rb * RS.row[0], Rb * RS.row[1], Rb * RS.row[2]}};
-  const LaneMat in_world = inverse * (RSR - outer(lowest, lowest));
-  o.roll = lanes(-1) * times_cross(in_world, o.n);
-  return lowest;
+  const Farthest b = farthest_along(turned(Rb, pack.ellipsoids->b), o.n);
+  o.roll = lanes(-1) * times_cross(b.curvature, o.n);
+  return -b.point;
 }
+
+// The inverse of a symmetric M across n, and across l where that isn't 0; 0 where there is none.
+TW_LANES LaneMat inverse_across(const LaneMat& M, const LaneVec& n, const LaneVec& l) {
+  const Lanes zero = lanes(0), one = lanes(1);
+  const LaneMask lined = dot(l, l) > zero;
+  const LaneMask upright = n.x * n.x > lanes(0.5);
+  const LaneVec beside = {upright ? zero : one, upright ? one : zero, zero};
+  const LaneVec s = select(lined, l, unit(cross(n, beside))), t = cross(n, s);
+  const LaneVec Mt = M * t;
+  const Lanes ss = lined ? one : dot(s, M * s), st = lined ? zero : dot(s, Mt), tt = dot(t, Mt);
+  const Lanes determinant = ss * tt - st * st;
+  const Lanes inverse = determinant * determinant > zero ? one / determinant : zero;
+  const Lanes by_s = lined ? zero : inverse * tt;
+  return outer(s, by_s * s - (inverse * st) * t) +
+         outer(t, (inverse * ss) * t - (inverse * st) * s);
+}
+
+// The n of the greatest gap, n.D - h_a - h_b - radii with D from centre to centre: Newton's method,
+// n turns by T E, E = D - x_a - x_b from point to point and T the inverse of H_a + H_b + n.E across
+// n (H + radius of each and the gap, as two balls have the distance of their centres).  In a's
+// frame E turns by dp + H_b (dom x n) - (H_a + H_b) dn and stays along n, so that
+//   dn = T (dp - H_b (n x dom)),  and b's point runs by -H_b (dn + n x dom).
+TW_LANES LaneVec set_curved(const ContactPack& pack, const LaneVec& D, const LaneMat& Rb,
+                            const LaneVec& side, PackState& o) {
+  constexpr int iterations = 5;
+  const LaneMat Sa = turned(o.Ra, pack.ellipsoids->a), Sb = turned(Rb, pack.ellipsoids->b);
+  const LaneVec l = o.Ra * pack.direction;
+  const auto across_line = [&](const LaneVec& v) { return v - dot(l, v) * l; };
+  o.n = unit(across_line(side));
+  for (int i = 0;; ++i) {
+    const Farthest a = farthest_along(Sa, o.n), b = farthest_along(Sb, o.n);
+    const LaneVec E = across_line(D - a.point - b.point);
+    const Lanes apart = dot(o.n, E);
+    o.turn = inverse_across(a.curvature + b.curvature + scalar_matrix(apart), o.n, l);
+    if (i == iterations) {
+      o.gap = apart - pack.radius_a - pack.radius_b;
+      o.bulge = b.curvature;
+      o.roll = lanes(-1) * times_cross(b.curvature, o.n);
+      return -b.point;
+    }
+    const LaneVec by = o.turn * E;
+    const Lanes length = sqrt(dot(by, by)), most = lanes(0.5);
+    o.n = unit(across_line(o.n + (length > most ? most / length : lanes(1)) * by));
+  }
+}
+
+// n, gap and the signed 1/|arm| from D = P_b - P_a
 
 template <ContactFeature feature>
 TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVec& side,
@@ -249,10 +310,15 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
     o.ra = o.ra + along;
     o.rb = o.rb + along;
   } else if constexpr (rolls(feature)) {
-    const LaneVec lowest = set_tangent_plane(pack, b.R, o);
+    LaneVec lowest;
+    if constexpr (feature == ContactFeature::curved) {
+      lowest = set_curved(pack, D, b.R, side, o);
+    } else {
+      lowest = set_tangent_plane(pack, b.R, o);
+      o.gap = dot(o.n, D + lowest);
+    }
     o.ra = o.ra + lowest;
     o.rb = o.rb + lowest;
-    o.gap = dot(o.n, D + lowest);
     o.inverse_length = lanes(0);
   } else {
     set_normal<feature>(pack, D, side, o);
@@ -285,6 +351,10 @@ void set_lane(LaneVec& v, int lane, const Vec3& value) {
   v.z[lane] = value.z();
 }
 
+void set_lane(LaneMat& m, int lane, const Mat3& value) {
+  for (int r = 0; r < 3; ++r) set_lane(m.row[r], lane, value.row(r));
+}
+
 void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int members) {
   const auto slot = [members](int body) { return body >= 0 ? body : members + ~body; };
   pack.a[lane] = slot(contact.a);
@@ -297,6 +367,10 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   pack.radius_a[lane] = contact.radius_a;
   pack.radius_b[lane] = contact.radius_b;
   pack.rim[lane] = contact.rim;
+  if (pack.ellipsoids) {
+    set_lane(pack.ellipsoids->a, lane, contact.ellipsoids->a);
+    set_lane(pack.ellipsoids->b, lane, contact.ellipsoids->b);
+  }
   pack.offset[lane] = contact.offset;
   const ContactConstants& law = contact.law;
   pack.k[lane] = contact.share * law.k;
@@ -359,6 +433,8 @@ void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const 
       return evaluate<ContactFeature::rim>(pack, bodies, stretch, bend, side, out);
     case ContactFeature::tangent_plane:
       return evaluate<ContactFeature::tangent_plane>(pack, bodies, stretch, bend, side, out);
+    case ContactFeature::curved:
+      return evaluate<ContactFeature::curved>(pack, bodies, stretch, bend, side, out);
   }
 }
 
@@ -420,10 +496,10 @@ ContactPacks make_contact_packs(const GroupStart& start) {
       ContactPack& fresh = result.packs.emplace_back(empty);
       fresh.feature = contact.feature;
       fresh.law = contact.law.law;
-      // lanes without a contact hold a ball
+      // lanes without a contact hold balls
       if (rolls(fresh.feature)) {
-        fresh.direction = {lanes(1), lanes(1), lanes(1)};
-        fresh.other_direction = {lanes(0), lanes(0), lanes(0)};
+        const LaneMat ball = scalar_matrix(lanes(1));
+        fresh.ellipsoids = std::make_shared<PackEllipsoids>(PackEllipsoids{ball, ball});
       }
     }
     ContactPack& pack = result.packs.back();

@@ -1,14 +1,15 @@
 // Contacts of a group four at a time: constants, geometry and force.
 //
 // Symbols, for a contact of bodies a (reference) and b: P the core point of b (crossing and rim:
-// the point of its line or circle that is nearest to a's; tangent plane: the ellipsoid's lowest), n
-// the normal, l the line's direction; r_a, r_b from the centres to P; c = P - radius_b n where the
-// force acts; s_a, s_b from the centres to c; v_r velocity of b against a at c, u its tangential
-// part; s the stretch in the world frame; f = N n + F the force on b.
+// the point of its line or circle that is nearest to a's; tangent plane and curved: the ellipsoid's
+// farthest along -n), n the normal, l the line's direction; r_a, r_b from the centres to P; c = P -
+// radius_b n where the force acts; s_a, s_b from the centres to c; v_r velocity of b against a at
+// c, u its tangential part; s the stretch in the world frame; f = N n + F the force on b.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/constants.h"
@@ -23,6 +24,11 @@ struct BodyKinematics {
   double x[3], R[9], v[3], w[3];  // R by rows: from the body's frame to the world
 };
 
+// S of the ellipsoids, in the frames of a and b.
+struct PackEllipsoids {
+  LaneMat a, b;
+};
+
 // Four contacts with the same feature and friction law.  Lanes beyond the last contact hold one
 // without stiffness between the bodies of the first.
 struct ContactPack {
@@ -34,7 +40,8 @@ struct ContactPack {
   int contact[lane_count];                      // index in GroupStart::contacts
   int a[lane_count], b[lane_count];             // body slots
   LaneVec normal, direction, point_a, point_b;  // frames of a, a, a, b
-  LaneVec other_direction;                      // frame of b: crossing, rim and tangent plane
+  LaneVec other_direction;                      // frame of b: crossing and rim
+  std::shared_ptr<PackEllipsoids> ellipsoids;   // tangent plane and curved
   Lanes radius_a, radius_b, rim, offset;
   Lanes k, inverse_hardening, damping, mu, kt, ct, half_size;
   ResistanceLaw resistance;
@@ -68,7 +75,14 @@ constexpr bool is_flat(ContactFeature feature) {
 }
 
 // Whether the core point of b runs over its surface as it rolls.
-constexpr bool rolls(ContactFeature feature) { return feature == ContactFeature::tangent_plane; }
+constexpr bool rolls(ContactFeature feature) {
+  return feature == ContactFeature::tangent_plane || feature == ContactFeature::curved;
+}
+
+// Whether n turns when b does.
+constexpr bool turns_normal(ContactFeature feature) {
+  return runs(feature) || feature == ContactFeature::curved;
+}
 
 // How the core point of b runs along its line or circle, and n turns with it, when a displacement
 // dp of b's material there and a turn dom of b against a happen, in a's frame:
@@ -85,13 +99,15 @@ struct PackState {
   LaneVec arm;                                     // n = arm/|arm|, signed; point and line
   Lanes inverse_length;                            // 1/|arm|, with the sign of n; 0 where |arm| is
   RunningPoint running;                            // crossing and rim
-  LaneMat roll;          // tangent plane: the point runs by roll dom when b turns by dom against a
-  Lanes gap, depth, vn;  // depth = offset - gap
-  Lanes damping;         // b at this depth
-  Lanes grip;            // y at this depth
-  Lanes kt, ct;          // y kt, y ct; anchored
-  Lanes N, stiffness;    // stiffness = N/(1 - b vn)
-  LaneVec target;        // F* before the cut (anchored), u (smooth)
+  // Tangent plane and curved: the point runs by roll dom - bulge dn when b turns by dom against a
+  // and n by dn; curved: n does by turn (dp + roll dom).
+  LaneMat roll, bulge, turn;
+  Lanes gap, depth, vn;        // depth = offset - gap
+  Lanes damping;               // b at this depth
+  Lanes grip;                  // y at this depth
+  Lanes kt, ct;                // y kt, y ct; anchored
+  Lanes N, stiffness;          // stiffness = N/(1 - b vn)
+  LaneVec target;              // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;  // F = scale target
   LaneMask slipping;
   LaneVec F, stretch_rate;     // the rate in a's frame

@@ -71,7 +71,21 @@ struct GroupTree {
 };
 
 // What the reference body shows the other one at a contact.
-enum class ContactFeature : unsigned char { plane, line, point, crossing, rim, tangent_plane };
+enum class ContactFeature : unsigned char {
+  plane,
+  line,
+  point,
+  crossing,
+  rim,
+  tangent_plane,
+  curved
+};
+
+// Ellipsoids that a contact follows, of semi-axes s along the columns of Q: S = Q s^2 Q^T, m^2, in
+// the frame of the body; 0: a point.
+struct ContactEllipsoids {
+  Mat3 a = Mat3::Zero(), b = Mat3::Zero();
+};
 
 // One contact point.  Body a has the feature, fixed in a's frame; body b a core point, fixed in b's
 // frame, with a radius, or a line or circle of such points.
@@ -84,24 +98,28 @@ enum class ContactFeature : unsigned char { plane, line, point, crossing, rim, t
 //          other_direction
 //   tangent_plane  n = normal, and b has an ellipsoid about point_b, the points S u/sqrt(u.S u)
 //          from there (u any vector): p_b is that with u = -n, where it is lowest; gap =
-//          n.(p_b - p_a).  S, b's frame, is symmetric: its diagonal is `direction`, (S_yz, S_zx,
-//          S_xy) is `other_direction`
-// n points from a to b.  The force acts at p_b - radius_b n; of a crossing and a rim p_b is not
-// fixed in b but the point of its line or circle that is nearest to a's: it runs along both as the
-// bodies slide, and a circle may spin.  s is 1, or -1 where n would else turn against `normal`
-// (first step) or the n of the step before: cores that pass through each other, hollow a.
+//          n.(p_b - p_a)
+//   curved ellipsoids about p_a and p_b, within which the cores of both are points: the n of the
+//          greatest gap, n.(p_b - p_a) - radius_a - radius_b, where p_a, p_b are the points of the
+//          ellipsoids farthest along n and -n.  Where a has a line, l = direction, its ellipsoid is
+//          a point of that and n square to it; else `direction` is 0
+// n points from a to b.  The force acts at p_b - radius_b n; of what runs, or rolls, p_b is not
+// fixed in b: it runs along both as the bodies slide or roll, and a circle may spin.  s is 1, or -1
+// where n would else turn against `normal` (first step) or the n of the step before: cores that
+// pass through each other, hollow a.
 struct GroupContact {
   int a = 0, b = 0;  // >= 0: member; < 0: outside body ~index
   ContactFeature feature = ContactFeature::plane;
   Vec3 normal = Vec3::UnitZ();     // a's frame, unit: n (plane), or choosing its sign at the start
-  Vec3 direction = Vec3::UnitX();  // a's frame, unit: line, crossing, rim
+  Vec3 direction = Vec3::UnitX();  // a's frame, unit: line, crossing, rim; curved: or 0
   Vec3 other_direction = Vec3::UnitY();  // b's frame, unit: crossing, and the axis of a rim
   Vec3 point_a = Vec3::Zero();  // a's frame: a point of the plane, of the line, or the core point
   Vec3 point_b = Vec3::Zero();  // b's frame; a point of its line, or the centre of its rim
   double radius_a = 0, radius_b = 0;
-  double rim = 0;     // m: of b's circle
-  double offset = 0;  // m: the depth that presses is offset - gap
-  double share = 1;   // of k, kt, ct
+  double rim = 0;                                       // m: of b's circle
+  std::shared_ptr<const ContactEllipsoids> ellipsoids;  // tangent plane and curved
+  double offset = 0;                                    // m: the depth that presses is offset - gap
+  double share = 1;                                     // of k, kt, ct
   ContactConstants law;
   Vec3 stretch = Vec3::Zero();  // at the start, a's frame, tangential
   // At the start, a's frame, rad: what rolling (across the normal) and spinning (along it) are held

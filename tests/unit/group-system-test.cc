@@ -77,6 +77,13 @@ GroupMember random_member(Draw& draw) {
   return m;
 }
 
+// Of an ellipsoid, in a body's frame.
+Mat3 random_squares(Draw& draw) {
+  const Vec3 semi_axes(draw.in(0.1, 0.3), draw.in(0.2, 0.5), draw.in(0.4, 0.8));
+  const Mat3 axes = draw.turn().toRotationMatrix() * semi_axes.asDiagonal();
+  return axes * axes.transpose();
+}
+
 // Four members and two outside bodies (one moving); contacts of the kind between random pairs,
 // loaded by about .02 m, in the regime by choice of mu and the velocity scale of friction, and far
 // from the border between sticking and slipping, where differences see both.
@@ -154,26 +161,36 @@ GroupStart random_group(Draw& draw, const Case& kind) {
       c.other_direction = b.q.conjugate() * (a.q * inward.cross(tangent));
       center += b.q.conjugate() * (a.q * (c.rim * inward));
     }
-    if (c.feature == ContactFeature::tangent_plane) {
-      // the centre of b's ellipsoid over the core point, which is its lowest
-      const Vec3 semi_axes(draw.in(0.1, 0.3), draw.in(0.2, 0.5), draw.in(0.4, 0.8));
-      const Mat3 axes = draw.turn().toRotationMatrix() * semi_axes.asDiagonal();
-      const Mat3 squares = axes * axes.transpose();
-      c.direction = squares.diagonal();
-      c.other_direction = {squares(1, 2), squares(0, 2), squares(0, 1)};
-      const Vec3 m = b.q.conjugate() * (a.q * n);
-      center += squares * m / std::sqrt(m.dot(squares * m));
-      c.radius_a = c.radius_b = 0;
+    // the centres of ellipsoids where their points farthest along n are the core points
+    Vec3 farthest_a = Vec3::Zero();
+    const auto farthest = [](const Mat3& S, const Vec3& m) {
+      return Vec3(S * m / std::sqrt(m.dot(S * m)));
+    };
+    if (rolls(c.feature)) {
+      const bool curved = c.feature == ContactFeature::curved;
+      // a line, a ball or an ellipsoid
+      const int shown = !curved ? -1 : draw.in(0, 3) < 1 ? 0 : draw.in(0, 2) < 1 ? 1 : 2;
+      if (shown == 0) n = Vec3(n - n.dot(c.direction) * c.direction).normalized();
+      if (shown > 0) c.direction.setZero();
+      ContactEllipsoids ellipsoids;
+      ellipsoids.b = random_squares(draw);
+      center += farthest(ellipsoids.b, b.q.conjugate() * (a.q * n));
+      if (shown == 2) {
+        ellipsoids.a = random_squares(draw);
+        farthest_a = farthest(ellipsoids.a, n);
+      }
+      c.ellipsoids = std::make_shared<ContactEllipsoids>(ellipsoids);
+      if (!curved) c.radius_a = c.radius_b = 0;
     }
     c.normal = n;
     const double radii = c.radius_b + (c.feature == ContactFeature::plane ? 0 : c.radius_a);
-    c.point_a = a.q.conjugate() * (core - a.p) - (gap + radii) * n;
+    c.point_a = a.q.conjugate() * (core - a.p) - (gap + radii) * n - farthest_a;
     if (c.feature == ContactFeature::line) c.point_a += 0.3 * c.direction;
     if (c.feature == ContactFeature::rim) {
       c.point_a += 0.3 * c.direction;
       c.point_b = center;
     }
-    if (c.feature == ContactFeature::tangent_plane) c.point_b = center;
+    if (rolls(c.feature)) c.point_b = center;
     if (c.feature == ContactFeature::crossing) {
       c.point_a += 0.3 * c.direction;
       c.point_b += 0.2 * c.other_direction;
@@ -255,9 +272,10 @@ double worst_residual(const GroupStart& start, Draw& draw, double sigma) {
   Bench bench(start);
   Eigen::VectorXd f(bench.y.size());
   bench.system.linearise(start.time, bench.y.data(), bench.scratch, f.data());
-  // the normals that linearise leaves begin the search for the point of a rim, whose last bits
-  // follow
-  const bool searched = start.contacts.front().feature == ContactFeature::rim;
+  // the normals that linearise leaves begin the search for the point of a rim and of what is
+  // curved, whose last bits follow
+  const ContactFeature feature = start.contacts.front().feature;
+  const bool searched = feature == ContactFeature::rim || feature == ContactFeature::curved;
   EXPECT_LE((f - bench.slope(start.time, bench.y)).norm(), searched ? 1e-11 : 0);
   const Eigen::MatrixXd J = differences(bench, start.time);
   EXPECT_TRUE(bench.system.factor(sigma, bench.scratch));
@@ -307,7 +325,8 @@ TEST_P(GroupSystemTest, time_slope_is_that_of_the_outside_motion_to_1e_6) {
 
 constexpr ContactFeature features[] = {ContactFeature::plane, ContactFeature::line,
                                        ContactFeature::point, ContactFeature::crossing,
-                                       ContactFeature::rim,   ContactFeature::tangent_plane};
+                                       ContactFeature::rim,   ContactFeature::tangent_plane,
+                                       ContactFeature::curved};
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;

@@ -63,7 +63,8 @@ double gap_by_feature(const ManifoldPoint& p) {
     case ReferenceFeature::point: break;
     case ReferenceFeature::crossing:
     case ReferenceFeature::rim:
-    case ReferenceFeature::tangent_plane: ADD_FAILURE() << "of round shapes alone"; break;
+    case ReferenceFeature::tangent_plane:
+    case ReferenceFeature::curved: ADD_FAILURE() << "of round shapes alone"; break;
   }
   return r.norm() - p.reference_radius - p.radius;
 }

@@ -30,6 +30,7 @@ Frame turned(const Vec3& rotation, const Vec3& position) {
 
 double gap_by_feature(const ManifoldPoint& p) {
   const Vec3 r = p.core_point - p.reference_point;
+  // of ellipsoids the balls that osculate them
   const Vec3 across = r - p.direction * p.direction.dot(r);
   const double radii = p.reference_radius + p.radius;
   if (p.kind == ReferenceFeature::plane || p.kind == ReferenceFeature::tangent_plane)
@@ -43,7 +44,7 @@ double gap_by_feature(const ManifoldPoint& p) {
     const Vec3 normal = p.direction.cross(line).normalized();
     return (normal.dot(p.normal) < 0 ? -normal : normal).dot(r) - radii;
   }
-  return (p.kind == ReferenceFeature::line ? across : r).norm() - radii;
+  return (p.kind == ReferenceFeature::point ? r : across).norm() - radii;
 }
 
 const ShapePtr ground = make_half_space({0, 0, 1}, 0);
@@ -256,7 +257,7 @@ TEST(CylinderManifold, logs_side_by_side_have_two_points_crossed_ones_one_stacke
 }
 
 // The one contact of a body that stands and one that flies past it, as its group sees it: how far
-// its gap is from the distance of the two, m, at most.
+// its gap is from the distance of the two while these features meet, m, at most.
 double worst_gap(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Frame& frame_b,
                  const Vec3& v, const Vec3& w, ReferenceFeature kind) {
   const Points points = manifold_of(a, frame_a, b, frame_b, 1e-3);
@@ -273,7 +274,7 @@ double worst_gap(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, con
   member.v = v;
   member.L = w;
   start.members = {member};
-  GroupContact c = followed_contact(p, frame_a, frame_b, b->parts()[0]);
+  GroupContact c = followed_contact(p, frame_a, a->parts()[0], frame_b, b->parts()[0]);
   c.a = -1;
   start.contacts = {c};
   GroupArc arc(start);
@@ -282,7 +283,11 @@ double worst_gap(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, con
   for (int i = 0; i <= 20; ++i) {
     const double time = start.end * i / 20;
     const GroupSample s = arc.evaluate(0, time);
-    const Separation apart = separation(*a, frame_a, *b, Frame(s.q.toRotationMatrix(), s.x));
+    const Frame there(s.q.toRotationMatrix(), s.x);
+    // until other features meet
+    const Points now = manifold_of(a, frame_a, b, there, 0.1);
+    if (now.size() != 1 || now[0].feature != p.feature) break;
+    const Separation apart = separation(*a, frame_a, *b, there);
     worst = std::max(worst, std::abs(arc.contact_force(0, time).gap - apart.distance));
   }
   return worst;
@@ -335,6 +340,41 @@ TEST(RoundManifold, an_ellipsoid_that_rolls_on_a_plane_keeps_its_gap) {
                             ReferenceFeature::tangent_plane),
                   1e-9);
       }
+}
+
+// By balls in their places gaps were up to 1e-3 m wrong.
+TEST(RoundManifold, ellipsoids_on_what_is_curved_keep_their_gaps) {
+  Random random(6);
+  const std::vector<ShapePtr> below = {make_ellipsoid({2, 1, 0.5}), make_sphere(1),
+                                       make_cylinder(0.7, 8), make_capsule(0.3, 8),
+                                       make_box({4, 6, 8})};
+  const std::vector<ShapePtr> above = {make_ellipsoid({0.5, 0.3, 0.2}),
+                                       make_ellipsoid({0.1, 0.1, 0.3}), make_sphere(0.3)};
+  int curved = 0;
+  for (const ShapePtr& b : above)
+    for (const ShapePtr& a : below)
+      for (int i = 0; i < 40; ++i) {
+        if (a->parts()[0].kind != PartKind::ellipsoid && b->parts()[0].kind != PartKind::ellipsoid)
+          continue;
+        const Frame under = random_frame(random, 0.1);
+        Frame frame = random_frame(random, 0.1);
+        // at the sides and edges that are far from their ends
+        Vec3 from = random_direction(random);
+        if (a->parts()[0].kind == PartKind::frustum || a->parts()[0].kind == PartKind::polyhedron)
+          from -= 0.95 * under.R.col(2).dot(from) * under.R.col(2);
+        frame.p += 6 * from.normalized();
+        const Separation s = separation(*a, under, *b, frame);
+        frame.p -= (s.distance - 1e-4) * s.normal;
+        const Points points = manifold_of(a, under, b, frame, 1e-3);
+        ASSERT_EQ(points.size(), 1u);
+        if (points[0].kind != ReferenceFeature::curved) continue;
+        ++curved;
+        EXPECT_LT(worst_gap(a, under, b, frame, {0.1, 0.2, 0.3}, 2 * random_direction(random),
+                            ReferenceFeature::curved),
+                  1e-9)
+            << "of " << &a - below.data() << " and " << &b - above.data();
+      }
+  EXPECT_GT(curved, 250);
 }
 
 TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {
