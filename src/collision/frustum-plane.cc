@@ -17,7 +17,19 @@ constexpr double slack = 1e-12;
 // What has to be known of one point besides where it is.
 struct Found {
   FacePoint place;
-  double radius;  // of the ball about its core
+  double radius = 0;  // of the ball about its core
+  // of the circle about the axis that it is on, where that is followed
+  double circle = 0;
+  Vec3 circle_center = Vec3::Zero(), axis = Vec3::UnitZ();
+
+  // The lowest of a circle of the core, which rolls.
+  void roll(const PlacedFrustum& c, const Tilt& tilt, double core_radius, const Vec3& center) {
+    radius = c.rolling_radius(core_radius, tilt);
+    if (!PlacedFrustum::keeps_circle(core_radius, tilt)) return;
+    circle = core_radius;
+    circle_center = center;
+    axis = c.axis;
+  }
 };
 
 void emit(const Found& found, const Ground& ground, FeatureMode mode, ManifoldPoint p,
@@ -27,6 +39,12 @@ void emit(const Found& found, const Ground& ground, FeatureMode mode, ManifoldPo
   p.radius = found.radius;
   p.core_point = found.place.point + found.radius * ground.normal;
   p.reference_point = found.place.point - found.place.gap * ground.normal;
+  if (found.circle > 0) {
+    p.kind = ReferenceFeature::tangent_plane;
+    p.rim = found.circle;
+    p.rim_center = found.circle_center;
+    p.other_direction = found.axis;
+  }
   p.feature =
       feature_name(p.pair, mode, {ground.name, found.place.key, p.reference_is_a ? 1u : 0u});
   out.push_back(p);
@@ -63,8 +81,9 @@ void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double 
   thread_local std::vector<FacePoint> higher;
   higher.clear();
   const auto add = [&](double t, std::uint64_t name) {
-    Found found{{tail + t * along, 0, name},
-                c.rolling_radius(c.bottom_radius + t * widening, tilt)};
+    Found found{{tail + t * along, 0, name}};
+    found.roll(c, tilt, c.bottom_radius + t * widening,
+               c.end(false) + 2 * t * c.half_length * c.axis);
     found.place.gap = ground.normal.dot(found.place.point - ground.point);
     if (found.place.gap <= reach)
       emit(found, ground, FeatureMode::lying, p, out);
@@ -116,8 +135,9 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the frustum
     const bool lowest = !tilt.upright() && point.key == 0;
-    emit({point, lowest ? c.rolling_radius(radius, tilt) : 0}, ground,
-         tilt.upright() ? FeatureMode::standing : FeatureMode::rim, p, out);
+    Found found{point};
+    if (lowest) found.roll(c, tilt, radius, cap);
+    emit(found, ground, tilt.upright() ? FeatureMode::standing : FeatureMode::rim, p, out);
   }
   lie_on_each_other(ground.parallel, patch::aligned_sine, higher, before, out);
 }

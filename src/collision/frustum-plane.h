@@ -4,7 +4,8 @@
 // about e is x = e - r m'/|m'|.  The ray from x along m meets the axis at a distance of rho =
 // r/|m'|: a ball of that radius about that point of the axis touches the plane where the rim does,
 // and goes on doing so while the frustum spins about its axis: the core point of what rolls, a tip
-// (r = 0) as well.  What is within a margin adds that to the ball.
+// (r = 0) as well.  What is within a margin adds that to the ball.  Only the circle itself does so
+// while the frustum tilts: it is followed as a flat ellipsoid (`tangent_plane`) unless it is level.
 //
 // Frames: world.
 //
@@ -43,6 +44,11 @@ struct PlacedFrustum {
   // radius; upright that of a corner.
   double rolling_radius(double radius, const Tilt& tilt) const {
     return (tilt.upright() ? 0 : radius / tilt.sine) + margin;
+  }
+  // Whether a circle about the axis is followed as it is, not as that ball: when it is level what
+  // is lowest of it is anywhere.
+  static bool keeps_circle(double radius, const Tilt& tilt) {
+    return radius > 0 && tilt.sine > patch::level;
   }
 };
 

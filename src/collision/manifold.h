@@ -15,9 +15,10 @@
 namespace tw {
 
 // What the reference body shows the other: see integrate/group-arc.h for what follows from it.  A
-// tangent plane is a plane that an ellipsoid of the other body is followed on as it rolls; `curved`
-// is a line (`direction`) or a point (`direction` 0), and one body's part, or both, an ellipsoid
-// that is followed.  Points and radii are those of balls that osculate the ellipsoids.
+// tangent plane is a plane that an ellipsoid of the other body, or its circle (`rim`), is followed
+// on as it rolls; `curved` is a line (`direction`) or a point (`direction` 0), where the part of one
+// body or both is followed itself: an ellipsoid, or the end of a frustum that is the reference.
+// Points and radii are those of balls that osculate these.
 enum class ReferenceFeature : unsigned char {
   plane,
   line,
@@ -34,12 +35,12 @@ struct ManifoldPoint {
   Vec3 normal = Vec3::UnitZ();           // unit, world, from the reference body to the other
   Vec3 direction = Vec3::UnitX();        // unit, world: line, crossing, rim; curved: or 0
   Vec3 other_direction = Vec3::UnitY();  // unit, world: of the other body's line, or a rim's axis
-  Vec3 rim_center = Vec3::Zero();        // world: rim only
+  Vec3 rim_center = Vec3::Zero();        // world: where there is a rim
   Vec3 reference_point = Vec3::Zero();   // world: a point of the plane or line, or the core point
   Vec3 core_point = Vec3::Zero();        // world: of the other body
   double reference_radius = 0;           // m: of a spherical or cylindrical reference
   double radius = 0;                     // m: about the core point
-  double rim = 0;                        // m: of the other body's rim
+  double rim = 0;                        // m: of the other body's rim; tangent plane: or 0
   double gap = 0;                        // m, signed; > 0: not yet touching
   // How flat it lies with the lowest points of its pair of parts: 1 as low, down to 0 where a line
   // to one of these, or the parts there, are no longer taken for parallel.  `beyond`: the sum of

@@ -5,12 +5,29 @@
 namespace tw {
 namespace {
 
-// S of the part in the body's frame; false, and 0, where it is no ellipsoid.
-bool squares(const ConvexPart& part, Mat3& S) {
-  if (part.kind != PartKind::ellipsoid) return false;
+// What is followed as an ellipsoid within a radius; all in the body's frame.
+struct Followed {
+  Mat3 S;
+  Vec3 center;
+  double radius;
+};
+
+// The circle of a frustum, flat.
+Followed circle(const Vec3& center, const Vec3& axis, double radius, double margin) {
+  return {radius * radius * (Mat3::Identity() - axis * axis.transpose()), center, margin};
+}
+
+Followed ellipsoid(const ConvexPart& part) {
   const Mat3 axes = part.placement.R * part.semi_axes.asDiagonal();
-  S = axes * axes.transpose();
-  return true;
+  return {axes * axes.transpose(), part.placement.p, 0};
+}
+
+// The end of a frustum that a point of its surface is on.
+Followed end_at(const ConvexPart& part, const Vec3& point) {
+  const Vec3 axis = part.placement.R.col(2);
+  const bool top = axis.dot(point - part.placement.p) > 0;
+  const Vec3 center = part.placement.p + (top ? part.half_length : -part.half_length) * axis;
+  return circle(center, axis, top ? part.top_radius : part.radius, part.margin);
 }
 
 }  // namespace
@@ -33,14 +50,23 @@ GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference,
   }
   if (p.kind == ReferenceFeature::tangent_plane || p.kind == ReferenceFeature::curved) {
     ContactEllipsoids ellipsoids;
-    if (squares(other_part, ellipsoids.b)) {
-      c.point_b = other_part.placement.p;
-      c.radius_b = 0;
-    }
-    if (squares(reference_part, ellipsoids.a)) {
-      c.point_a = reference_part.placement.p;
-      c.radius_a = 0;
-    }
+    const auto follow = [](const Followed& f, Mat3& S, Vec3& point, double& radius) {
+      S = f.S;
+      point = f.center;
+      radius = f.radius;
+    };
+    if (p.rim > 0)
+      follow(circle(other.to_local(p.rim_center), c.other_direction, p.rim, other_part.margin),
+             ellipsoids.b, c.point_b, c.radius_b);
+    else if (other_part.kind == PartKind::ellipsoid)
+      follow(ellipsoid(other_part), ellipsoids.b, c.point_b, c.radius_b);
+    const Vec3 on_reference = p.core_point - (p.radius + p.gap) * p.normal;
+    const bool shows_point = p.kind == ReferenceFeature::curved && p.direction.isZero(0);
+    if (reference_part.kind == PartKind::ellipsoid)
+      follow(ellipsoid(reference_part), ellipsoids.a, c.point_a, c.radius_a);
+    else if (reference_part.kind == PartKind::frustum && shows_point)
+      follow(end_at(reference_part, reference.to_local(on_reference)), ellipsoids.a, c.point_a,
+             c.radius_a);
     c.ellipsoids = std::make_shared<ContactEllipsoids>(ellipsoids);
   }
   return c;

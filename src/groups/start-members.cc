@@ -64,6 +64,10 @@ void StartOfMembers::set_tolerances() {
   start_.position_tolerance = closeness * group_position_tolerance(accuracy, size_);
   start_.velocity_tolerance =
       closeness * slimness_ * group_velocity_tolerance(accuracy, size_, gravity);
+  // what rolls goes on for ever, and so do its errors
+  if (std::any_of(start_.contacts.begin(), start_.contacts.end(),
+                  [](const GroupContact& contact) { return rolls(contact.feature); }))
+    start_.velocity_tolerance *= answer::closer_rolling;
 }
 
 }  // namespace tw

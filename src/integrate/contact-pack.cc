@@ -315,7 +315,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
       lowest = set_curved(pack, D, b.R, side, o);
     } else {
       lowest = set_tangent_plane(pack, b.R, o);
-      o.gap = dot(o.n, D + lowest);
+      o.gap = dot(o.n, D + lowest) - pack.radius_b;
     }
     o.ra = o.ra + lowest;
     o.rb = o.rb + lowest;

@@ -74,11 +74,6 @@ constexpr bool is_flat(ContactFeature feature) {
   return feature == ContactFeature::plane || feature == ContactFeature::tangent_plane;
 }
 
-// Whether the core point of b runs over its surface as it rolls.
-constexpr bool rolls(ContactFeature feature) {
-  return feature == ContactFeature::tangent_plane || feature == ContactFeature::curved;
-}
-
 // Whether n turns when b does.
 constexpr bool turns_normal(ContactFeature feature) {
   return runs(feature) || feature == ContactFeature::curved;

@@ -81,6 +81,11 @@ enum class ContactFeature : unsigned char {
   curved
 };
 
+// Whether the core point of b runs over its surface as it rolls.
+constexpr bool rolls(ContactFeature feature) {
+  return feature == ContactFeature::tangent_plane || feature == ContactFeature::curved;
+}
+
 // Ellipsoids that a contact follows, of semi-axes s along the columns of Q: S = Q s^2 Q^T, m^2, in
 // the frame of the body; 0: a point.
 struct ContactEllipsoids {
@@ -98,7 +103,7 @@ struct ContactEllipsoids {
 //          other_direction
 //   tangent_plane  n = normal, and b has an ellipsoid about point_b, the points S u/sqrt(u.S u)
 //          from there (u any vector): p_b is that with u = -n, where it is lowest; gap =
-//          n.(p_b - p_a)
+//          n.(p_b - p_a) - radius_b.  A circle is a flat ellipsoid
 //   curved ellipsoids about p_a and p_b, within which the cores of both are points: the n of the
 //          greatest gap, n.(p_b - p_a) - radius_a - radius_b, where p_a, p_b are the points of the
 //          ellipsoids farthest along n and -n.  Where a has a line, l = direction, its ellipsoid is

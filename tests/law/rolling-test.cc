@@ -129,15 +129,15 @@ TEST(Rolling, an_egg_that_rocks_without_friction_keeps_its_energy) {
   EXPECT_NEAR(world.total_energy(), before, 1e-3 * before);
 }
 
-// A flat ellipsoid that rocks on a bar, a ball and an egg: followed by balls it gained 1.35 times the
-// energy of its swing in 20 s.
+// A flat ellipsoid that rocks on a bar, a ball and an egg: followed by balls it gained 1.35 times
+// the energy of its swing in 20 s.
 TEST(Rolling, a_lens_that_rocks_on_what_is_round_keeps_its_energy) {
   const double R = 0.3, c = 0.1, w = 0.5;
   for (const ShapePtr& below : {make_cylinder(R, 1), make_sphere(R), make_ellipsoid({R, R, 0.5})}) {
     World world;
     set_contact_for_all(world, 0, 2);
     BodyDef bar = body_of(below, {0, 0, -R}, Vec3::Zero());
-    bar.kind = BodyKind::fixed;
+    bar.fixed = true;
     bar.orientation = rotation_by(Vec3(pi / 2, 0, 0));
     world.add_body(bar);
     BodyDef lens = body_of(make_ellipsoid({0.4, 0.2, c}), {0, 0, c}, {w * c, 0, 0});
@@ -147,6 +147,24 @@ TEST(Rolling, a_lens_that_rocks_on_what_is_round_keeps_its_energy) {
     world.advance(20);
     EXPECT_NEAR(world.total_energy(), start, 0.01 * swing);
   }
+}
+
+// A coin of 24 mm that wobbles without slipping: its rim followed by balls, it lost 22 % in 6 s at
+// every accuracy.  What the contact's damping takes is 0.085 %.
+TEST(Rolling, a_coin_that_wobbles_without_slipping_keeps_its_energy) {
+  World world;
+  set_contact_for_all(world, 0.3, 5);
+  add_wall(world, Vec3::UnitZ(), 0);
+  const double r = 0.012, h = 0.002, tilt = 0.3;
+  BodyDef coin = body_of(make_cylinder(r, h), Vec3::Zero(), Vec3::Zero());
+  coin.angular_velocity = {0, 0, 10};
+  coin.orientation = rotation_by(Vec3(pi / 2 - tilt, 0, 0));
+  coin.position.z() = r * std::cos(tilt) + 0.5 * h * std::sin(tilt) + 1e-6;
+  world.add_body(coin);
+  world.advance(0.01);
+  const double before = world.total_energy();
+  world.advance(6);
+  EXPECT_NEAR(world.total_energy(), 0.99915 * before, 2e-4 * before);
 }
 
 void set_resistance(World& world, double rolling, double spinning) {
