@@ -238,5 +238,51 @@ TEST(Erleben, cubes_rest_on_cliff_edges_and_on_internal_edges) {
   EXPECT_KNOWN_FAULT(on_edges.position.norm(), 1e-3, 0.0173);
 }
 
+// A pit of four walls that stand on a floor.  A tip that was in a wall, 1e-4 m over its bottom
+// face, was thought to leave it by the floor's top, which the wall stands on: it slid on through
+// the wall.
+TEST(Erleben, a_spike_in_a_pit_with_a_floor_stays_out_of_the_walls) {
+  const Corners tip = {
+      {.25, 1.5, .25}, {.25, 1.5, -.25}, {-.25, 1.5, .25}, {-.25, 1.5, -.25}, {0, 0, 0}};
+  struct Start {
+    double x, z, speed, slope;
+  };
+  for (const Start& start : {Start{0.034, 0.026, 0.5, 2},
+                             {0.01, 0, 0.1, 2},
+                             {0.02, 0.03, 0.3, 4},
+                             {0.05, -0.02, 1, 1},
+                             {0.1, 0.02, 0.8, 1}})
+    for (const bool one_union : {true, false}) {
+      std::vector<ShapePtr> parts = {
+          place_shape(make_box({3, 0.5, 3}), {{0, -0.25, 0}, Quat::Identity()})};
+      std::vector<std::pair<Vec3, double>> slopes;
+      for (int i = 0; i < 4; ++i) {
+        const auto at = [&](double radius, double height, int turn) {
+          const double angle = pi / 2 * turn;
+          return Vec3(radius * std::cos(angle), height, radius * std::sin(angle));
+        };
+        const double rim = 0.5 / start.slope;
+        parts.push_back(make_hull({Vec3::Zero(), at(1.5, 0, i), at(1.5, 0, i + 1), at(rim, 0.5, i),
+                                   at(rim, 0.5, i + 1), at(1.5, 0.5, i), at(1.5, 0.5, i + 1)}));
+      }
+      World world;
+      world.set_gravity({0, -9.8, 0});
+      set_contact_for_all(world, 0, 0);
+      for (const ShapePtr& shape : one_union ? std::vector<ShapePtr>{make_union(parts)} : parts) {
+        BodyDef def;
+        def.shape = shape;
+        def.fixed = true;
+        world.add_body(def);
+      }
+      world.add_body(body_of(make_hull(tip), {start.x, 0.3, start.z}, {start.speed, 0, 0}));
+      for (int k = 1; k <= 60; ++k) {
+        world.advance(0.025 * k);
+        StabilityOutcome outcome;
+        measure_depths(world, outcome);
+        ASSERT_LT(outcome.deepest, 4e-3) << start.x << " " << one_union << " at " << world.time();
+      }
+    }
+}
+
 }  // namespace
 }  // namespace tw::test

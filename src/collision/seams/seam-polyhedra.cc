@@ -89,6 +89,12 @@ struct Exposure {
         if (!over_face(core, face, foot, 0)) continue;
         others = neighbours;
         others[i] = {of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame};
+        // what stands on the face, as a wall on the floor of a pit
+        const Vec3 above = place * Vec3(foot + 4 * same_place() * face.normal);
+        if (std::any_of(others.begin(), others.end(), [&](const SeamNeighbour& covering) {
+              return height_over(covering, above) < -2 * same_place();
+            }))
+          continue;
         if (!buried_edge(*q.part, q.frame, place * foot, place.R * face.normal, others, seam.size))
           return true;
       }

@@ -98,13 +98,13 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
   const Vec3& foot = beyond.foot;
   if (beyond.over <= 0 || over_face(part, face, foot, 0)) return false;
   const Vec3 border = nearest_on_face(part, face, foot);
-  if ((border - foot).norm() > farthest) return false;
+  if ((border - foot).norm() > farthest || !beyond.is_slope(border)) return false;
   if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
       beyond.ends_beneath(border, false))
     return true;
 
   // a slit: nothing is between its border and the point, nor where the body goes through the plane
-  if (!beyond.is_slope(border) || !beyond.is_open(border, point)) return false;
+  if (!beyond.is_open(border, point)) return false;
   const Vec3 through =
       height < 0 ? Vec3(point + height / (height - beyond.over) * (middle - point)) : foot;
   if (over_face(part, face, through, 0)) return beyond.ends_beneath(border, true);
