@@ -27,7 +27,9 @@ the earlier.
 #:spinning-friction  m, 0 or more: likewise spinning about the normal, beside what the friction of
                 several points does; 0
 #:stiffness     N/m of a lasting contact, positive; such that the weight of the lighter body
-                compresses it by 2.5e-4 of the smaller size (less in groups of unequal masses)
+                compresses it by 2.5e-4 of the smaller size (less in groups of unequal masses).  The
+                points of two parts share it, as many as there are, so that without damping a soft
+                contact gains energy where their number changes; at twice that depth it has doubled
 #:damping       s/m of a lasting contact, 0 or more; such that it oscillates at half the critical
                 damping
 #:fusion-speed  m/s, 0 or more: an impact that leaves less becomes a lasting contact; 0.07 sqrt(g
