@@ -59,13 +59,8 @@ void follow(ManifoldPoint& p, const Osculating& reference, const Osculating& oth
     if (other.is_ellipsoid) p.kind = ReferenceFeature::tangent_plane;
     return;
   }
-  const bool on_rim = p.kind == ReferenceFeature::curved;
-  const double sharpest =
-      (on_rim ? 0 : reference.least(p.reference_radius)) + other.least(p.radius);
-  if (p.gap < -0.5 * sharpest) {
-    if (on_rim) p.kind = ReferenceFeature::point;
-    return;
-  }
+  const double sharpest = reference.least(p.reference_radius) + other.least(p.radius);
+  if (p.gap < -0.5 * sharpest) return;
   if (p.kind == ReferenceFeature::point) p.direction.setZero();
   p.kind = ReferenceFeature::curved;
 }

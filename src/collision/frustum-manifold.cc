@@ -435,20 +435,14 @@ void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const C
     p.reference_radius = side.radius;
     p.reference_point -= side.radius * p.normal;
   } else if (near.feature == FrustumFeature::rim) {
-    // the rim keeps rolling on its circle, or its ball
+    // the rim keeps rolling on its ball
     mode = FeatureMode::rim;
     p.kind = ReferenceFeature::point;
     const PlacedFrustum c(frustum, frame_f);
     const Vec3 core = world * near.core;
-    const Tilt tilt = c.tilt(-p.normal);
-    const double rolling = c.rolling_radius(c.radius_at(core), tilt);
+    const double rolling = c.rolling_radius(c.radius_at(core), c.tilt(-p.normal));
     p.reference_radius = rolling;
     p.reference_point = core - (rolling - frustum.margin) * p.normal;
-    if (PlacedFrustum::keeps_circle(c.radius_at(core), tilt) &&
-        p.gap > -0.5 * (frustum.margin + sphere.radius)) {
-      p.kind = ReferenceFeature::curved;
-      p.direction.setZero();
-    }
   }
   const bool down = p.normal.dot(world.R.col(2)) < 0;
   p.feature = feature_name(pair, mode, {down ? 1u : 0u, 0, 0});

@@ -16,9 +16,8 @@ namespace tw {
 
 // What the reference body shows the other: see integrate/group-arc.h for what follows from it.  A
 // tangent plane is a plane that an ellipsoid of the other body, or its circle (`rim`), is followed
-// on as it rolls; `curved` is a line (`direction`) or a point (`direction` 0), where the part of one
-// body or both is followed itself: an ellipsoid, or the end of a frustum that is the reference.
-// Points and radii are those of balls that osculate these.
+// on as it rolls; `curved` is a line (`direction`) or a point (`direction` 0), and one body's part,
+// or both, an ellipsoid that is followed.  Points and radii are those of balls that osculate these.
 enum class ReferenceFeature : unsigned char {
   plane,
   line,

@@ -118,25 +118,23 @@ TW_LANES LaneVec set_rim(const ContactPack& pack, const LaneVec& D, const LaneMa
   return pack.rim * e;
 }
 
-// R S R^T of a symmetric S
-TW_LANES LaneMat turned(const LaneMat& R, const LaneMat& S) {
-  const LaneMat RS = R * S;
-  return {{R * RS.row[0], R * RS.row[1], R * RS.row[2]}};
-}
-
-// Of an ellipsoid S its point farthest along n, from its centre, S n/h with h = sqrt(n.S n), and
-// the second derivatives of h: how that point moves when n turns.
+// Of an ellipsoid A its point farthest along n, from its centre, A u with u = A^T n/h, h = |A^T n|,
+// and the second derivatives of h: how that point moves when n turns.  Of a circle that is level h
+// is 0, and its lowest point is anywhere: the derivatives end there.
 struct Farthest {
   LaneVec point;
-  LaneMat curvature;  // S/h - S n (S n)^T/h^3
+  LaneMat curvature;  // (A A^T - A u (A u)^T)/h
 };
 
-TW_LANES Farthest farthest_along(const LaneMat& S, const LaneVec& n) {
-  const LaneVec along = S * n;
-  const Lanes inverse = lanes(1) / sqrt(max(dot(n, along), lanes(1e-300)));
+TW_LANES Farthest farthest_along(const LaneMat& A, const LaneVec& n) {
+  const LaneVec along = transposed_times(A, n);
+  const Lanes h = sqrt(dot(along, along));
+  const LaneMat S = {{A * A.row[0], A * A.row[1], A * A.row[2]}};
+  const Lanes level = lanes(answer::level_circle) * sqrt(S.row[0].x + S.row[1].y + S.row[2].z);
   Farthest result;
-  result.point = inverse * along;
-  result.curvature = inverse * (S - outer(result.point, result.point));
+  result.point = A * (lanes(1) / max(h, lanes(1e-300)) * along);
+  result.curvature =
+      lanes(1) / max(max(h, level), lanes(1e-300)) * (S - outer(result.point, result.point));
   return result;
 }
 
@@ -144,7 +142,7 @@ TW_LANES Farthest farthest_along(const LaneMat& S, const LaneVec& n) {
 // -H (n x dom).
 TW_LANES LaneVec set_tangent_plane(const ContactPack& pack, const LaneMat& Rb, PackState& o) {
   o.n = o.Ra * pack.normal;
-  const Farthest b = farthest_along(turned(Rb, pack.ellipsoids->b), o.n);
+  const Farthest b = farthest_along(Rb * pack.ellipsoids->b, o.n);
   o.roll = lanes(-1) * times_cross(b.curvature, o.n);
   return -b.point;
 }
@@ -173,12 +171,12 @@ TW_LANES LaneMat inverse_across(const LaneMat& M, const LaneVec& n, const LaneVe
 TW_LANES LaneVec set_curved(const ContactPack& pack, const LaneVec& D, const LaneMat& Rb,
                             const LaneVec& side, PackState& o) {
   constexpr int iterations = 5;
-  const LaneMat Sa = turned(o.Ra, pack.ellipsoids->a), Sb = turned(Rb, pack.ellipsoids->b);
+  const LaneMat axes_a = o.Ra * pack.ellipsoids->a, axes_b = Rb * pack.ellipsoids->b;
   const LaneVec l = o.Ra * pack.direction;
   const auto across_line = [&](const LaneVec& v) { return v - dot(l, v) * l; };
   o.n = unit(across_line(side));
   for (int i = 0;; ++i) {
-    const Farthest a = farthest_along(Sa, o.n), b = farthest_along(Sb, o.n);
+    const Farthest a = farthest_along(axes_a, o.n), b = farthest_along(axes_b, o.n);
     const LaneVec E = across_line(D - a.point - b.point);
     const Lanes apart = dot(o.n, E);
     o.turn = inverse_across(a.curvature + b.curvature + scalar_matrix(apart), o.n, l);

@@ -24,7 +24,7 @@ struct BodyKinematics {
   double x[3], R[9], v[3], w[3];  // R by rows: from the body's frame to the world
 };
 
-// S of the ellipsoids, in the frames of a and b.
+// Semi-axes of the ellipsoids, in the frames of a and b.
 struct PackEllipsoids {
   LaneMat a, b;
 };

@@ -86,8 +86,8 @@ constexpr bool rolls(ContactFeature feature) {
   return feature == ContactFeature::tangent_plane || feature == ContactFeature::curved;
 }
 
-// Ellipsoids that a contact follows, of semi-axes s along the columns of Q: S = Q s^2 Q^T, m^2, in
-// the frame of the body; 0: a point.
+// Ellipsoids that a contact follows: the images A u of the unit vectors u, with the semi-axes as
+// columns of A (m, frame of the body), of which one is 0 for a circle and all for a point.
 struct ContactEllipsoids {
   Mat3 a = Mat3::Zero(), b = Mat3::Zero();
 };
@@ -101,9 +101,8 @@ struct ContactEllipsoids {
 //          n = s unit(l x l_b);           gap = n.(p_b - p_a) - radius_a - radius_b
 //   rim    the same with the tangent of a circle of b, of radius `rim` about point_b, square to
 //          other_direction
-//   tangent_plane  n = normal, and b has an ellipsoid about point_b, the points S u/sqrt(u.S u)
-//          from there (u any vector): p_b is that with u = -n, where it is lowest; gap =
-//          n.(p_b - p_a) - radius_b.  A circle is a flat ellipsoid
+//   tangent_plane  n = normal, and b has an ellipsoid or a circle about point_b (ContactEllipsoids):
+//          p_b is its point farthest along -n, where it is lowest; gap = n.(p_b - p_a) - radius_b
 //   curved ellipsoids about p_a and p_b, within which the cores of both are points: the n of the
 //          greatest gap, n.(p_b - p_a) - radius_a - radius_b, where p_a, p_b are the points of the
 //          ellipsoids farthest along n and -n.  Where a has a line, l = direction, its ellipsoid is

@@ -77,11 +77,10 @@ GroupMember random_member(Draw& draw) {
   return m;
 }
 
-// Of an ellipsoid, in a body's frame.
-Mat3 random_squares(Draw& draw) {
+// Semi-axes of an ellipsoid, in a body's frame.
+Mat3 random_axes(Draw& draw) {
   const Vec3 semi_axes(draw.in(0.1, 0.3), draw.in(0.2, 0.5), draw.in(0.4, 0.8));
-  const Mat3 axes = draw.turn().toRotationMatrix() * semi_axes.asDiagonal();
-  return axes * axes.transpose();
+  return draw.turn().toRotationMatrix() * semi_axes.asDiagonal();
 }
 
 // Four members and two outside bodies (one moving); contacts of the kind between random pairs,
@@ -163,8 +162,8 @@ GroupStart random_group(Draw& draw, const Case& kind) {
     }
     // the centres of ellipsoids where their points farthest along n are the core points
     Vec3 farthest_a = Vec3::Zero();
-    const auto farthest = [](const Mat3& S, const Vec3& m) {
-      return Vec3(S * m / std::sqrt(m.dot(S * m)));
+    const auto farthest = [](const Mat3& A, const Vec3& m) {
+      return Vec3(A * (A.transpose() * m).normalized());
     };
     if (rolls(c.feature)) {
       const bool curved = c.feature == ContactFeature::curved;
@@ -173,10 +172,10 @@ GroupStart random_group(Draw& draw, const Case& kind) {
       if (shown == 0) n = Vec3(n - n.dot(c.direction) * c.direction).normalized();
       if (shown > 0) c.direction.setZero();
       ContactEllipsoids ellipsoids;
-      ellipsoids.b = random_squares(draw);
+      ellipsoids.b = random_axes(draw);
       center += farthest(ellipsoids.b, b.q.conjugate() * (a.q * n));
       if (shown == 2) {
-        ellipsoids.a = random_squares(draw);
+        ellipsoids.a = random_axes(draw);
         farthest_a = farthest(ellipsoids.a, n);
       }
       c.ellipsoids = std::make_shared<ContactEllipsoids>(ellipsoids);
