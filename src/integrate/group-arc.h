@@ -101,8 +101,8 @@ struct ContactEllipsoids {
 //          n = s unit(l x l_b);           gap = n.(p_b - p_a) - radius_a - radius_b
 //   rim    the same with the tangent of a circle of b, of radius `rim` about point_b, square to
 //          other_direction
-//   tangent_plane  n = normal, and b has an ellipsoid or a circle about point_b (ContactEllipsoids):
-//          p_b is its point farthest along -n, where it is lowest; gap = n.(p_b - p_a) - radius_b
+//   tangent_plane  n = normal, and b has an ellipsoid or a circle about point_b: p_b is its point
+//          farthest along -n, where it is lowest; gap = n.(p_b - p_a) - radius_b
 //   curved ellipsoids about p_a and p_b, within which the cores of both are points: the n of the
 //          greatest gap, n.(p_b - p_a) - radius_a - radius_b, where p_a, p_b are the points of the
 //          ellipsoids farthest along n and -n.  Where a has a line, l = direction, its ellipsoid is
