@@ -55,14 +55,14 @@ struct Osculating {
 
 // Of a sharp tip that is deeper than its radius no axis has the greatest gap: it stays a ball.
 void follow(ManifoldPoint& p, const Osculating& reference, const Osculating& other) {
-  if (p.kind == ReferenceFeature::plane) {
-    if (other.is_ellipsoid) p.kind = ReferenceFeature::tangent_plane;
+  if (p.kind == ContactFeature::plane) {
+    if (other.is_ellipsoid) p.kind = ContactFeature::tangent_plane;
     return;
   }
   const double sharpest = reference.least(p.reference_radius) + other.least(p.radius);
   if (p.gap < -0.5 * sharpest) return;
-  if (p.kind == ReferenceFeature::point) p.direction.setZero();
-  p.kind = ReferenceFeature::curved;
+  if (p.kind == ContactFeature::point) p.direction.setZero();
+  p.kind = ContactFeature::curved;
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ bool add_crossing(const View& v, const Vec3& tail, const Vec3& along, double rad
   const double cosine = across.dot(v.normal) / sine;
   if (std::abs(cosine) < patch::aligned_round) return false;
   ManifoldPoint p = v.point();
-  p.kind = ReferenceFeature::crossing;
+  p.kind = ContactFeature::crossing;
   p.normal = (cosine < 0 ? -1 : 1) / sine * across;
   p.direction = c.axis;
   p.other_direction = other;
@@ -245,7 +245,7 @@ bool add_rim(const View& v, const Vec3& tail, const Vec3& along, double radius,
   const double length = along.norm();
   const Vec3 line = along / length;
   ManifoldPoint p = v.point();
-  p.kind = ReferenceFeature::rim;
+  p.kind = ContactFeature::rim;
   const double up = c.axis.dot(v.on_other - c.center);
   p.other_direction = c.axis;
   p.rim_center = c.end(!(up < 0));
@@ -305,7 +305,7 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
                  std::vector<ManifoldPoint>& out) {
   const SideLine c = side_line(v.reference, v.reference_frame, v.on_reference);
   ManifoldPoint p = v.point();
-  p.kind = ReferenceFeature::line;
+  p.kind = ContactFeature::line;
   p.direction = c.axis;
   p.reference_radius = c.radius;
   p.radius = radius;
@@ -430,14 +430,14 @@ void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const C
   if (near.feature == FrustumFeature::side) {
     const SideLine side = side_line(frustum, frame_f, p.reference_point);
     mode = FeatureMode::side;
-    p.kind = ReferenceFeature::line;
+    p.kind = ContactFeature::line;
     p.direction = side.axis;
     p.reference_radius = side.radius;
     p.reference_point -= side.radius * p.normal;
   } else if (near.feature == FrustumFeature::rim) {
     // the rim keeps rolling on its ball
     mode = FeatureMode::rim;
-    p.kind = ReferenceFeature::point;
+    p.kind = ContactFeature::point;
     const PlacedFrustum c(frustum, frame_f);
     const Vec3 core = world * near.core;
     const double rolling = c.rolling_radius(c.radius_at(core), c.tilt(-p.normal));

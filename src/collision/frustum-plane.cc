@@ -14,39 +14,27 @@ namespace {
 // sides this near, relative to the radius, are met
 constexpr double slack = 1e-12;
 
-// What has to be known of one point besides where it is.
-struct Found {
-  FacePoint place;
-  double radius = 0;  // of the ball about its core
-  // of the circle about the axis that it is on, where that is followed
-  double circle = 0;
-  Vec3 circle_center = Vec3::Zero(), axis = Vec3::UnitZ();
+// Of a point on a circle about the axis: how it rolls.  When the circle is level what is lowest of
+// it is anywhere.
+ManifoldPoint rolling(ManifoldPoint p, const PlacedFrustum& c, const Tilt& tilt, double radius,
+                      const Vec3& center) {
+  p.radius = c.rolling_radius(radius, tilt);
+  if (!(radius > 0 && tilt.sine > patch::level)) return p;
+  p.kind = ContactFeature::tangent_plane;
+  p.rim = radius;
+  p.rim_center = center;
+  p.other_direction = c.axis;
+  return p;
+}
 
-  // The lowest of a circle of the core, which rolls.
-  void roll(const PlacedFrustum& c, const Tilt& tilt, double core_radius, const Vec3& center) {
-    radius = c.rolling_radius(core_radius, tilt);
-    if (!PlacedFrustum::keeps_circle(core_radius, tilt)) return;
-    circle = core_radius;
-    circle_center = center;
-    axis = c.axis;
-  }
-};
-
-void emit(const Found& found, const Ground& ground, FeatureMode mode, ManifoldPoint p,
+// `p` has its radius, and what it shares with others.
+void emit(const FacePoint& place, const Ground& ground, FeatureMode mode, ManifoldPoint p,
           std::vector<ManifoldPoint>& out) {
   p.normal = ground.normal;
-  p.gap = found.place.gap;
-  p.radius = found.radius;
-  p.core_point = found.place.point + found.radius * ground.normal;
-  p.reference_point = found.place.point - found.place.gap * ground.normal;
-  if (found.circle > 0) {
-    p.kind = ReferenceFeature::tangent_plane;
-    p.rim = found.circle;
-    p.rim_center = found.circle_center;
-    p.other_direction = found.axis;
-  }
-  p.feature =
-      feature_name(p.pair, mode, {ground.name, found.place.key, p.reference_is_a ? 1u : 0u});
+  p.gap = place.gap;
+  p.core_point = place.point + p.radius * ground.normal;
+  p.reference_point = place.point - place.gap * ground.normal;
+  p.feature = feature_name(p.pair, mode, {ground.name, place.key, p.reference_is_a ? 1u : 0u});
   out.push_back(p);
 }
 
@@ -81,14 +69,15 @@ void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double 
   thread_local std::vector<FacePoint> higher;
   higher.clear();
   const auto add = [&](double t, std::uint64_t name) {
-    Found found{{tail + t * along, 0, name}};
-    found.roll(c, tilt, c.bottom_radius + t * widening,
-               c.end(false) + 2 * t * c.half_length * c.axis);
-    found.place.gap = ground.normal.dot(found.place.point - ground.point);
-    if (found.place.gap <= reach)
-      emit(found, ground, FeatureMode::lying, p, out);
-    else
-      higher.push_back({found.place.point, found.place.gap});
+    FacePoint place{tail + t * along, 0, name};
+    place.gap = ground.normal.dot(place.point - ground.point);
+    if (place.gap > reach) {
+      higher.push_back({place.point, place.gap});
+      return;
+    }
+    const Vec3 center = c.end(false) + 2 * t * c.half_length * c.axis;
+    emit(place, ground, FeatureMode::lying,
+         rolling(p, c, tilt, c.bottom_radius + t * widening, center), out);
   };
   add(from, name_from);
   if (to > from) add(to, name_to);
@@ -135,9 +124,8 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
   for (const FacePoint& point : points) {
     // the lowest rolls, the others are fixed in the frustum
     const bool lowest = !tilt.upright() && point.key == 0;
-    Found found{point};
-    if (lowest) found.roll(c, tilt, radius, cap);
-    emit(found, ground, tilt.upright() ? FeatureMode::standing : FeatureMode::rim, p, out);
+    emit(point, ground, tilt.upright() ? FeatureMode::standing : FeatureMode::rim,
+         lowest ? rolling(p, c, tilt, radius, cap) : p, out);
   }
   lie_on_each_other(ground.parallel, patch::aligned_sine, higher, before, out);
 }

@@ -45,11 +45,6 @@ struct PlacedFrustum {
   double rolling_radius(double radius, const Tilt& tilt) const {
     return (tilt.upright() ? 0 : radius / tilt.sine) + margin;
   }
-  // Whether a circle about the axis is followed as it is, not as that ball: when it is level what
-  // is lowest of it is anywhere.
-  static bool keeps_circle(double radius, const Tilt& tilt) {
-    return radius > 0 && tilt.sine > patch::level;
-  }
 };
 
 // A plane with an outline; without sides it is unbounded.

@@ -66,7 +66,7 @@ void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPar
   const double length = apart.norm();
   p.gap = length - (a.radius + b.radius);
   if (p.gap > reach) return;
-  p.kind = ReferenceFeature::point;
+  p.kind = ContactFeature::point;
   // concentric: any direction
   if (length > 0) p.normal = apart / length;
   p.reference_radius = a.radius;

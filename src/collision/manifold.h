@@ -10,27 +10,17 @@
 #include <vector>
 
 #include "base/constants.h"
+#include "collision/contact-feature.h"
 #include "geometry/shape.h"
 
 namespace tw {
 
-// What the reference body shows the other: see integrate/group-arc.h for what follows from it.  A
-// tangent plane is a plane that an ellipsoid of the other body, or its circle (`rim`), is followed
-// on as it rolls; `curved` is a line (`direction`) or a point (`direction` 0), and one body's part,
-// or both, an ellipsoid that is followed.  Points and radii are those of balls that osculate these.
-enum class ReferenceFeature : unsigned char {
-  plane,
-  line,
-  point,
-  crossing,
-  rim,
-  tangent_plane,
-  curved
-};
-
+// A tangent plane is one that an ellipsoid of the other body, or its circle (`rim`), is followed on
+// as it rolls; `curved` is a line (`direction`) or a point (`direction` 0), and one body's part, or
+// both, an ellipsoid that is followed.  Points and radii are those of balls that osculate these.
 struct ManifoldPoint {
   bool reference_is_a = true;  // the reference body; the other has the core point
-  ReferenceFeature kind = ReferenceFeature::plane;
+  ContactFeature kind = ContactFeature::plane;
   Vec3 normal = Vec3::UnitZ();           // unit, world, from the reference body to the other
   Vec3 direction = Vec3::UnitX();        // unit, world: line, crossing, rim; curved: or 0
   Vec3 other_direction = Vec3::UnitY();  // unit, world: of the other body's line, or a rim's axis

@@ -53,7 +53,7 @@ NearestToPoint nearest_edge(const Polyhedron& p, const Vec3& point) {
     least = square;
     best.point = foot;
     const bool inner = t > 0 && t < 1;
-    best.kind = inner ? ReferenceFeature::line : ReferenceFeature::point;
+    best.kind = inner ? ContactFeature::line : ContactFeature::point;
     best.direction = along.normalized();
     best.number = inner ? e : static_cast<std::size_t>(t > 0 ? edge.head : edge.tail);
   }

@@ -17,7 +17,7 @@
 namespace tw {
 
 struct NearestToPoint {
-  ReferenceFeature kind = ReferenceFeature::plane;
+  ContactFeature kind = ContactFeature::plane;
   Vec3 normal = Vec3::UnitZ();     // unit, outward to the point
   Vec3 direction = Vec3::UnitX();  // of an edge
   Vec3 point = Vec3::Zero();       // the nearest

@@ -39,7 +39,7 @@ const ConvexPart& part_at(const ManifoldPoint& p, const Body& body, const Body& 
 }
 
 void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) {
-  if (p.kind == ReferenceFeature::plane || p.kind == ReferenceFeature::tangent_plane ||
+  if (p.kind == ContactFeature::plane || p.kind == ContactFeature::tangent_plane ||
       reference.body->dynamic())
     return;
   const ConvexPart& part = part_at(p, *reference.body, body_b);
@@ -47,8 +47,8 @@ void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) 
   for (const Polyhedron::Face& face : part.core->faces()) {
     const Vec3 normal = reference.frame.R * (part.placement.R * face.normal);
     if (normal.dot(p.normal) < 1 - 0.5 * answer::flat_angle * answer::flat_angle) continue;
-    p.kind = p.kind == ReferenceFeature::curved ? ReferenceFeature::tangent_plane
-                                                : ReferenceFeature::plane;
+    p.kind =
+        p.kind == ContactFeature::curved ? ContactFeature::tangent_plane : ContactFeature::plane;
     p.normal = normal;
     p.gap = normal.dot(p.core_point - p.reference_point) - p.radius - p.reference_radius;
     p.radius += p.reference_radius;

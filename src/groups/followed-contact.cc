@@ -30,7 +30,7 @@ GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference,
                               const ConvexPart& reference_part, const Frame& other,
                               const ConvexPart& other_part) {
   GroupContact c;
-  c.feature = static_cast<ContactFeature>(p.kind);
+  c.feature = p.kind;
   c.normal = reference.R.transpose() * p.normal;
   c.direction = reference.R.transpose() * p.direction;
   c.other_direction = other.R.transpose() * p.other_direction;
@@ -38,11 +38,11 @@ GroupContact followed_contact(const ManifoldPoint& p, const Frame& reference,
   c.point_b = other.to_local(p.core_point);
   c.radius_a = p.reference_radius;
   c.radius_b = p.radius;
-  if (p.kind == ReferenceFeature::rim) {
+  if (p.kind == ContactFeature::rim) {
     c.rim = p.rim;
     c.point_b = other.to_local(p.rim_center);
   }
-  if (p.kind == ReferenceFeature::tangent_plane || p.kind == ReferenceFeature::curved) {
+  if (p.kind == ContactFeature::tangent_plane || p.kind == ContactFeature::curved) {
     ContactEllipsoids ellipsoids;
     const auto follow = [](const Followed& f, Mat3& axes, Vec3& point, double& radius) {
       axes = f.axes;

@@ -193,7 +193,6 @@ TW_LANES LaneVec set_curved(const ContactPack& pack, const LaneVec& D, const Lan
 }
 
 // n, gap and the signed 1/|arm| from D = P_b - P_a
-
 template <ContactFeature feature>
 TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVec& side,
                          PackState& o) {

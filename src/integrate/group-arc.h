@@ -37,6 +37,7 @@
 #include <vector>
 
 #include "base/counted.h"
+#include "collision/contact-feature.h"
 #include "dynamics/contact-law.h"
 #include "dynamics/forces.h"
 #include "integrate/trajectory.h"
@@ -68,17 +69,6 @@ struct GroupTree {
   Vec3 gravity = Vec3::Zero();  // m/s^2
   std::vector<int> members;     // of each link
   std::vector<Vec3> forces;     // on each link's centre of mass, constant, weight not included, N
-};
-
-// What the reference body shows the other one at a contact.
-enum class ContactFeature : unsigned char {
-  plane,
-  line,
-  point,
-  crossing,
-  rim,
-  tangent_plane,
-  curved
 };
 
 // Whether the core point of b runs over its surface as it rolls.

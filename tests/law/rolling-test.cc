@@ -129,34 +129,42 @@ TEST(Rolling, an_egg_that_rocks_without_friction_keeps_its_energy) {
   EXPECT_NEAR(world.total_energy(), before, 1e-3 * before);
 }
 
-// Followed as a circle to the end, what became level within an arc was no longer finite (the first
-// two), and the nearest normal of an ellipsoid that slides over a rim jumped to its far side.
-TEST(Rolling, circles_become_level_and_rims_are_slid_over) {
-  for (const double w : {0.4781888799870749, 0.01835620616448617, 1.0, 2.0}) {
+// A disc that comes down flat: the derivatives of its circle's lowest point have no bound where it
+// is level, and runs ended there.
+TEST(Rolling, a_disc_dropped_nearly_flat_comes_to_lie) {
+  struct Drop {
+    double speed, y, spin;
+  };
+  for (const Drop& drop : {Drop{0.8575632338557815, 0.1173360335046652, -0.14965372069054705},
+                           {0, 0, 0.4781888799870749},
+                           {0, 0, 0.01835620616448617}}) {
     World world;
     set_contact_for_all(world, 0, 0);
     add_wall(world, Vec3::UnitZ(), 0);
-    BodyDef disc = body_of(make_cylinder(0.06, 0.02), {0, 0, 0.08}, Vec3::Zero());
-    disc.orientation = rotation_by(Vec3(0, 0.02, 0));
-    disc.angular_velocity = {w, 0, 0};
-    world.add_body(disc);
-    const double start = world.total_energy();
-    world.advance(1);
-    EXPECT_LE(world.total_energy(), start * (1 + 1e-6));
+    BodyDef disc = body_of(make_cylinder(0.06, 0.02), {-0.4, drop.y, 0.13}, {drop.speed, 0, 0});
+    disc.angular_velocity = {0, drop.spin, 0};
+    const BodyId id = world.add_body(disc);
+    ASSERT_NO_THROW(world.advance(0.3)) << drop.spin;
+    EXPECT_NEAR((world.state(id).velocity - Vec3(drop.speed, 0, 0)).norm(), 0, 1e-4);
   }
-  for (const double speed : {0.2, 0.3, 0.6})
-    for (const double y : {0.0, 0.05, 0.1}) {
-      World world;
-      set_contact_for_all(world, 0, 0);
-      add_wall(world, Vec3::UnitZ(), 0);
-      BodyDef drum = body_of(make_cylinder(0.2, 0.2), {0, 0, -0.1}, Vec3::Zero());
-      drum.fixed = true;
-      world.add_body(drum);
-      const BodyId egg = world.add_body(
-          body_of(make_ellipsoid({0.09, 0.0675, 0.0375}), {-0.3, y, 0.0375}, {speed, 0, 0}));
-      world.advance(0.5 / speed);
-      EXPECT_NEAR(world.state(egg).velocity.x(), speed, 5e-3 * speed) << y;
-    }
+}
+
+// The top of a drum lies in the plane of the floor.  With the drum's rim followed as a circle on an
+// ellipsoid, the normal jumped to the far side of its axis where an egg slid over the rim: it was
+// flung back.
+TEST(Rolling, an_egg_slides_over_a_rim_as_over_the_floor) {
+  for (const double y : {0.0, 0.05, 0.1}) {
+    World world;
+    set_contact_for_all(world, 0, 0);
+    add_wall(world, Vec3::UnitZ(), 0);
+    BodyDef drum = body_of(make_cylinder(0.3, 0.2), {0, 0, -0.1}, Vec3::Zero());
+    drum.fixed = true;
+    world.add_body(drum);
+    const BodyId egg = world.add_body(
+        body_of(make_ellipsoid({0.09, 0.0675, 0.0375}), {-0.4, y, 0.06}, {0.3, 0, 0}));
+    world.advance(0.8);
+    EXPECT_NEAR((world.state(egg).velocity - Vec3(0.3, 0, 0)).norm(), 0, 2e-3) << y;
+  }
 }
 
 // A flat ellipsoid that rocks on a bar, a ball and an egg: followed by balls it gained 1.35 times

@@ -57,14 +57,14 @@ struct ShallowPose {
 double gap_by_feature(const ManifoldPoint& p) {
   const Vec3 r = p.core_point - p.reference_point;
   switch (p.kind) {
-    case ReferenceFeature::plane: return p.normal.dot(r) - p.radius;
-    case ReferenceFeature::line:
+    case ContactFeature::plane: return p.normal.dot(r) - p.radius;
+    case ContactFeature::line:
       return (r - p.direction * p.direction.dot(r)).norm() - p.reference_radius - p.radius;
-    case ReferenceFeature::point: break;
-    case ReferenceFeature::crossing:
-    case ReferenceFeature::rim:
-    case ReferenceFeature::tangent_plane:
-    case ReferenceFeature::curved: ADD_FAILURE() << "of round shapes alone"; break;
+    case ContactFeature::point: break;
+    case ContactFeature::crossing:
+    case ContactFeature::rim:
+    case ContactFeature::tangent_plane:
+    case ContactFeature::curved: ADD_FAILURE() << "of round shapes alone"; break;
   }
   return r.norm() - p.reference_radius - p.radius;
 }
@@ -383,25 +383,25 @@ TEST(Manifold, a_ball_meets_faces_edges_and_vertices_as_planes_lines_and_points)
     return points.at(0);
   };
   ManifoldPoint p = meets({0.1, 0.2, 0.69});
-  EXPECT_EQ(p.kind, ReferenceFeature::plane);
+  EXPECT_EQ(p.kind, ContactFeature::plane);
   EXPECT_EQ(p.normal, Vec3::UnitZ());
   EXPECT_EQ(p.radius, 0.2);
   EXPECT_NEAR(p.gap, -0.01, 1e-15);
   EXPECT_EQ(p.core_point, Vec3(0.1, 0.2, 0.69));
   // sunk until the centre is inside
   p = meets({0.1, 0.2, 0.45});
-  EXPECT_EQ(p.kind, ReferenceFeature::plane);
+  EXPECT_EQ(p.kind, ContactFeature::plane);
   EXPECT_NEAR(p.gap, -0.25, 1e-15);
   // beside an edge along x
   p = meets({0.1, 0.5 + 0.12, 0.5 + 0.16});
-  EXPECT_EQ(p.kind, ReferenceFeature::line);
+  EXPECT_EQ(p.kind, ContactFeature::line);
   EXPECT_NEAR(std::abs(p.direction.x()), 1, 1e-15);
   EXPECT_NEAR((p.normal - Vec3(0, 0.6, 0.8)).norm(), 0, 1e-14);
   EXPECT_NEAR(p.gap, 0, 1e-15);
   EXPECT_EQ(p.reference_radius, 0);
   // beside a corner
   p = meets({0.6, 0.6, 0.6});
-  EXPECT_EQ(p.kind, ReferenceFeature::point);
+  EXPECT_EQ(p.kind, ContactFeature::point);
   EXPECT_EQ(p.reference_point, Vec3(0.5, 0.5, 0.5));
   EXPECT_NEAR(p.gap, 0.1 * std::sqrt(3.0) - 0.2, 1e-15);
 }
