@@ -443,6 +443,9 @@ inline constexpr double face_angle = 0.04;
 // A face that slides along an edge of the ground takes its border along, up to this sine of the
 // angle between the two: tilted faces touch it only in passing.
 inline constexpr double along_edge = 0.05;
+// What lies flat is off by what it is pressed in: such a lean of the normal at a border counts for
+// nothing up to the first, for all from the second on, sines.
+inline constexpr double least_lean = 1e-3, full_lean = 2e-3;
 // Points closer than this are one, and a point so near to a part is held by it.
 inline constexpr double same_point = 1e-5;
 // What of an edge is so near to a neighbour counts as buried: more than same_point allows.

@@ -19,6 +19,8 @@
 
 namespace tw {
 
+struct SeamPair;
+
 // What meets at a point: part of its name.
 enum class FeatureMode : std::uint64_t {
   ball = 1,
@@ -61,9 +63,10 @@ void part_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& 
 void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                         const Frame& frame_b, double reach, ReferenceChoice choice, int pair,
                         std::vector<ManifoldPoint>& out);
-// The same with features that are known.
+// The same with features that are known; `seam`: where one is, or nullptr.
 void features_manifold(const CorePair& cores, const NearestFeatures& near, double reach,
-                       ReferenceChoice choice, int pair, std::vector<ManifoldPoint>& out);
+                       ReferenceChoice choice, int pair, const SeamPair* seam,
+                       std::vector<ManifoldPoint>& out);
 // The half-space is the reference body; `reference_is_a` says which of the two it is.
 void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
                          const ConvexPart& polyhedron, const Frame& frame_p, double reach,

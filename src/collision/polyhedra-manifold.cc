@@ -6,6 +6,7 @@
 #include "base/constants.h"
 #include "collision/face-contact.h"
 #include "collision/manifold-parts.h"
+#include "collision/seams/seam-pair.h"
 
 namespace tw {
 
@@ -157,54 +158,90 @@ bool add_edges(const CorePair& cores, const NearestFeatures& near, double reach,
          near.distance + patch::missed_ratio * std::abs(near.distance) + patch::missed_floor * size;
 }
 
-// The direction of the incident edge that the name of a crossing holds.
-Vec3 incident_edge(const Polyhedron& incident, const Frame& placed, std::uint64_t key) {
-  const Vec3 ends = incident.vertex(static_cast<int>(key >> 20 & 0xfffff)) -
-                    incident.vertex(static_cast<int>(key >> 40 & 0xfffff));
-  return placed.R * ends.normalized();
+// An edge of a face; in the frame of the reference.
+struct Border {
+  Vec3 normal, inward;  // of the face; square to the edge
+};
+
+// The incident edge that the name of a crossing holds.
+Border incident_border(const Polyhedron& incident, int face_number, const Frame& placed,
+                       std::uint64_t key) {
+  const int low = static_cast<int>(key >> 40 & 0xfffff),
+            high = static_cast<int>(key >> 20 & 0xfffff);
+  const Polyhedron::Face& face = incident.face(face_number);
+  int side = face.first;
+  for (int i = face.first; i < face.first + face.count; ++i) {
+    const Polyhedron::Edge& edge =
+        incident.edges()[static_cast<std::size_t>(incident.side(i).edge)];
+    if (std::min(edge.tail, edge.head) == low && std::max(edge.tail, edge.head) == high) side = i;
+  }
+  return {placed.R * face.normal, placed.R * incident.side(side).inward};
 }
 
-// `p` as a point of the face's border on the edge that its name holds.
-void follow_edge(const Polyhedron& incident, const Frame& placed, const Vec3& face_normal,
-                 const Frame& world, std::uint64_t key, ManifoldPoint& p) {
-  const Vec3 edge = incident_edge(incident, placed, key);
-  const double sine = edge.dot(face_normal);
-  if (std::abs(sine) > seam::along_edge) return;
-  const Vec3 normal = world.R * (face_normal - sine * edge).normalized();
-  std::swap(p.core_point, p.reference_point);
-  p.gap *= normal.dot(p.normal);
-  p.normal = -normal;
-  p.reference_is_a = !p.reference_is_a;
+// Whether no neighbour goes on beyond the border, at a point of it (world): its normals lean
+// outward then, by as much as `normal` leans to either way.
+bool is_exposed(const Border& border, const Frame& world, const Vec3& point, const Vec3& normal,
+                bool on_a, const SeamPair& seam) {
+  const double sine = std::abs(normal.dot(border.inward));
+  const Vec3 outward = std::sqrt(1 - sine * sine) * border.normal - sine * border.inward;
+  return !seam.buries(on_a, point, world.R * (on_a ? outward : Vec3(-outward)), seam::same_angle);
 }
 
-// Where both bodies move, a crossing may wander along either edge: the normal stands on both, so
-// that no sliding parts the two or pushes them together.
-void stand_on_edges(const Polyhedron& reference, int face, const Polyhedron& incident,
-                    const Frame& placed, const Frame& world, std::uint64_t key, ManifoldPoint& p) {
-  const Vec3& face_normal = reference.face(face).normal;
-  const Vec3 border = face_normal.cross(reference.side(static_cast<int>(key & 0xfffff)).inward);
-  const Vec3 across = border.cross(incident_edge(incident, placed, key));
-  const double length = across.norm(), cosine = across.dot(face_normal) / length;
-  if (!(cosine * cosine >= 1 - seam::along_edge * seam::along_edge)) return;
-  const Vec3 normal = (cosine > 0 ? 1 / length : -1 / length) * across;
-  p.gap *= std::abs(cosine);
-  p.normal = world.R * normal;
+// How much of a lean of the normal counts, by its sine.
+double share_of(double lean) {
+  return std::clamp((lean - seam::least_lean) / (seam::full_lean - seam::least_lean), 0.0, 1.0);
+}
+
+// A crossing wanders along both the edge and the border: the normal stands on both, so that no
+// sliding parts the two or pushes them together.  Left as it is, with the face's normal, where
+// that is too far off, or one of the two is none because a neighbour goes on beyond it.
+void stand_on_edges(const Border& border, const Border& edge, const Frame& world,
+                    const SeamPair* seam, ManifoldPoint& p) {
+  const Vec3 across =
+      border.normal.cross(border.inward).cross(edge.normal.cross(edge.inward)).normalized();
+  const Vec3 normal = across.dot(border.normal) < 0 ? Vec3(-across) : across;
+  const double lean = normal.dot(border.inward);
+  if (!(std::abs(lean) <= seam::along_edge)) return;
+  const double share = share_of(std::abs(lean));
+  if (share == 0) return;
+  const bool on_a = p.reference_is_a;
+  if (seam && !(is_exposed(border, world, p.reference_point, normal, on_a, *seam) &&
+                is_exposed(edge, world, p.core_point, -normal, !on_a, *seam)))
+    return;
+  const double sine = share * lean;
+  const Vec3 leaning = sine * border.inward + std::sqrt(1 - sine * sine) * border.normal;
+  p.gap *= leaning.dot(border.normal);
+  p.normal = world.R * leaning;
   p.reference_point = p.core_point - p.gap * p.normal;
 }
 
-// Where both bodies move, a corner of the reference face presses on the incident face: along the
-// normal of that, or what slides would rise or sink with every step aside.
-void stand_on_face(const Vec3& incident_normal, ManifoldPoint& p) {
+// A corner of the reference face presses on the incident face: along the normal of that, or what
+// slides would rise or sink with every step aside.
+void stand_on_face(const Vec3& face_normal, const Vec3& incident_normal, const Frame& world,
+                   const SeamPair* seam, ManifoldPoint& p) {
+  const double cosine = -incident_normal.dot(face_normal);
+  const Vec3 aside = -incident_normal - cosine * face_normal;
+  const double lean = aside.norm();
+  const double share = share_of(lean);
+  if (share == 0) return;
+  const bool on_a = p.reference_is_a;
+  if (seam)
+    for (const double to : {-1.0, 1.0}) {
+      const Vec3 outward = world.R * (cosine * face_normal + to * aside);
+      if (seam->buries(on_a, p.reference_point, on_a ? outward : Vec3(-outward), seam::same_angle))
+        return;
+    }
+  const double sine = share * lean;
+  const Vec3 leaning = world.R * (std::sqrt(1 - sine * sine) * face_normal + share * aside);
   std::swap(p.core_point, p.reference_point);
-  p.gap *= -incident_normal.dot(p.normal);
-  p.normal = incident_normal;
+  p.gap *= leaning.dot(p.normal);
+  p.normal = -leaning;
   p.reference_is_a = !p.reference_is_a;
 }
 
-// A face of one as reference; `reference_is_a` says of which, `edges_stay` that the other one is
-// ground, `both_move` that neither is.
-void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool both_move, int face,
-              int incident_face, const NearestFeatures& near, double reach, int pair,
+// A face of one as reference; `reference_is_a` says of which.
+void add_face(const CorePair& cores, bool reference_is_a, int face, int incident_face,
+              const NearestFeatures& near, double reach, int pair, const SeamPair* seam,
               std::vector<ManifoldPoint>& out) {
   thread_local std::vector<FacePoint> points;
   const Polyhedron& reference = reference_is_a ? cores.a : cores.b;
@@ -238,12 +275,11 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
     p.feature = feature_name(pair, FeatureMode::face,
                              {static_cast<std::uint64_t>(found.face),
                               static_cast<std::uint64_t>(reference_is_a), found.key});
-    if (found.key >> 60 == edge_crossing) {
-      if (edges_stay) follow_edge(incident, placed, face_normal, world, found.key, p);
-      if (both_move) stand_on_edges(reference, found.face, incident, placed, world, found.key, p);
-    }
-    if (found.key >> 60 == face_corner && both_move)
-      stand_on_face(world.R * (placed.R * incident.face(found.incident).normal), p);
+    if (found.key >> 60 == edge_crossing)
+      stand_on_edges({face_normal, reference.side(static_cast<int>(found.key & 0xfffff)).inward},
+                     incident_border(incident, found.incident, placed, found.key), world, seam, p);
+    if (found.key >> 60 == face_corner)
+      stand_on_face(face_normal, placed.R * incident.face(found.incident).normal, world, seam, p);
     out.push_back(p);
   }
   for (FacePoint& p : higher) p.point = world * p.point;
@@ -258,7 +294,8 @@ void add_face(const CorePair& cores, bool reference_is_a, bool edges_stay, bool 
 }  // namespace
 
 void features_manifold(const CorePair& cores, const NearestFeatures& near, double reach,
-                       ReferenceChoice choice, int pair, std::vector<ManifoldPoint>& out) {
+                       ReferenceChoice choice, int pair, const SeamPair* seam,
+                       std::vector<ManifoldPoint>& out) {
   const Vec3 down = -(cores.b_in_a.R.transpose() * near.normal);
   const AlignedFace face_a = aligned_face(cores.a, near.a, near.normal);
   const AlignedFace face_b = aligned_face(cores.b, near.b, down);
@@ -270,12 +307,8 @@ void features_manifold(const CorePair& cores, const NearestFeatures& near, doubl
   }
   const bool reference_is_a = of_a && !(of_b && prefers_b(cores.a.face(face_a.number),
                                                           cores.b.face(face_b.number), choice));
-  const bool edges_stay =
-      choice == (reference_is_a ? ReferenceChoice::of_b : ReferenceChoice::of_a);
-  const bool both_move = choice == ReferenceChoice::larger;
-  add_face(cores, reference_is_a, edges_stay, both_move,
-           reference_is_a ? face_a.number : face_b.number,
-           reference_is_a ? face_b.number : face_a.number, near, reach, pair, out);
+  add_face(cores, reference_is_a, reference_is_a ? face_a.number : face_b.number,
+           reference_is_a ? face_b.number : face_a.number, near, reach, pair, seam, out);
 }
 
 void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
@@ -283,7 +316,7 @@ void polyhedra_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexP
                         std::vector<ManifoldPoint>& out) {
   const CorePair cores(a, frame_a, b, frame_b);
   const NearestFeatures near = nearest_features(cores.a, cores.b, cores.b_in_a, reach);
-  if (near.distance <= reach) features_manifold(cores, near, reach, choice, pair, out);
+  if (near.distance <= reach) features_manifold(cores, near, reach, choice, pair, nullptr, out);
 }
 
 void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,

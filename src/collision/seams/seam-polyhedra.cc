@@ -236,7 +236,7 @@ double polyhedra_at_seam(const SeamPair& seam, std::vector<ManifoldPoint>& out) 
                        cores.world_a.R * near.normal, seam::same_angle);
   };
   if (reached && !buried(true) && !buried(false)) {
-    features_manifold(cores, near, seam.reach, seam.choice, seam.pair, out);
+    features_manifold(cores, near, seam.reach, seam.choice, seam.pair, &seam, out);
     seam.remove_ghosts(from, seam::face_angle, out);
   }
   const bool nothing = reached && out.size() == from;
