@@ -14,6 +14,14 @@
 
 namespace tw {
 
+void ManifoldPoint::follow_lines(const Vec3& of_reference, const Vec3& of_other) {
+  const Vec3 along = of_reference.normalized(), other_along = of_other.normalized();
+  if (!(along.cross(other_along).squaredNorm() >= patch::crossing * patch::crossing)) return;
+  kind = ContactFeature::crossing;
+  direction = along;
+  other_direction = other_along;
+}
+
 void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame_p,
                                 const ConvexPart& sphere, const Frame& frame_s, double reach,
                                 bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {

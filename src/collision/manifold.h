@@ -37,6 +37,10 @@ struct ManifoldPoint {
   double flatness = 0, beyond = 0;
   int pair = 0;               // pair of parts, part_a * parts of b + part_b
   std::uint64_t feature = 0;  // stable while the same features meet
+
+  // As two lines that cross, where they do (patch::crossing), through the points that are set;
+  // world, of any length, or 0 where there is none.
+  void follow_lines(const Vec3& of_reference, const Vec3& of_other);
 };
 
 // Which face is the reference where faces of both bodies could be.

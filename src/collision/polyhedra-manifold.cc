@@ -51,7 +51,16 @@ std::uint64_t feature_key(const CoreFeature& f) {
   return key;
 }
 
-// The nearest features alone: a plane through the point of A.
+// From end to end of the edge that is the feature; 0 where it is none.
+Vec3 ends_of(const Polyhedron& p, const CoreFeature& feature) {
+  if (feature.count == 2)
+    for (const Polyhedron::Link& link : p.links(feature.vertex[0]))
+      if (link.vertex == feature.vertex[1])
+        return p.vertex(link.vertex) - p.vertex(feature.vertex[0]);
+  return Vec3::Zero();
+}
+
+// The nearest features alone: two edges, or a plane through the point of A.
 void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
                  std::vector<ManifoldPoint>& out) {
   ManifoldPoint p;
@@ -60,6 +69,8 @@ void add_corners(const CorePair& cores, const NearestFeatures& near, int pair,
   p.gap = near.distance;
   p.reference_point = p.core_point - p.gap * p.normal;
   p.pair = pair;
+  p.follow_lines(cores.world_a.R * ends_of(cores.a, near.a),
+                 cores.world_a.R * (cores.b_in_a.R * ends_of(cores.b, near.b)));
   const std::uint64_t face = static_cast<std::uint64_t>(std::max(near.a.face, near.b.face) + 1);
   p.feature =
       feature_name(pair, FeatureMode::corners, {feature_key(near.a), feature_key(near.b), face});
@@ -197,8 +208,9 @@ double share_of(double lean) {
 // that is too far off, or one of the two is none because a neighbour goes on beyond it.
 void stand_on_edges(const Border& border, const Border& edge, const Frame& world,
                     const SeamPair* seam, ManifoldPoint& p) {
-  const Vec3 across =
-      border.normal.cross(border.inward).cross(edge.normal.cross(edge.inward)).normalized();
+  const Vec3 along = border.normal.cross(border.inward),
+             edge_along = edge.normal.cross(edge.inward);
+  const Vec3 across = along.cross(edge_along).normalized();
   const Vec3 normal = across.dot(border.normal) < 0 ? Vec3(-across) : across;
   const double lean = normal.dot(border.inward);
   if (!(std::abs(lean) <= seam::along_edge)) return;
@@ -222,6 +234,7 @@ void stand_on_face(const Vec3& face_normal, const Vec3& incident_normal, const F
   const double cosine = -incident_normal.dot(face_normal);
   const Vec3 aside = -incident_normal - cosine * face_normal;
   const double lean = aside.norm();
+  if (!(lean <= seam::along_edge && cosine > 0)) return;
   const double share = share_of(lean);
   if (share == 0) return;
   const bool on_a = p.reference_is_a;

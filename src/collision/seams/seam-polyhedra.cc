@@ -35,6 +35,8 @@ struct Exposure {
     double gap;
     // of what meets there
     std::uint64_t first, second, third;
+    // edges of the part and of the other that cross, or 0
+    Vec3 along = Vec3::Zero(), other_along = Vec3::Zero();
   };
 
   // False for ghosts.
@@ -46,11 +48,17 @@ struct Exposure {
     p.gap = found.gap;
     p.reference_point = p.core_point - p.gap * p.normal;
     p.pair = seam.pair;
+    p.follow_lines(world.R * found.along, world.R * found.other_along);
     const FeatureMode mode = of_a ? FeatureMode::exposed_of_a : FeatureMode::exposed_of_b;
     p.feature = feature_name(seam.pair, mode, {found.first, found.second, found.third});
     if (seam.is_ghost(p, seam::same_angle)) return false;
     out.push_back(p);
     return true;
+  }
+
+  static Vec3 ends_of(const Polyhedron& polyhedron, int number) {
+    const Polyhedron::Edge& edge = polyhedron.edges()[static_cast<std::size_t>(number)];
+    return polyhedron.vertex(edge.head) - polyhedron.vertex(edge.tail);
   }
 
   // Edges of the part through the other.
@@ -66,7 +74,8 @@ struct Exposure {
       if (p.face >= 0)
         add({!of_a, -p.normal, p.point, p.gap, edge, face, other_edge});
       else
-        add({of_a, p.normal, p.opposite, p.gap, edge, face, other_edge});
+        add({of_a, p.normal, p.opposite, p.gap, edge, face, other_edge, ends_of(part, p.edge),
+             other_in_part.R * ends_of(other, p.other_edge)});
     }
   }
 
