@@ -452,6 +452,8 @@ inline constexpr double same_point = 1e-5;
 inline constexpr double buried_margin = 2e-5;
 // How far from the surface normals are compared, and how far around a point a face is looked at.
 inline constexpr double probe = 0.01;
+// In a corner a wall is looked at as far around as this times what is sunk into it.
+inline constexpr double corner = 20;
 // Walls of the ground that are no farther apart, as a share of `probe`, are inner walls.
 inline constexpr double crack = 0.05;
 // How steeply a neighbour is looked for beyond a side of a face, rad.

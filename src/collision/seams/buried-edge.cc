@@ -165,7 +165,8 @@ double height_over(const SeamNeighbour& part, const Vec3& point) {
 }
 
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
-                 const std::vector<SeamNeighbour>& neighbours, double size, double angle) {
+                 const std::vector<SeamNeighbour>& neighbours, double size, double angle,
+                 double depth) {
   if (part.kind != PartKind::polyhedron)
     return denied(point, normal, neighbours, size, angle) &&
            !comes_out_beside(part, frame, point, normal, neighbours, size, angle);
@@ -199,13 +200,16 @@ bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, 
   if (!denied(world * inward, normal, neighbours, size, angle)) return false;
   const Vec3 u = core.side(face.first).inward;
   const Vec3 v = face.normal.cross(u);
+  // what is deep in one wall of a corner may be as deep in the others
+  const double widest = std::clamp(seam::corner * depth, seam::probe * size, seam::sunk * size);
   constexpr int directions = 8;
-  for (int i = 0; i < directions; ++i) {
-    const double turn = 2 * pi * i / directions;
-    const Vec3 beside = foot + seam::probe * size * (std::cos(turn) * u + std::sin(turn) * v);
-    if (!over_face(core, face, beside, 0)) continue;
-    if (!denied(world * beside, normal, neighbours, size, angle)) return false;
-  }
+  for (double around = seam::probe * size; around <= widest; around *= 2)
+    for (int i = 0; i < directions; ++i) {
+      const double turn = 2 * pi * i / directions;
+      const Vec3 beside = foot + around * (std::cos(turn) * u + std::sin(turn) * v);
+      if (!over_face(core, face, beside, 0)) continue;
+      if (!denied(world * beside, normal, neighbours, size, angle)) return false;
+    }
   return true;
 }
 

@@ -51,22 +51,23 @@ const std::vector<SeamNeighbour>& SeamPair::neighbours(bool of_a) const {
   return *lists[side];
 }
 
-bool SeamPair::buries(bool on_a, const Vec3& point, const Vec3& normal, double angle) const {
+bool SeamPair::buries(bool on_a, const Vec3& point, const Vec3& normal, double angle,
+                      double depth) const {
   const SeamSide& side = on_a ? a : b;
   if (!side.has_seams) return false;
   // whatever stands out of a half-space makes a valley with it: what is in both touches both
   const ConvexPart& part = on_a ? first() : second();
   if (part.kind == PartKind::half_space) return false;
   return buried_edge(part, side.frame, point, on_a ? normal : Vec3(-normal), neighbours(on_a), size,
-                     angle);
+                     angle, depth);
 }
 
 bool SeamPair::is_ghost(const ManifoldPoint& p, double angle) const {
   const Vec3 on_reference = p.reference_point + p.reference_radius * p.normal;
   const Vec3 on_other = p.core_point - p.radius * p.normal;
   const Vec3 normal = p.reference_is_a ? p.normal : Vec3(-p.normal);
-  return buries(p.reference_is_a, on_reference, normal, angle) ||
-         buries(!p.reference_is_a, on_other, normal, angle);
+  return buries(p.reference_is_a, on_reference, normal, angle, -p.gap) ||
+         buries(!p.reference_is_a, on_other, normal, angle, -p.gap);
 }
 
 void SeamPair::remove_ghosts(std::size_t from, double angle,

@@ -58,7 +58,8 @@ struct SeamPair {
   const std::vector<SeamNeighbour>& neighbours(bool of_a) const;
 
   // Whether the neighbours of a's part (or b's) bury the point; the normal is from a to b, world.
-  bool buries(bool on_a, const Vec3& point, const Vec3& normal, double angle) const;
+  bool buries(bool on_a, const Vec3& point, const Vec3& normal, double angle,
+              double depth = 0) const;
   bool is_ghost(const ManifoldPoint& p, double angle) const;
   void remove_ghosts(std::size_t from, double angle, std::vector<ManifoldPoint>& out) const;
 };

@@ -98,10 +98,13 @@ struct Exposure {
         if (!over_face(core, face, foot, 0)) continue;
         others = neighbours;
         others[i] = {of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame};
-        // what stands on the face, as a wall on the floor of a pit
+        // what stands on the face, as a wall on the floor of a pit; seen from over its border, too
         const Vec3 above = place * Vec3(foot + 4 * same_place() * face.normal);
+        const Vec3 towards =
+            above + seam::crack * seam::probe * seam.size * (world * middle - above).normalized();
         if (std::any_of(others.begin(), others.end(), [&](const SeamNeighbour& covering) {
-              return height_over(covering, above) < -2 * same_place();
+              return height_over(covering, above) < -2 * same_place() ||
+                     height_over(covering, towards) < -2 * same_place();
             }))
           continue;
         if (!buried_edge(*q.part, q.frame, place * foot, place.R * face.normal, others, seam.size))

@@ -32,11 +32,12 @@ struct SeamNeighbour {
 // neighbours near by (the crease between a ball and a bar is a valley).
 //
 // `size` (m) is that of the bodies in contact: points within 1e-5 of it are the same point, and
-// normals within `angle` (rad) the same normal.  Source of the problem: doc/numerics.md, "Contact
+// normals within `angle` (rad) the same normal; `depth` (m): of the contact, for a wall that is
+// pressed deep is looked at from farther around.  Source of the problem: doc/numerics.md, "Contact
 // points".
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
                  const std::vector<SeamNeighbour>& neighbours, double size,
-                 double angle = seam::same_angle);
+                 double angle = seam::same_angle, double depth = 0);
 
 // Manifolds where seams matter: as `manifold`, but without ghosts.  `around_a`: the parts of
 // *other* fixed bodies near a, where a is fixed; likewise for b; the other parts of a union are its

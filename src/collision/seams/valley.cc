@@ -57,6 +57,25 @@ struct Beyond {
     return !is_held(border + probe * (inward.normalized() + seam::crack * face.normal), 0);
   }
 
+  // The place on the border nearest to `from` where the face is a slope: in a corner another wall
+  // stands before it, no farther than what is `depth` (m) deep in this one may be in that.
+  bool find_slope(const Vec3& from, double depth, Vec3& border) const {
+    border = from;
+    if (is_slope(border)) return true;
+    const double widest = std::clamp(seam::corner * depth, seam::probe * size, seam::sunk * size);
+    for (double aside = seam::probe * size; aside <= widest; aside *= 2)
+      for (int i = 0; i < face.count; ++i) {
+        const Polyhedron::Side& side = part.side(face.first + i);
+        if (side.inward.dot(foot) >= side.offset) continue;
+        for (const double sign : {-1.0, 1.0}) {
+          border = from + sign * aside * face.normal.cross(side.inward);
+          if (over_face(part, face, border, seam::same_point * size) && is_slope(border))
+            return true;
+        }
+      }
+    return false;
+  }
+
   // Whether beyond the side, as seen from that place on the border, a neighbour is above the face:
   // straight beyond but for `aside`, and up to an angle of `most`, rad.
   bool is_beneath(const Vec3& border, const Polyhedron::Side& side, double aside,
@@ -97,8 +116,10 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
   const Beyond beyond{part, face, world, neighbours, size, point - height * face.normal, middle};
   const Vec3& foot = beyond.foot;
   if (beyond.over <= 0 || over_face(part, face, foot, 0)) return false;
-  const Vec3 border = nearest_on_face(part, face, foot);
-  if ((border - foot).norm() > farthest || !beyond.is_slope(border)) return false;
+  const Vec3 nearest = nearest_on_face(part, face, foot);
+  if ((nearest - foot).norm() > farthest) return false;
+  Vec3 border;
+  if (!beyond.find_slope(nearest, -height, border)) return false;
   if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
       beyond.ends_beneath(border, false))
     return true;
