@@ -68,6 +68,9 @@ void StartOfMembers::set_tolerances() {
   if (std::any_of(start_.contacts.begin(), start_.contacts.end(),
                   [](const GroupContact& contact) { return rolls(contact.feature); }))
     start_.velocity_tolerance *= answer::closer_rolling;
+  // as does what spins about a hold where no contact takes anything from it
+  if (start_.contacts.empty() && !start_.bonds.empty())
+    start_.velocity_tolerance *= answer::closer_spinning;
 }
 
 }  // namespace tw

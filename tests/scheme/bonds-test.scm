@@ -39,6 +39,21 @@
 
 ;; ---- holds ----
 
+;; two that are held together spin as one body, at the default accuracy, too
+(in-world ()
+  (scene #:gravity #(0 0 0))
+  (let* ((spin #(4 0 0))
+         (add (lambda (mass at)
+                (add-body! #:shape (box 0.2 0.2 0.2) #:mass mass #:position at
+                           #:velocity (cross spin at) #:angular-velocity spin)))
+         (a (add 2 #(0 0 0)))
+         (b (add 3 #(0 0 0.5)))
+         (energy (+ (kinetic-energy a) (kinetic-energy b))))
+    (attach! a b)
+    (run! #:until 10)
+    (test-approximate "what spins about a hold goes on"
+      1 (/ (+ (kinetic-energy a) (kinetic-energy b)) energy) 5e-4)))
+
 ;; what is held falls, lands and comes to rest as one body; let go of, it is two again
 (in-world ()
   (ground)
