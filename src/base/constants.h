@@ -160,9 +160,9 @@ inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
 // wobbles without slipping (6 s) gained 0.13 % more than at the finest accuracy at 1, 1e-5 at 0.5
 // and less at 0.3, for 1.34 times the steps.
 inline constexpr double closer_rolling = 0.3;
-// The same where bodies are held and touch nothing.  Two boxes that spin about their hold at 4 rad/s
-// lost 2.4e-3 of their angular momentum a second at 1, 1.4e-3 at 0.3, 1.8e-5 at 0.1, for 4 times
-// the steps.
+// The same where bodies are held and touch nothing.  Two boxes that spin about their hold at 4
+// rad/s lost 2.4e-3 of their angular momentum a second at 1, 1.4e-3 at 0.3, 1.8e-5 at 0.1, for 4
+// times the steps.
 inline constexpr double closer_spinning = 0.1;
 // Of a circle that rolls the derivatives end at this sine of its slope.
 inline constexpr double level_circle = 1e-5;
@@ -462,6 +462,8 @@ inline constexpr double corner = 20;
 inline constexpr double crack = 0.05;
 // How steeply a neighbour is looked for beyond a side of a face, rad.
 inline constexpr double rises[] = {0, 0.5, 1, 1.4};
+// Both ways along the side, as a share of `probe`, a neighbour has to be there.
+inline constexpr double aside = 0.3;
 // Where it is looked for between the border of a slit and what is in it.
 inline constexpr double between[] = {0.25, 0.5, 0.75};
 // Bodies may be sunk so deep: a check may find one that moved on into what no contact held, by as

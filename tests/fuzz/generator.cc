@@ -51,6 +51,8 @@ constexpr Kind table[] = {
      "what gyroscopes, contacts, holds and joints feel",
      draw_driven},
     {"tools", "what hangs on links without a shape is dragged over flat bodies", draw_tools},
+    {"corner", "bodies slide into the corner of three walls that meet in edges or run on",
+     draw_corner},
     {"flush", "unions of round parts that meet flush fall on a fixed one in a pit", draw_flush},
 };
 

