@@ -68,8 +68,8 @@ void StartOfMembers::set_tolerances() {
   if (std::any_of(start_.contacts.begin(), start_.contacts.end(),
                   [](const GroupContact& contact) { return rolls(contact.feature); }))
     start_.velocity_tolerance *= answer::closer_rolling;
-  // as does what spins about a hold where no contact takes anything from it
-  if (start_.contacts.empty() && !start_.bonds.empty())
+  // as does what spins about a hold or a joint where no contact takes anything from it
+  if (start_.contacts.empty() && (!start_.bonds.empty() || !start_.trees.empty()))
     start_.velocity_tolerance *= answer::closer_spinning;
 }
 

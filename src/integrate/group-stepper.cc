@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "integrate/group-rows.h"
+#include "integrate/joint-equations.h"
 #include "integrate/rodas4.h"
 
 namespace tw {
@@ -63,10 +65,13 @@ GroupCounts GroupStepper::counts() const {
 }
 
 // A step for a group of which nothing is known.  Contacts oscillate at about omega, omega^2 = the
-// largest sum of |dN/dd|, or of k where they touch at most, over a member's mass; the jerk j =
-// dv'/dt then makes an error of about omega^2 j h^4/answer::first_step_error in v.
+// largest sum of |dN/dd|, or of k where they touch at most, over a member's mass, joints as their
+// springs and stops over what these move; the jerk j = dv'/dt then makes an error of about
+// omega^2 j h^4/answer::first_step_error in v.
 double GroupStepper::first_step(GroupScratch& s) const {
-  const double squared = system_.squared_frequency(s);
+  double squared = system_.squared_frequency(s);
+  for (const GroupTree& tree : start_.trees)
+    squared = std::max(squared, joint_rates(tree).squared_frequency);
   const double left = start_.end - start_.time;
   if (!(squared > 0)) return left;
 
@@ -83,6 +88,19 @@ double GroupStepper::first_step(GroupScratch& s) const {
       const double dL = slope[12 * i + j + 3] - s.slope[static_cast<std::size_t>(12 * i + j + 3)];
       jerk =
           std::max({jerk, std::abs(dv) / h, std::abs(dL) * m.radius / (h * m.moments.minCoeff())});
+    }
+  }
+  for (std::size_t t = 0; t < joints_.size(); ++t) {
+    const TreeInGroup& tree = *system_.trees()[t];
+    const std::size_t n = static_cast<std::size_t>(tree.freedoms());
+    const std::size_t u = system_.tree_row(t) + n;
+    std::vector<double> change(n), still(n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) change[k] = (slope[u + k] - s.slope[u + k]) / h;
+    tree.spread(still.data(), change.data(), s.changes.data());
+    for (const int member : tree.start().members) {
+      const BodyChange& jerks = s.changes[static_cast<std::size_t>(member)];
+      const double radius = start_.members[static_cast<std::size_t>(member)].radius;
+      jerk = std::max({jerk, rows::vec(jerks.v).norm(), rows::vec(jerks.w).norm() * radius});
     }
   }
   const double fourth = answer::first_step_error * start_.velocity_tolerance / (squared * jerk);
@@ -157,17 +175,18 @@ double GroupStepper::error_norm(const GroupScratch& s) const {
                    (4.0 * std::max(system_.members(), 1)));
 }
 
-// What the friction of joints that let go within the step does, over tolerance: at rest it is
-// stiff, and the error is damped by a stiffness that is there no more.
-double GroupStepper::unforeseen_friction(double h, GroupScratch& s) const {
+// What the laws at the joints do that was not in the matrix, over tolerance, where friction lets go
+// or a stop opens within the step: they are stiff, and the error is damped by a stiffness that is
+// there no more.
+double GroupStepper::unforeseen(double h, GroupScratch& s) const {
   if (joints_.empty()) return 0;
   std::fill(s.changes.begin(), s.changes.end(), BodyChange{});
   bool any = false;
   for (std::size_t t = 0; t < joints_.size(); ++t) {
-    const TreeInGroup& tree = *system_.trees()[t];
-    const std::size_t u = system_.tree_row(t) + static_cast<std::size_t>(tree.freedoms());
-    any |=
-        tree.add_unforeseen_friction(h, s.state.data() + u, s.trial.data() + u, s.changes.data());
+    TreeInGroup& tree = *system_.trees()[t];
+    const std::size_t z = system_.tree_row(t), u = z + static_cast<std::size_t>(tree.freedoms());
+    any |= tree.add_unforeseen(h, s.state.data() + u, s.trial.data() + z, s.trial.data() + u,
+                               s.changes.data());
   }
   return any ? error_norm(s) : 0;
 }
@@ -286,7 +305,7 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const bool breaks_away = good && error <= 1 && unforeseen_friction(h, s) > 1;
+    const bool breaks_away = good && error <= 1 && unforeseen(h, s) > 1;
     if (good && error <= 1 && !breaks_away) {
       const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
                                        answer::least_step_change, answer::most_step_change);

@@ -46,7 +46,7 @@ class GroupStepper {
   int parts_of(const DenseStep& step, double from, double to) const;
   bool spring_step();
   double first_step(GroupScratch& s) const;
-  double unforeseen_friction(double h, GroupScratch& s) const;
+  double unforeseen(double h, GroupScratch& s) const;
   template <int i>
   bool set_stage(double h, GroupScratch& s);
   bool try_step(double h, GroupScratch& s, double& error);

@@ -98,11 +98,10 @@ void JointEquations::recentre(double* y, double* slope, double* chart) const {
   std::copy_n(y + n_, n_, slope);
 }
 
-bool is_nonstiff(const GroupTree& start, double size, double rate) {
+JointRates joint_rates(const GroupTree& start) {
   const Tree& tree = start.multibody->tree;
   const MultibodyState& state = *start.state;
-  const double fastest = fastest_rate(distances(tree), state.u.data(), size, rate);
-  double stiffest = 0;
+  JointRates largest;
   const std::vector<Axis>& axes = tree.axes();
   Kinematics placed(tree);
   Articulation factors(tree);
@@ -119,15 +118,24 @@ bool is_nonstiff(const GroupTree& start, double size, double rate) {
       Surroundings around;
       around.base = start.multibody->base;
       place(tree, state.q, state.u, around, placed);
-      if (!factor(tree, placed, factors)) return false;
+      if (!factor(tree, placed, factors)) return {never, never};
       factored = true;
     }
     for (int k = axes[i].u; k < axes[i].u + (axes[i].ball ? 3 : 1); ++k) {
       const double yields = inverse_inertia_of_dof({tree, placed, factors}, k);
-      stiffest = std::max({stiffest, damping * yields, std::sqrt(stiffness * yields)});
+      largest.squared_frequency = std::max(largest.squared_frequency, stiffness * yields);
+      largest.damping = std::max(largest.damping, damping * yields);
     }
   }
-  return stiffest <= answer::stiff_ratio * fastest;
+  return largest;
+}
+
+bool is_nonstiff(const GroupTree& start, double size, double rate) {
+  const std::vector<double>& u = start.state->u;
+  const double most =
+      answer::stiff_ratio * fastest_rate(distances(start.multibody->tree), u.data(), size, rate);
+  const JointRates rates = joint_rates(start);
+  return rates.damping <= most && std::sqrt(rates.squared_frequency) <= most;
 }
 
 }  // namespace tw

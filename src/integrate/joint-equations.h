@@ -40,6 +40,14 @@ class JointEquations final : public Equations {
   mutable std::vector<double> q_, tau_;
 };
 
+// How fast the laws at the joints of a multibody are where it starts, each by its own inertia: the
+// largest (stiffness/inertia), 1/s^2, of springs, servos and the stops it leans on, and the largest
+// damping/inertia, 1/s.
+struct JointRates {
+  double squared_frequency = 0, damping = 0;
+};
+JointRates joint_rates(const GroupTree& tree);
+
 // Whether explicit steps of a multibody are as long as accuracy lets them be: nothing that acts at
 // its joints is stiff against how it moves, a function of the state it starts in.  `size`, `rate`:
 // as above.

@@ -179,13 +179,16 @@ void TreeInGroup::gather(const BodyWrench* wrenches, double* row) const {
   }
 }
 
-bool TreeInGroup::add_unforeseen_friction(double h, const double* from, const double* to,
-                                          BodyChange* changes) const {
+bool TreeInGroup::add_unforeseen(double h, const double* u0, const double* z, const double* u1,
+                                 BodyChange* changes) {
   const std::size_t n = index(n_);
   thread_local std::vector<double> row, still;
   row.resize(n);
   still.assign(n, 0);
-  if (!multibody::friction_unforeseen(tree(), {from, n}, {to, n}, row)) return false;
+  displace(tree(), q0_, {z, n}, q_);
+  if (!unforeseen_torques(tree(), {q0_, {u0, n}}, {q_, {u1, n}}, {z, n}, start_->state->inputs(),
+                          row))
+    return false;
   accelerate(row.data());
   for (double& du : row) du *= h;
   spread(still.data(), row.data(), changes);

@@ -61,10 +61,10 @@ class TreeInGroup {
   void spread(const double* kq, const double* ku, BodyChange* changes) const;
   // Adds J^T W, W the wrenches on the links about their centres of mass.
   void gather(const BodyWrench* wrenches, double* row) const;
-  // Adds what friction does to the links in a step of h that its derivative at the start does not
-  // tell, where joints have come to be faster.  False: nothing.
-  bool add_unforeseen_friction(double h, const double* from, const double* to,
-                               BodyChange* changes) const;
+  // Adds what the laws at the joints do to the links in a step of h, by z from u0 to u1, that their
+  // derivative at the start does not tell (multibody/joint-laws.h).  False: nothing.
+  bool add_unforeseen(double h, const double* u0, const double* z, const double* u1,
+                      BodyChange* changes);
   // M^-1 times a row of torques, in place.
   void accelerate(double* row) const;
 

@@ -29,8 +29,9 @@ struct AxisInputs {
 
 // -- one coordinate --
 
+// `grip`: where it is less, the law has become softer.
 struct Scalar {
-  double torque = 0, by_q = 0, by_u = 0;
+  double torque = 0, by_q = 0, by_u = 0, grip = 0;
 };
 
 Scalar passive(const Axis& axis, double q, double u) {
@@ -38,14 +39,18 @@ Scalar passive(const Axis& axis, double q, double u) {
   const double v0 = friction_speed(axis);
   const double root = std::sqrt(u * u + v0 * v0);
   return {-law.damping * u - law.friction * u / root - law.stiffness * (q - law.rest),
-          -law.stiffness, -law.damping - law.friction * v0 * v0 / (root * root * root)};
+          -law.stiffness, -law.damping - law.friction * v0 * v0 / (root * root * root), 0};
 }
 
-Scalar servo(const ServoGains& gains, double error, double error_rate) {
+Scalar servo(const AxisInputs& in, const Inputs& inputs, double q, double u) {
+  if (!in.driven()) return {};
+  const ServoGains& gains = in.servo;
+  const double speed = inputs.target_velocities.empty() ? 0 : inputs.target_velocities[in.u];
+  const double error = inputs.targets[in.q] - q, error_rate = speed - u;
   const double torque = gains.stiffness * error + gains.damping * error_rate;
-  if (torque > gains.max_torque) return {gains.max_torque, 0, 0};
-  if (torque < -gains.max_torque) return {-gains.max_torque, 0, 0};
-  return {torque, -gains.stiffness, -gains.damping};
+  if (torque > gains.max_torque) return {gains.max_torque, 0, 0, 0};
+  if (torque < -gains.max_torque) return {-gains.max_torque, 0, 0, 0};
+  return {torque, -gains.stiffness, -gains.damping, 1};
 }
 
 // Of what is limited and its rate; `side` is +1 at the lower limit: the way out.
@@ -54,7 +59,12 @@ Scalar stop(const Axis& axis, double side, double q, double u) {
   const double depth = side * (limit - q), rate = -side * u;
   const double k = axis.stop_stiffness, b = stop_damping(axis);
   if (!(depth > 0 && 1 + b * rate > 0)) return {};
-  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b};
+  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b, depth};
+}
+
+Scalar stop(const Axis& axis, const AxisInputs& in, double q, double u) {
+  if (in.stop == Stop::none) return {};
+  return stop(axis, in.stop == Stop::lower ? 1 : -1, q, u);
 }
 
 Scalar scalar_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, double q,
@@ -64,11 +74,8 @@ Scalar scalar_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, 
     sum.torque += s.torque, sum.by_q += s.by_q, sum.by_u += s.by_u;
   };
   if (axis.passive) add(passive(axis, q, u));
-  if (in.driven()) {
-    const double speed = inputs.target_velocities.empty() ? 0 : inputs.target_velocities[in.u];
-    add(servo(in.servo, inputs.targets[in.q] - q, speed - u));
-  }
-  if (in.stop != Stop::none) add(stop(axis, in.stop == Stop::lower ? 1 : -1, q, u));
+  if (in.driven()) add(servo(in, inputs, q, u));
+  if (in.stop != Stop::none) add(stop(axis, in, q, u));
   return sum;
 }
 
@@ -77,6 +84,7 @@ Scalar scalar_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, 
 struct Ball {
   Vec3 torque = Vec3::Zero();
   Mat3 by_q = Mat3::Zero(), by_u = Mat3::Zero();
+  double grip = 0;
 };
 
 Quat from_rest(const Quat& rest, const Quat& q) { return rest.conjugate() * q; }
@@ -89,46 +97,65 @@ Mat3 turn_derivative(const Quat& e) {
   return e.w() * e.w() * Mat3::Identity() + e.w() * cross_matrix(v) - v * v.transpose();
 }
 
+Ball passive(const Axis& axis, const Quat& q, const Vec3& u) {
+  Ball sum;
+  const AxisSpec& law = axis.law;
+  const double v0 = friction_speed(axis);
+  const double root = std::sqrt(u.squaredNorm() + v0 * v0);
+  const Quat e = from_rest(axis.rest_attitude, q);
+  sum.torque = -law.damping * u - law.friction / root * u - law.stiffness * turn(e);
+  sum.by_q = -law.stiffness * turn_derivative(e);
+  sum.by_u = -(law.damping + law.friction / root) * Mat3::Identity() +
+             law.friction / (root * root * root) * u * u.transpose();
+  return sum;
+}
+
+Ball servo(const AxisInputs& in, const Inputs& inputs, const Quat& q, const Vec3& u) {
+  Ball sum;
+  if (!in.driven()) return sum;
+  const Quat e = from_rest(quaternion_at(&inputs.targets[in.q]), q);
+  Vec3 speed = Vec3::Zero();
+  if (!inputs.target_velocities.empty()) speed = vector_at(&inputs.target_velocities[in.u]);
+  const ServoGains& gains = in.servo;
+  const Vec3 torque = -gains.stiffness * turn(e) + gains.damping * (speed - u);
+  const double length = torque.norm();
+  const bool cut = length > gains.max_torque;
+  // of what is cut to a length only the part across changes
+  const double share = cut ? gains.max_torque / length : 1;
+  Mat3 across = share * Mat3::Identity();
+  if (cut) across -= share / (length * length) * torque * torque.transpose();
+  sum.torque = share * torque;
+  sum.by_q = -across * (gains.stiffness * turn_derivative(e));
+  sum.by_u = -gains.damping * across;
+  sum.grip = cut ? 0 : 1;
+  return sum;
+}
+
+// Along the direction n of a limited angle, which turns with the joint.
+Ball stop(const Axis& axis, const AxisInputs& in, const Quat& q, const Vec3& u) {
+  Ball sum;
+  if (in.stop == Stop::none) return sum;
+  const LimitedAngle at = limited_angle(axis, q);
+  const Vec3& n = at.direction;
+  const Scalar law_of_angle = stop(axis, -1, at.angle, n.dot(u));
+  const Vec3 rate_by_turn = at.direction_by_turn.transpose() * u;
+  sum.torque = law_of_angle.torque * n;
+  sum.by_q = law_of_angle.by_q * n * n.transpose() + law_of_angle.torque * at.direction_by_turn +
+             law_of_angle.by_u * n * rate_by_turn.transpose();
+  sum.by_u = law_of_angle.by_u * n * n.transpose();
+  sum.grip = law_of_angle.grip;
+  return sum;
+}
+
 Ball ball_law(const Axis& axis, const AxisInputs& in, const Inputs& inputs, const Quat& q,
               const Vec3& u) {
   Ball sum;
-  const AxisSpec& law = axis.law;
-  if (axis.passive) {
-    const double v0 = friction_speed(axis);
-    const double root = std::sqrt(u.squaredNorm() + v0 * v0);
-    const Quat e = from_rest(axis.rest_attitude, q);
-    sum.torque = -law.damping * u - law.friction / root * u - law.stiffness * turn(e);
-    sum.by_q = -law.stiffness * turn_derivative(e);
-    sum.by_u = -(law.damping + law.friction / root) * Mat3::Identity() +
-               law.friction / (root * root * root) * u * u.transpose();
-  }
-  if (in.driven()) {
-    const Quat e = from_rest(quaternion_at(&inputs.targets[in.q]), q);
-    Vec3 speed = Vec3::Zero();
-    if (!inputs.target_velocities.empty()) speed = vector_at(&inputs.target_velocities[in.u]);
-    const ServoGains& gains = in.servo;
-    const Vec3 torque = -gains.stiffness * turn(e) + gains.damping * (speed - u);
-    const double length = torque.norm();
-    const bool cut = length > gains.max_torque;
-    // of what is cut to a length only the part across changes
-    const double share = cut ? gains.max_torque / length : 1;
-    Mat3 across = share * Mat3::Identity();
-    if (cut) across -= share / (length * length) * torque * torque.transpose();
-    sum.torque += share * torque;
-    sum.by_q -= across * (gains.stiffness * turn_derivative(e));
-    sum.by_u -= gains.damping * across;
-  }
-  if (in.stop != Stop::none) {
-    // along the direction n of a limited angle, which turns with the joint
-    const LimitedAngle at = limited_angle(axis, q);
-    const Vec3& n = at.direction;
-    const Scalar law_of_angle = stop(axis, -1, at.angle, n.dot(u));
-    const Vec3 rate_by_turn = at.direction_by_turn.transpose() * u;
-    sum.torque += law_of_angle.torque * n;
-    sum.by_q += law_of_angle.by_q * n * n.transpose() + law_of_angle.torque * at.direction_by_turn +
-                law_of_angle.by_u * n * rate_by_turn.transpose();
-    sum.by_u += law_of_angle.by_u * n * n.transpose();
-  }
+  const auto add = [&](const Ball& s) {
+    sum.torque += s.torque, sum.by_q += s.by_q, sum.by_u += s.by_u;
+  };
+  if (axis.passive) add(passive(axis, q, u));
+  if (in.driven()) add(servo(in, inputs, q, u));
+  if (in.stop != Stop::none) add(stop(axis, in, q, u));
   return sum;
 }
 
@@ -157,7 +184,10 @@ void require_gain(double value, bool may_be_infinite, const std::string& what) {
 
 double friction_speed(const Axis& axis) { return answer::joint_friction_speed * axis.slow; }
 
-bool friction_unforeseen(const Tree& tree, In from, In to, Out tau) {
+namespace {
+
+// Adds what is off the tangent where friction lets go.
+bool add_unforeseen_friction(const Tree& tree, In from, In to, Out tau) {
   // of x = u/v0: x/r with r^2 = x^2 + 1, and along its tangent x0/r0 + (1 - x0 x0^T/r0^2) dx/r0
   bool any = false;
   const auto add = [&](double friction, const auto& x0, const auto& x1, auto&& torque) {
@@ -165,9 +195,8 @@ bool friction_unforeseen(const Tree& tree, In from, In to, Out tau) {
     any = true;
     const double r0 = std::sqrt(x0.squaredNorm() + 1), r1 = std::sqrt(x1.squaredNorm() + 1);
     const auto dx = (x1 - x0).eval();
-    torque = -friction * (x1 / r1 - x0 / r0 - (dx - x0.dot(dx) / (r0 * r0) * x0) / r0);
+    torque -= friction * (x1 / r1 - x0 / r0 - (dx - x0.dot(dx) / (r0 * r0) * x0) / r0);
   };
-  std::fill(tau.begin(), tau.end(), 0.0);
   for (const Axis& axis : tree.axes()) {
     if (!(axis.law.friction > 0)) continue;
     const auto u = static_cast<std::size_t>(axis.u);
@@ -180,6 +209,46 @@ bool friction_unforeseen(const Tree& tree, In from, In to, Out tau) {
       add(axis.law.friction, One(from[u] / v0), One(to[u] / v0), Eigen::Map<One>(&tau[u]));
   }
   return any;
+}
+
+// The same of stops and servos that grip less than they did, on the way by z.
+bool add_unforeseen_grips(const Tree& tree, const JointMotion& from, const JointMotion& to, In z,
+                          const Inputs& inputs, Out tau) {
+  if (inputs.servos.empty() && inputs.stops.empty()) return false;
+  bool any = false;
+  for (std::size_t i = 0; i < tree.axes().size(); ++i) {
+    const Axis& axis = tree.axes()[i];
+    const AxisInputs in(tree, inputs, i);
+    const auto add = [&](const auto& before, const auto& after, const auto& dz, const auto& du,
+                         auto&& torque) {
+      if (!(after.grip < before.grip)) return;
+      any = true;
+      torque += after.torque - before.torque - before.by_q * dz - before.by_u * du;
+    };
+    if (axis.ball) {
+      const Quat q0 = quaternion_at(&from.q[in.q]), q1 = quaternion_at(&to.q[in.q]);
+      const Vec3 u0 = vector_at(&from.u[in.u]), u1 = vector_at(&to.u[in.u]);
+      const Vec3 dz = vector_at(&z[in.u]), du = u1 - u0;
+      Eigen::Map<Vec3> torque(&tau[in.u]);
+      add(servo(in, inputs, q0, u0), servo(in, inputs, q1, u1), dz, du, torque);
+      add(stop(axis, in, q0, u0), stop(axis, in, q1, u1), dz, du, torque);
+    } else {
+      const double q0 = from.q[in.q], q1 = to.q[in.q], u0 = from.u[in.u], u1 = to.u[in.u];
+      const double dz = z[in.u], du = u1 - u0;
+      add(servo(in, inputs, q0, u0), servo(in, inputs, q1, u1), dz, du, tau[in.u]);
+      add(stop(axis, in, q0, u0), stop(axis, in, q1, u1), dz, du, tau[in.u]);
+    }
+  }
+  return any;
+}
+
+}  // namespace
+
+bool unforeseen_torques(const Tree& tree, const JointMotion& from, const JointMotion& to, In z,
+                        const Inputs& inputs, Out tau) {
+  std::fill(tau.begin(), tau.end(), 0.0);
+  const bool lets_go = add_unforeseen_friction(tree, from.u, to.u, tau);
+  return add_unforeseen_grips(tree, from, to, z, inputs, tau) || lets_go;
 }
 
 double stop_damping(const Axis& axis) {

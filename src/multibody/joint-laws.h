@@ -62,9 +62,15 @@ double spring_energy(const Tree& tree, In q);
 
 // v0, rad/s or m/s.
 double friction_speed(const Axis& axis);
-// By how much friction is off its tangent at the joint velocities `from` (nv) when they have come
-// to be `to`, at the joints that are faster by then; elsewhere 0.  False: there is none.
-bool friction_unforeseen(const Tree& tree, In from, In to, Out tau);
+// By how much the torques at the joints are off their tangents at `from` when these have moved on
+// by the displacement z (nv) to `to`: of friction that lets go (of joints that are faster by then),
+// of stops that are pressed in less by then, of servos whose torque is cut by then; elsewhere 0.
+// False: there is none.
+struct JointMotion {
+  In q, u;  // nq and nv numbers
+};
+bool unforeseen_torques(const Tree& tree, const JointMotion& from, const JointMotion& to, In z,
+                        const Inputs& inputs, Out tau);
 // b, s/rad or s/m, of an axis' stop: restitution e at stop_speed.
 double stop_damping(const Axis& axis);
 // What is slower than this at its stop leans on it, rad/s or m/s.

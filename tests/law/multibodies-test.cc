@@ -69,6 +69,44 @@ TEST(Multibodies, a_floating_tree_keeps_its_momentum) {
   EXPECT_NEAR(world.total_energy(), energy, 1e-5 * energy);
 }
 
+// The same where joints strike their stops, lean on them and leave them, over and over: strikes
+// take energy, nothing gives any.
+TEST(Multibodies, a_floating_chain_keeps_its_momentum_at_its_stops) {
+  struct {
+    double stiffness, limit, restitution, friction;
+  } const cases[] = {
+      {0, 0.3, 0, 0}, {0, 0.1, 0, 0}, {0, 0.05, 0.2, 0}, {3, 0.1, 0, 0}, {0, 0.3, 0, 0.05}};
+  for (const auto& [stiffness, limit, restitution, friction] : cases) {
+    World world;
+    world.set_gravity(Vec3::Zero());
+    MultibodyDef def = chain(3, 0.5, Vec3::Zero());
+    def.free = true;
+    for (LinkDef& link : def.links) {
+      link.body.mass = 1;
+      link.joint.axes[0].stiffness = stiffness;
+      link.joint.axes[0].restitution = restitution;
+      link.joint.axes[0].friction = friction;
+      link.joint.axes[0].lower = -limit;
+      link.joint.axes[0].upper = limit;
+    }
+    def.links[0].joint = {};
+    const std::uint32_t number = world.add_multibody(def);
+    set_velocity(world, number, 6, 2);
+    set_velocity(world, number, 7, -3);
+    const Vec3 momentum = world.total_momentum();
+    ASSERT_GT(momentum.norm(), 1);
+    const std::string of = show(stiffness) + " N m/rad, limit " + show(limit);
+    double energy = world.total_energy();
+    for (int i = 1; i <= 40; ++i) {
+      world.advance(0.25 * i);
+      const double now = world.total_energy();
+      EXPECT_LT(now, energy * (1 + 2e-5)) << of << " at " << 0.25 * i;
+      energy = std::min(energy, now);
+    }
+    EXPECT_LT((world.total_momentum() - momentum).norm(), 5e-5 * momentum.norm()) << of;
+  }
+}
+
 // Wheels that stick: the path is the angle times the radius.
 TEST(Multibodies, a_car_rolls_without_slip) {
   World world;

@@ -163,15 +163,70 @@ TEST(MultibodyDerivatives, leave_friction_that_lets_go_unforeseen) {
     joint_torques(tree, q, from, {}, before);
     joint_torques(tree, q, to, {}, after);
     add_joint_derivatives(tree, q, from, {}, Kq, Ku);
-    EXPECT_TRUE(friction_unforeseen(tree, from, to, unforeseen));
+    const Numbers z(n, 0.0);
+    EXPECT_TRUE(unforeseen_torques(tree, {q, from}, {q, to}, z, {}, unforeseen));
     for (std::size_t i = 0; i < n; ++i) {
       double tangent = before[i];
       for (std::size_t j = 0; j < n; ++j) tangent += Ku[i + n * j] * (to[j] - from[j]);
       EXPECT_NEAR(unforeseen[i], after[i] - tangent, 1e-12);
     }
-    EXPECT_FALSE(friction_unforeseen(tree, to, from, unforeseen));
+    EXPECT_FALSE(unforeseen_torques(tree, {q, to}, {q, from}, z, {}, unforeseen));
     for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(unforeseen[i], 0);
   }
+}
+
+// What is off the tangent where a stop opens, or a servo comes to its greatest torque; nothing
+// where they grip more than they did.
+TEST(MultibodyDerivatives, what_lets_go_is_off_its_tangent) {
+  for (const JointKind kind : {JointKind::revolute, JointKind::spherical})
+    for (const bool stops : {true, false}) {
+      LinkSpec arm;
+      arm.name = "arm";
+      arm.mass = 1;
+      arm.inertia = Mat3::Identity();
+      arm.joint.kind = kind;
+      arm.joint.axes[0].upper = 0.5;
+      const Tree tree({arm});
+      const auto n = static_cast<std::size_t>(tree.nv());
+      const Axis& axis = tree.axes()[0];
+      const auto turned = [&](double angle) {
+        if (n == 1) return Numbers{angle};
+        Numbers q(4);
+        set_quaternion(q.data(), rotation_by(Vec3(0, 0, angle)));
+        return q;
+      };
+      const auto turning = [&](double rate) {
+        return n == 1 ? Numbers{rate} : Numbers{0, 0, rate};
+      };
+      const std::vector<Stop> at_stop{Stop::upper};
+      const std::vector<ServoGains> servo{{100, 5, 3}};
+      const Numbers target = turned(0.5);
+      Inputs inputs;
+      if (stops)
+        inputs.stops = at_stop;
+      else
+        inputs.servos = servo, inputs.targets = target;
+      // 0.2 mrad beyond; 0.5 mrad before.  A servo is cut from 30 mrad on.
+      const double near = stops ? 0.5002 : 0.49, far = stops ? 0.4995 : 0.46;
+      const Numbers q0 = turned(near), q1 = turned(far), u0 = turning(-0.1 * stop_speed(axis)),
+                    u1 = turning(-0.3 * stop_speed(axis)), z = turning(far - near);
+      Numbers before(n), after(n), unforeseen(n), Kq(n * n), Ku(n * n);
+      joint_torques(tree, q0, u0, inputs, before);
+      joint_torques(tree, q1, u1, inputs, after);
+      add_joint_derivatives(tree, q0, u0, inputs, Kq, Ku);
+      EXPECT_TRUE(unforeseen_torques(tree, {q0, u0}, {q1, u1}, z, inputs, unforeseen));
+      double most = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        double tangent = before[i];
+        for (std::size_t j = 0; j < n; ++j)
+          tangent += Kq[i + n * j] * z[j] + Ku[i + n * j] * (u1[j] - u0[j]);
+        EXPECT_NEAR(unforeseen[i], after[i] - tangent, 1e-12);
+        most = std::max(most, std::abs(unforeseen[i]));
+      }
+      EXPECT_GT(most, 0.1);
+      const Numbers back = turning(near - far);
+      EXPECT_FALSE(unforeseen_torques(tree, {q1, u1}, {q0, u0}, back, inputs, unforeseen));
+    }
 }
 
 TEST(MultibodyDerivatives, a_stop_pushes_out_and_is_smooth_in_contact) {
