@@ -16,15 +16,17 @@ namespace tw {
 using namespace rows;
 
 // A multibody that touches nothing is followed by an explicit method where nothing at its joints is
-// stiff.
+// stiff, or what is stiff swings widely.
 void GroupStepper::start_alone() {
   const bool alone = start_.joint_tolerance > 0 && start_.trees.size() == 1 &&
                      start_.contacts.empty() && start_.bonds.empty() &&
                      std::none_of(start_.members.begin(), start_.members.end(),
                                   [](const GroupMember& m) { return m.forces != nullptr; }) &&
                      start_.members.size() == start_.trees.front().members.size();
-  if (alone && is_nonstiff(start_.trees.front(), start_.joint_size, start_.joint_rate)) {
-    const GroupTree& tree = start_.trees.front();
+  if (!alone) return;
+  const GroupTree& tree = start_.trees.front();
+  nonstiff_ = is_nonstiff(tree, start_.joint_size, start_.joint_rate);
+  if (nonstiff_ || swings_widely(start_, start_.time, tree.state->q, tree.state->u)) {
     std::vector<double> y(tree.state->u.size(), 0.0);
     y.insert(y.end(), tree.state->u.begin(), tree.state->u.end());
     explicit_ = std::make_unique<Solution>(
@@ -58,7 +60,7 @@ void GroupStepper::choose_method() {
                                          start_.time, std::move(y), std::move(chart));
 }
 
-// Once they swing no longer, RODAS4 goes on from the last node.
+// Once nothing swings any longer, RODAS4 goes on from the last node.
 void GroupStepper::leave_explicit() {
   counts_ = counts();
   explicit_.reset();
@@ -98,6 +100,10 @@ bool GroupStepper::tree_step() {
   std::fill_n(s.stage[4].data(), system_.size(), 0.0);
   record_.append(to, system_, s.trial.data(), s.stage[4].data(), s.stage[4].data());
   next_step_ = 0;
+  if (!nonstiff_ && explicit_->counts().steps % answer::steps_between_choices == 0) {
+    joints_.front().joints(to, joint_positions_, joint_velocities_);
+    if (!swings_widely(start_, to, joint_positions_, joint_velocities_)) leave_explicit();
+  }
   return true;
 }
 

@@ -62,6 +62,7 @@ class GroupStepper {
   std::vector<JointRecord> joints_;  // of each multibody
   std::vector<double> joint_positions_, joint_velocities_;
   std::unique_ptr<Solution> explicit_;  // of a multibody that touches nothing, of springs
+  bool nonstiff_ = false;               // the multibody that touches nothing
   bool chosen_ = false;
   GroupCounts counts_;
   double next_step_;

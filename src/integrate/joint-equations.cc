@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/constants.h"
+#include "base/never.h"
 #include "multibody/impulses.h"
 
 namespace tw {
@@ -98,14 +99,23 @@ void JointEquations::recentre(double* y, double* slope, double* chart) const {
   std::copy_n(y + n_, n_, slope);
 }
 
-JointRates joint_rates(const GroupTree& start) {
+namespace {
+
+// Of one dof: its axis, (stiffness/inertia) and damping/inertia.
+struct DofRate {
+  std::size_t axis;
+  int dof;
+  double squared_frequency, damping;
+};
+
+// Of all dofs where something acts; with infinite rates where the tree is singular.
+std::vector<DofRate> dof_rates(const GroupTree& start, In q, In u) {
   const Tree& tree = start.multibody->tree;
   const MultibodyState& state = *start.state;
-  JointRates largest;
+  std::vector<DofRate> rates;
   const std::vector<Axis>& axes = tree.axes();
   Kinematics placed(tree);
   Articulation factors(tree);
-  bool factored = false;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const AxisSpec& law = axes[i].law;
     ServoGains servo;
@@ -114,20 +124,33 @@ JointRates joint_rates(const GroupTree& start) {
     if (law.friction > 0) damping += law.friction / friction_speed(axes[i]);
     if (!state.stops.empty() && state.stops[i] != Stop::none) stiffness += axes[i].stop_stiffness;
     if (stiffness == 0 && damping == 0) continue;
-    if (!factored) {
+    if (rates.empty()) {
       Surroundings around;
       around.base = start.multibody->base;
-      place(tree, state.q, state.u, around, placed);
-      if (!factor(tree, placed, factors)) return {never, never};
-      factored = true;
+      place(tree, q, u, around, placed);
+      if (!factor(tree, placed, factors)) return {{i, axes[i].u, never, never}};
     }
     for (int k = axes[i].u; k < axes[i].u + (axes[i].ball ? 3 : 1); ++k) {
       const double yields = inverse_inertia_of_dof({tree, placed, factors}, k);
-      largest.squared_frequency = std::max(largest.squared_frequency, stiffness * yields);
-      largest.damping = std::max(largest.damping, damping * yields);
+      rates.push_back({i, k, stiffness * yields, damping * yields});
     }
   }
-  return largest;
+  return rates;
+}
+
+JointRates largest(const std::vector<DofRate>& rates) {
+  JointRates most;
+  for (const DofRate& rate : rates) {
+    most.squared_frequency = std::max(most.squared_frequency, rate.squared_frequency);
+    most.damping = std::max(most.damping, rate.damping);
+  }
+  return most;
+}
+
+}  // namespace
+
+JointRates joint_rates(const GroupTree& start) {
+  return largest(dof_rates(start, start.state->q, start.state->u));
 }
 
 bool is_nonstiff(const GroupTree& start, double size, double rate) {
@@ -136,6 +159,49 @@ bool is_nonstiff(const GroupTree& start, double size, double rate) {
       answer::stiff_ratio * fastest_rate(distances(start.multibody->tree), u.data(), size, rate);
   const JointRates rates = joint_rates(start);
   return rates.damping <= most && std::sqrt(rates.squared_frequency) <= most;
+}
+
+// As of bodies on springs (bond-equations.h): RODAS4 takes steps of
+//   h = (C tolerance/V)^(1/4)/omega
+// through a swing of frequency omega whose velocity has the amplitude V, the explicit method steps
+// of about a radian of the fastest swing there is.  V follows from u' of the joint and how it
+// changes: one of the two is large at any phase.
+bool swings_widely(const GroupStart& start, double time, const std::vector<double>& q,
+                   const std::vector<double>& u) {
+  const GroupTree& tree = start.trees.front();
+  if (!tree.state->stops.empty()) return false;
+  const std::vector<DofRate> rates = dof_rates(tree, q, u);
+  const JointRates most = largest(rates);
+  const double fastest = std::sqrt(most.squared_frequency);
+  if (!(fastest > 0) || !std::isfinite(fastest)) return false;
+  if (most.damping > answer::most_explicit_damping * fastest) return false;
+
+  // slopes a part of a swing later
+  const JointEquations equations(tree, start.end, start.joint_tolerance, start.joint_size,
+                                 start.joint_rate);
+  const double h = 1e-3 / fastest;
+  std::vector<double> y(u.size(), 0.0);
+  y.insert(y.end(), u.begin(), u.end());
+  std::vector<double> slope(y.size()), later(y.size());
+  equations.slope(time, y.data(), q.data(), slope.data());
+  for (std::size_t e = 0; e < y.size(); ++e) y[e] += h * slope[e];
+  equations.slope(time + h, y.data(), q.data(), later.data());
+  const std::vector<bool> is_distance = distances(tree.multibody->tree);
+  double shortest = never;
+  for (const DofRate& rate : rates) {
+    if (!(rate.squared_frequency > 0)) continue;
+    const Axis& axis = tree.multibody->tree.axes()[rate.axis];
+    const int member = tree.members[index(axis.link)];
+    const double lever = is_distance[index(rate.dof)] ? 1 : start.members[index(member)].radius;
+    const double omega = std::sqrt(rate.squared_frequency);
+    const std::size_t at = u.size() + index(rate.dof);
+    const double widest =
+        lever * std::max(std::abs(slope[at]) / omega,
+                         std::abs(later[at] - slope[at]) / (h * rate.squared_frequency));
+    const double fourth = answer::first_step_error * start.velocity_tolerance / widest;
+    shortest = std::min(shortest, std::sqrt(std::sqrt(fourth)) / omega);
+  }
+  return shortest * fastest < answer::explicit_swing;
 }
 
 }  // namespace tw

@@ -53,4 +53,10 @@ JointRates joint_rates(const GroupTree& tree);
 // as above.
 bool is_nonstiff(const GroupTree& tree, double size, double rate);
 
+// Whether springs and servos at the joints of the group's multibody, which touches nothing, swing
+// so widely, and are damped so little, that an explicit method takes longer steps than RODAS4:
+// where its joints are at q and u at `time`.
+bool swings_widely(const GroupStart& start, double time, const std::vector<double>& q,
+                   const std::vector<double>& u);
+
 }  // namespace tw

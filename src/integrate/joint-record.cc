@@ -96,8 +96,9 @@ JointRecord::JointRecord(const Multibody& multibody, double start, double end,
       nodes_(q),
       nodes_u_(u) {}
 
-void JointRecord::append(double time, const std::vector<double>& coefficients,
+void JointRecord::append(double time, std::vector<double> coefficients,
                          const std::vector<double>& q) {
+  coefficients.resize(index(2 * n_ * (path_.degree() + 1)), 0.0);
   path_.append(time, coefficients);
   nodes_.insert(nodes_.end(), q.begin(), q.end());
   // the sum of its coefficients is a velocity at the end

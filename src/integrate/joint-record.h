@@ -34,8 +34,8 @@ class JointRecord {
   double start() const { return path_.start(); }
   double reached() const { return path_.reached(); }
   // A step to `time`, where the positions are q: coefficients of the n displacements and the n
-  // velocities.
-  void append(double time, const std::vector<double>& coefficients, const std::vector<double>& q);
+  // velocities, up to the degree of the record or a lower one.
+  void append(double time, std::vector<double> coefficients, const std::vector<double>& q);
 
   // At a time on the record.
   void joints(double time, std::vector<double>& q, std::vector<double>& u) const;
