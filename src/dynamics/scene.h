@@ -28,9 +28,9 @@ struct SceneOptions {
 struct Scene {
   explicit Scene(const SceneOptions& settings) : options(settings) {}
 
-  std::vector<std::unique_ptr<Body>> bodies;                  // by number
-  std::vector<BodyId> first_bodies;                           // of each process, by number
-  std::vector<std::shared_ptr<const Multibody>> multibodies;  // in the order in which they came
+  std::vector<std::unique_ptr<Body>> bodies;            // by number
+  std::vector<BodyId> first_bodies;                     // of each process, by number
+  std::vector<std::shared_ptr<Multibody>> multibodies;  // in the order in which they came
   ContactBook contacts;
   const SceneOptions& options;
 

@@ -96,6 +96,7 @@ std::uint32_t Bodies::add_multibody(const MultibodyDef& given) {
   }
   const std::uint32_t number = static_cast<std::uint32_t>(scene.multibodies.size());
   std::shared_ptr<Multibody> multibody = make_multibody(def, number);
+  multibody->tree.set_gravity(scene.gravity_scale());
   for (const auto& other : scene.multibodies)
     TW_REQUIRE(other->name != multibody->name,
                "name " + multibody->name + " is taken; expected a name no other multibody has");

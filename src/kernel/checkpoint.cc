@@ -64,6 +64,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
 
   // the committed present
   present = checkpoint.present;
+  simulation.scale_joints();
   for (Process& process : simulation.processes) {
     for (const Checkpoint::Kept& kept : checkpoint.states[number(process.id)]) {
       State* state = simulation.graph.append(process.id, kept.key);

@@ -83,6 +83,7 @@ void Editing::set_gravity(const Vec3& gravity) {
   sim_.require_between_runs("gravity was set");
   TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
   sim_.present.settings.gravity = gravity;
+  sim_.scale_joints();
   // a body that is still at its birth needs no discontinuity
   const auto newborn = [&](BodyId id) {
     return !sim_.present.begun && !sim_.body(id).multibody &&

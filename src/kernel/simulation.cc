@@ -1,10 +1,11 @@
-// When a world may be changed.
+// When a world may be changed, and what follows from its settings.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/simulation.h"
 
 #include <string>
 
 #include "base/error.h"
+#include "multibody/multibody.h"
 
 namespace tw {
 
@@ -16,6 +17,11 @@ void Simulation::require_between_runs(const char* what) const {
 void Simulation::require_before_first_run(const char* what) const {
   TW_REQUIRE(!present.begun,
              std::string(what) + " after the simulation began; expected before the first run");
+}
+
+void Simulation::scale_joints() const {
+  for (const auto& multibody : scene.multibodies)
+    multibody->tree.set_gravity(scene.gravity_scale());
 }
 
 }  // namespace tw

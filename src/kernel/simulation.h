@@ -62,6 +62,9 @@ struct Simulation {
     queue.schedule(handle, adversary.event(key, kind, subject, head_start));
   }
 
+  // Joints follow the gravity that is set.
+  void scale_joints() const;
+
   // UserError: "WHAT inside a callback or observer; expected ...", "WHAT after the simulation ...".
   void require_between_runs(const char* what) const;
   void require_before_first_run(const char* what) const;

@@ -69,7 +69,7 @@ Tree::Tree(const std::vector<LinkSpec>& links) {
     add_link(links[i]);
   }
   require_regular();
-  set_scales();
+  set_gravity(answer::standard_gravity);
 }
 
 int Tree::find(const std::string& name) const {
@@ -194,7 +194,7 @@ void Tree::require_regular() const {
 
 // The reach of a joint is the radius of gyration about it of the links beyond it.  A stop yields by
 // answer::stop_depth under their weight, held out so far.
-void Tree::set_scales() {
+void Tree::set_gravity(double magnitude) {
   Kinematics k(*this);
   std::vector<double> q(static_cast<std::size_t>(nq_)), u(static_cast<std::size_t>(nv_));
   neutral_position(*this, q);
@@ -202,13 +202,13 @@ void Tree::set_scales() {
   for (Axis& axis : axes_) {
     const int at = dof_node(axis.u);
     const Beyond all = beyond(*this, k, at);
-    const double weight = all.mass * answer::standard_gravity;
+    const double weight = all.mass * magnitude;
     const double reach = all.second > 0 ? std::sqrt(all.second / all.mass) : 1;
     const bool slides = node(at).kind == NodeKind::slider;
     const double standard =
         slides ? weight / (answer::stop_depth * reach) : weight * reach / answer::stop_depth;
     axis.unit = slides ? reach : 1;
-    axis.slow = axis.unit * std::sqrt(answer::standard_gravity / reach);
+    axis.slow = axis.unit * std::sqrt(magnitude / reach);
     axis.stop_stiffness = axis.law.stop_stiffness.value_or(standard);
   }
 }

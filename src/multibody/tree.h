@@ -121,6 +121,9 @@ class Tree {
   // that is not symmetric or that no body has, massless parts that leave the acceleration of a
   // joint undetermined.
   explicit Tree(const std::vector<LinkSpec>& links);
+  // m/s^2, > 0: sets what is slow at the joints and how stiff stops are (Axis), the standard one at
+  // first.
+  void set_gravity(double magnitude);
 
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -148,7 +151,6 @@ class Tree {
   int add_node(NodeKind kind, int parent, const Frame& X_PF);
   void add_axis(const AxisSpec& law);
   void add_mass(Node& node, const LinkSpec& spec, const Frame& X_NL);
-  void set_scales();
   void require_regular() const;
 
   std::vector<Link> links_;

@@ -87,6 +87,11 @@ TEST(Scaling, of_joints_with_stops_and_friction_too) {
     }
 }
 
+TEST(Scaling, speed_changes_no_joint) {
+  const auto fill = [](World& world, double scale) { fill_jointed(world, scale, 0); };
+  for (const int k : {-10, 8}) EXPECT_LT(worst_deviation(fill, 1, std::pow(2.0, k), 2), 1e-9) << k;
+}
+
 TEST(Scaling, speed_changes_nothing_but_the_unit) {
   for (const int k : {-10, 10}) {
     const double time = std::pow(2.0, k);
