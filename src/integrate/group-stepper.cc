@@ -191,6 +191,19 @@ double GroupStepper::unforeseen(double h, GroupScratch& s) const {
   return any ? error_norm(s) : 0;
 }
 
+// Errors of joints that friction brings to rest, against their velocities.  What is slower than the
+// tolerance may go to and fro at the steps' own rate for ever, each step as short as its error is
+// large; a few short ones bring it to where friction holds it, and is in the matrix.
+double GroupStepper::friction_doubt(const GroupScratch& s) const {
+  double worst = 0;
+  for (std::size_t t = 0; t < joints_.size(); ++t) {
+    const TreeInGroup& tree = *system_.trees()[t];
+    const std::size_t u = system_.tree_row(t) + static_cast<std::size_t>(tree.freedoms());
+    worst = std::max(worst, tree.friction_doubt(s.state.data() + u, s.stage[5].data() + u));
+  }
+  return worst;
+}
+
 // What a rejected step is to be cut by.  Its error goes as h^4 where all is smooth, but as h to h^3
 // where a contact opens, closes or begins to slip within it: from the second one on the last two
 // say how, to a whole power.
@@ -305,7 +318,7 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const bool breaks_away = good && error <= 1 && unforeseen(h, s) > 1;
+    const bool breaks_away = good && error <= 1 && (friction_doubt(s) > 1 || unforeseen(h, s) > 1);
     if (good && error <= 1 && !breaks_away) {
       const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
                                        answer::least_step_change, answer::most_step_change);

@@ -47,6 +47,7 @@ class GroupStepper {
   bool spring_step();
   double first_step(GroupScratch& s) const;
   double unforeseen(double h, GroupScratch& s) const;
+  double friction_doubt(const GroupScratch& s) const;
   template <int i>
   bool set_stage(double h, GroupScratch& s);
   bool try_step(double h, GroupScratch& s, double& error);

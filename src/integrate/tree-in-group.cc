@@ -195,6 +195,10 @@ bool TreeInGroup::add_unforeseen(double h, const double* u0, const double* z, co
   return true;
 }
 
+double TreeInGroup::friction_doubt(const double* u0, const double* error) const {
+  return multibody::friction_doubt(tree(), {u0, index(n_)}, {error, index(n_)});
+}
+
 void TreeInGroup::accelerate(double* row) const {
   const Eigen::Map<const Eigen::MatrixXd> mass(mass_.data(), n_, n_);
   Eigen::Map<Eigen::VectorXd> x(row, n_);

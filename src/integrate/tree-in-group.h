@@ -65,6 +65,8 @@ class TreeInGroup {
   // derivative at the start does not tell (multibody/joint-laws.h).  False: nothing.
   bool add_unforeseen(double h, const double* u0, const double* z, const double* u1,
                       BodyChange* changes);
+  // Of a step from u0 with that error (multibody/joint-laws.h).
+  double friction_doubt(const double* u0, const double* error) const;
   // M^-1 times a row of torques, in place.
   void accelerate(double* row) const;
 

@@ -251,6 +251,19 @@ bool unforeseen_torques(const Tree& tree, const JointMotion& from, const JointMo
   return add_unforeseen_grips(tree, from, to, z, inputs, tau) || lets_go;
 }
 
+double friction_doubt(const Tree& tree, In u, In error) {
+  double worst = 0;
+  for (const Axis& axis : tree.axes()) {
+    if (!(axis.law.friction > 0)) continue;
+    const auto at = static_cast<std::size_t>(axis.u);
+    const auto size = [&](In of) {
+      return axis.ball ? vector_at(&of[at]).norm() : std::abs(of[at]);
+    };
+    worst = std::max(worst, size(error) / std::max(size(u), friction_speed(axis)));
+  }
+  return worst;
+}
+
 double stop_damping(const Axis& axis) {
   return 1.5 * (1 - axis.law.restitution) / stop_speed(axis);
 }

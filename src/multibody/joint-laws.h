@@ -71,6 +71,9 @@ struct JointMotion {
 };
 bool unforeseen_torques(const Tree& tree, const JointMotion& from, const JointMotion& to, In z,
                         const Inputs& inputs, Out tau);
+// The largest error of a joint with friction against how fast it moves, or slides at least: beyond
+// 1 it is nothing but error which way friction acts.
+double friction_doubt(const Tree& tree, In u, In error);
 // b, s/rad or s/m, of an axis' stop: restitution e at stop_speed.
 double stop_damping(const Axis& axis);
 // What is slower than this at its stop leans on it, rad/s or m/s.

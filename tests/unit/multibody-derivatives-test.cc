@@ -175,6 +175,22 @@ TEST(MultibodyDerivatives, leave_friction_that_lets_go_unforeseen) {
   }
 }
 
+TEST(MultibodyDerivatives, friction_is_in_doubt_where_errors_are_faster_than_the_joint) {
+  LinkSpec wheel;
+  wheel.name = "wheel";
+  wheel.mass = 1;
+  wheel.inertia = Mat3::Identity();
+  wheel.joint.kind = JointKind::spherical;
+  wheel.joint.axes[0].friction = 2;
+  const Tree tree({wheel});
+  const double v0 = friction_speed(tree.axes()[0]);
+  const Numbers error{0, 3 * v0, 4 * v0};
+  EXPECT_NEAR(friction_doubt(tree, Numbers{0, 0, 0}, error), 5, 1e-12);
+  EXPECT_NEAR(friction_doubt(tree, Numbers{20 * v0, 0, 0}, error), 0.25, 1e-12);
+  wheel.joint.axes[0].friction = 0;
+  EXPECT_EQ(friction_doubt(Tree({wheel}), Numbers{0, 0, 0}, error), 0);
+}
+
 // What is off the tangent where a stop opens, or a servo comes to its greatest torque; nothing
 // where they grip more than they did.
 TEST(MultibodyDerivatives, what_lets_go_is_off_its_tangent) {
