@@ -29,7 +29,7 @@ struct AxisInputs {
 
 // -- one coordinate --
 
-// `grip`: where it is less, the law has become softer.
+// `grip`: 1 where it is as stiff as it gets; 0 where a stop is open, a servo cut.
 struct Scalar {
   double torque = 0, by_q = 0, by_u = 0, grip = 0;
 };
@@ -59,7 +59,7 @@ Scalar stop(const Axis& axis, double side, double q, double u) {
   const double depth = side * (limit - q), rate = -side * u;
   const double k = axis.stop_stiffness, b = stop_damping(axis);
   if (!(depth > 0 && 1 + b * rate > 0)) return {};
-  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b, depth};
+  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b, 1};
 }
 
 Scalar stop(const Axis& axis, const AxisInputs& in, double q, double u) {
@@ -211,7 +211,7 @@ bool add_unforeseen_friction(const Tree& tree, In from, In to, Out tau) {
   return any;
 }
 
-// The same of stops and servos that grip less than they did, on the way by z.
+// The same of stops and servos that have lost their grip on the way by z.
 bool add_unforeseen_grips(const Tree& tree, const JointMotion& from, const JointMotion& to, In z,
                           const Inputs& inputs, Out tau) {
   if (inputs.servos.empty() && inputs.stops.empty()) return false;

@@ -64,8 +64,7 @@ double spring_energy(const Tree& tree, In q);
 double friction_speed(const Axis& axis);
 // By how much the torques at the joints are off their tangents at `from` when these have moved on
 // by the displacement z (nv) to `to`: of friction that lets go (of joints that are faster by then),
-// of stops that are pressed in less by then, of servos whose torque is cut by then; elsewhere 0.
-// False: there is none.
+// of stops that open, of servos whose torque is cut by then; elsewhere 0.  False: there is none.
 struct JointMotion {
   In q, u;  // nq and nv numbers
 };

@@ -81,6 +81,9 @@ const MendedSeed mended[] = {
     {"hills", 87, "a body that rocked on a height field gained 1.9 %"},
     {"plates", 20248, "a tip pressed into the wall where a slit ends fell into the slit"},
     {"plates", 190, "a cone went 6 % of its width deep between plates"},
+    {"corner", 475, "a tip left a room by the corner of three walls"},
+    {"corner", 797, "a tip left a room by the corner of three walls"},
+    {"chains", 21212, "in weak gravity stops were thousands of times too stiff"},
 };
 
 }  // namespace
