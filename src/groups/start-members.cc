@@ -68,8 +68,11 @@ void StartOfMembers::set_tolerances() {
   if (std::any_of(start_.contacts.begin(), start_.contacts.end(),
                   [](const GroupContact& contact) { return rolls(contact.feature); }))
     start_.velocity_tolerance *= answer::closer_rolling;
-  // as does what spins about a hold or a joint where no contact takes anything from it
-  if (start_.contacts.empty() && (!start_.bonds.empty() || !start_.trees.empty()))
+  // as does what spins about a hold, or flies with joints, where no contact takes anything from it
+  const bool flies = std::any_of(start_.trees.begin(), start_.trees.end(), [](const GroupTree& t) {
+    return t.multibody->tree.node(multibody::first_node).kind == multibody::NodeKind::floating;
+  });
+  if (start_.contacts.empty() && (!start_.bonds.empty() || flies))
     start_.velocity_tolerance *= answer::closer_spinning;
 }
 
