@@ -141,46 +141,58 @@ TEST(MultibodyDerivatives, of_friction_about_standstill) {
   }
 }
 
+// Of mass 1 kg and moments of 1 kg m^2.
+LinkSpec unit_link(JointKind kind) {
+  LinkSpec link;
+  link.name = "link";
+  link.mass = 1;
+  link.inertia = Mat3::Identity();
+  link.joint.kind = kind;
+  return link;
+}
+
+// The torques at q1, u1 less those along the tangent at q0, u0, on the way by z.
+Numbers off_tangent(const Tree& tree, const JointMotion& from, const JointMotion& to,
+                    const Numbers& z, const Inputs& inputs) {
+  const std::size_t n = z.size();
+  Numbers before(n), after(n), Kq(n * n), Ku(n * n);
+  joint_torques(tree, from.q, from.u, inputs, before);
+  joint_torques(tree, to.q, to.u, inputs, after);
+  add_joint_derivatives(tree, from.q, from.u, inputs, Kq, Ku);
+  for (std::size_t i = 0; i < n; ++i) {
+    after[i] -= before[i];
+    for (std::size_t j = 0; j < n; ++j)
+      after[i] -= Kq[i + n * j] * z[j] + Ku[i + n * j] * (to.u[j] - from.u[j]);
+  }
+  return after;
+}
+
 // Where it is faster by then: the torque less that along the tangent at the first velocity.
 TEST(MultibodyDerivatives, leave_friction_that_lets_go_unforeseen) {
   Random random(7);
   for (const JointKind kind : {JointKind::revolute, JointKind::spherical}) {
-    LinkSpec wheel;
-    wheel.name = "wheel";
-    wheel.mass = 1;
-    wheel.inertia = Mat3::Identity();
-    wheel.joint.kind = kind;
+    LinkSpec wheel = unit_link(kind);
     wheel.joint.axes[0].friction = 2;
     const Tree tree({wheel});
     const auto n = static_cast<std::size_t>(tree.nv());
     const Numbers q = kind == JointKind::revolute ? Numbers{0.3} : Numbers{1, 0, 0, 0};
     const double v0 = friction_speed(tree.axes()[0]);
-    Numbers from(n), to(n), before(n), after(n), unforeseen(n), Kq(n * n), Ku(n * n);
+    Numbers from(n), to(n), unforeseen(n);
     for (std::size_t i = 0; i < n; ++i) {
       from[i] = random.real(-v0, v0);
       to[i] = from[i] + random.real(5, 9) * std::copysign(v0, from[i]);
     }
-    joint_torques(tree, q, from, {}, before);
-    joint_torques(tree, q, to, {}, after);
-    add_joint_derivatives(tree, q, from, {}, Kq, Ku);
     const Numbers z(n, 0.0);
     EXPECT_TRUE(unforeseen_torques(tree, {q, from}, {q, to}, z, {}, unforeseen));
-    for (std::size_t i = 0; i < n; ++i) {
-      double tangent = before[i];
-      for (std::size_t j = 0; j < n; ++j) tangent += Ku[i + n * j] * (to[j] - from[j]);
-      EXPECT_NEAR(unforeseen[i], after[i] - tangent, 1e-12);
-    }
+    const Numbers expected = off_tangent(tree, {q, from}, {q, to}, z, {});
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(unforeseen[i], expected[i], 1e-12);
     EXPECT_FALSE(unforeseen_torques(tree, {q, to}, {q, from}, z, {}, unforeseen));
     for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(unforeseen[i], 0);
   }
 }
 
 TEST(MultibodyDerivatives, friction_is_in_doubt_where_errors_are_faster_than_the_joint) {
-  LinkSpec wheel;
-  wheel.name = "wheel";
-  wheel.mass = 1;
-  wheel.inertia = Mat3::Identity();
-  wheel.joint.kind = JointKind::spherical;
+  LinkSpec wheel = unit_link(JointKind::spherical);
   wheel.joint.axes[0].friction = 2;
   const Tree tree({wheel});
   const double v0 = friction_speed(tree.axes()[0]);
@@ -196,11 +208,7 @@ TEST(MultibodyDerivatives, friction_is_in_doubt_where_errors_are_faster_than_the
 TEST(MultibodyDerivatives, what_lets_go_is_off_its_tangent) {
   for (const JointKind kind : {JointKind::revolute, JointKind::spherical})
     for (const bool stops : {true, false}) {
-      LinkSpec arm;
-      arm.name = "arm";
-      arm.mass = 1;
-      arm.inertia = Mat3::Identity();
-      arm.joint.kind = kind;
+      LinkSpec arm = unit_link(kind);
       arm.joint.axes[0].upper = 0.5;
       const Tree tree({arm});
       const auto n = static_cast<std::size_t>(tree.nv());
@@ -226,17 +234,12 @@ TEST(MultibodyDerivatives, what_lets_go_is_off_its_tangent) {
       const double near = stops ? 0.5002 : 0.49, far = stops ? 0.4995 : 0.46;
       const Numbers q0 = turned(near), q1 = turned(far), u0 = turning(-0.1 * stop_speed(axis)),
                     u1 = turning(-0.3 * stop_speed(axis)), z = turning(far - near);
-      Numbers before(n), after(n), unforeseen(n), Kq(n * n), Ku(n * n);
-      joint_torques(tree, q0, u0, inputs, before);
-      joint_torques(tree, q1, u1, inputs, after);
-      add_joint_derivatives(tree, q0, u0, inputs, Kq, Ku);
+      Numbers unforeseen(n);
       EXPECT_TRUE(unforeseen_torques(tree, {q0, u0}, {q1, u1}, z, inputs, unforeseen));
+      const Numbers expected = off_tangent(tree, {q0, u0}, {q1, u1}, z, inputs);
       double most = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        double tangent = before[i];
-        for (std::size_t j = 0; j < n; ++j)
-          tangent += Kq[i + n * j] * z[j] + Ku[i + n * j] * (u1[j] - u0[j]);
-        EXPECT_NEAR(unforeseen[i], after[i] - tangent, 1e-12);
+        EXPECT_NEAR(unforeseen[i], expected[i], 1e-12);
         most = std::max(most, std::abs(unforeseen[i]));
       }
       EXPECT_GT(most, 0.1);
