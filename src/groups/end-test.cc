@@ -106,13 +106,14 @@ double unseen_depth(const PairOnArc& pair, double when) {
 }
 
 // When that came to be more than is allowed; `never` if it did not.  What has sunk far into a
-// valley is no longer found there: so the stretch is gone through in quarters.
-double unseen_touch(const PairOnArc& pair, double from, double to, double allowed) {
+// valley is no longer found there: so the stretch is gone through in quarters.  Where it was more
+// at `from` already, which nothing told until now, since the last time that it was known not to be.
+double unseen_touch(const PairOnArc& pair, double known, double from, double to, double allowed) {
   const auto excess = [&](double t) { return unseen_depth(pair, t) - allowed; };
   const double fine = answer::end_resolution * allowed;
   constexpr int quarters = 4;
   double begin = from, first = excess(from);
-  if (first >= 0) return never;
+  if (first >= 0) return known < from ? unseen_touch(pair, known, known, from, allowed) : never;
   for (int i = 1; i <= quarters; ++i) {
     const double end = i < quarters ? from + (to - from) * i / quarters : to;
     const double last = excess(end);
@@ -164,7 +165,7 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
                                                 static_cast<double>(answer::most_looks)));
   thread_local std::vector<double> gaps;  // at the last look
   gaps.assign(group.gaps.begin() + pair.first, group.gaps.begin() + pair.first + pair.count);
-  double from = start, unseen_before = -1;
+  double from = start, unseen_before = -1, searched_to = start;
   for (int i = 1; i <= looks; ++i) {
     const double to = i < looks ? start + length * i / looks : group.next_check;
     double end = never, known = 0;
@@ -196,7 +197,8 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
       }
       // what nobody saw when the arc began must not grow either
       if (unseen_before < 0) unseen_before = std::max(unseen_depth(along, start), 0.0);
-      end = std::min(end, unseen_touch(along, from, seen_to, unseen_before + allowed));
+      end = std::min(end, unseen_touch(along, searched_to, from, seen_to, unseen_before + allowed));
+      searched_to = seen_to;
     }
     if (end < never) return std::min(end, group.next_check);
     from = to;

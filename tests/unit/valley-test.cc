@@ -106,6 +106,28 @@ TEST(Valleys, a_tip_in_a_hole_is_held_by_all_slopes) {
   EXPECT_EQ(lost_in(dig, 0.04), 0);
 }
 
+// A crest along y over the wall between two pieces, at x = 0: what is beneath it, on that wall or a
+// little beside, is held by the slope that it is nearer to.
+TEST(Valleys, a_tip_on_the_wall_beneath_a_crest_is_held) {
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const double left = uniform(random, 0.05, 0.5), right = uniform(random, 0.05, 0.5);
+    const Pit crest = groove(-left, -right);
+    const ShapePtr spike = make_hull(
+        {{0, 0, 0}, {0.1, 0.1, 0.5}, {-0.1, 0.1, 0.5}, {-0.1, -0.1, 0.5}, {0.1, -0.1, 0.5}});
+    const double depth = 0.04 * spike->least_width() * std::pow(10, uniform(random, -2, 0));
+    const double aside = uniform(random, -1, 1) * depth * std::pow(10, uniform(random, -6, -1));
+    const Vec3 tip(aside, uniform(random, -0.5, 0.5), -depth);
+    const Points points = crest.meets(spike, at(tip.x(), tip.y(), tip.z()), 1e-6, i % 5 == 0);
+    double deepest = 0;
+    for (const ManifoldPoint& p : points) deepest = std::min(deepest, p.gap);
+    const auto height = [&](const Vec3& normal) { return normal.dot(tip); };
+    const double least = std::max(height(crest.normals[0]), height(crest.normals[1]));
+    EXPECT_NEAR(deepest, least, 5e-5 * spike->least_width())
+        << left << " " << right << " " << tip.transpose();
+  }
+}
+
 // The ground is the plane z = 0, the wall stands on it at x < 0 and ends at y = 0.5.
 TEST(Valleys, a_wall_that_stands_on_the_ground_holds_corners_that_lie_in_the_ground) {
   Ground ground;

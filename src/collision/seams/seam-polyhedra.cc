@@ -143,7 +143,7 @@ struct Exposure {
       const double height = part.face_separation(point, nearest);
       if (height <= seam.reach && add_vertex(v, static_cast<std::uint64_t>(nearest), point, height))
         continue;
-      if (height <= seam::sunk * seam.size) add_under_face(v, point, height > 0);
+      if (height <= seam::sunk * seam.size) add_under_face(v, point, nearest, height > 0);
     }
   }
 
@@ -190,9 +190,11 @@ struct Exposure {
                        });
   }
 
-  // A vertex inside the part, or `beside` it and inside a neighbour.
-  void add_under_face(std::uint64_t v, const Vec3& point, bool beside) const {
-    if (beside && !covered(world * point)) return;
+  // A vertex inside the part, or `beside` it and inside a neighbour: as close to a wall between the
+  // two as a place is known, it is in neither, and across that wall is looked at.
+  void add_under_face(std::uint64_t v, const Vec3& point, int nearest, bool beside) const {
+    const Vec3 across = 2 * same_place() * part.face(nearest).normal;
+    if (beside && !covered(world * point) && !covered(world * (point + across))) return;
     thread_local std::vector<std::pair<double, std::uint64_t>> depths;
     depths.clear();
     for (std::uint64_t f = 0; f < part.faces().size(); ++f) {
