@@ -83,6 +83,10 @@ const MendedSeed mended[] = {
     {"plates", 190, "a cone went 6 % of its width deep between plates"},
     {"corner", 475, "a tip left a room by the corner of three walls"},
     {"corner", 797, "a tip left a room by the corner of three walls"},
+    {"corner", 764, "a tip slid into a slit that leans in under the floor"},
+    {"corner", 2265, "a tip slid into a slit that leans in under the floor"},
+    {"corner", 2512, "a tip left a room where two walls that end at a slant meet"},
+    {"hills", 21288, "a tip was on the wall beneath the crest that ends a valley"},
     {"chains", 21212, "in weak gravity stops were thousands of times too stiff"},
 };
 

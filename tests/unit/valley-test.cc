@@ -148,6 +148,44 @@ TEST(Valleys, a_wall_that_stands_on_the_ground_holds_corners_that_lie_in_the_gro
     EXPECT_EQ(pressing({-1e-4, 0.502, -depth}), 0) << depth;
 }
 
+// A floor and a wall that leans away from it meet in an edge alone, along x.  The floor's side goes
+// down in the wall's plane: a tip that slid down the wall is under the floor, beside it, and has
+// its foot on it.
+TEST(Valleys, a_floor_holds_what_slid_into_a_slit_that_leans_in_under_it) {
+  for (const double lean : {0.05, 0.3, 0.8})
+    for (const double depth : {1e-4, 1e-3, 3e-3})
+      for (const double into : {1e-6, 1e-5, 1e-4}) {
+        const Vec3 up(0, -std::sin(lean), std::cos(lean)), out(0, std::cos(lean), std::sin(lean));
+        Ground ground;
+        std::vector<Vec3> floor, wall;
+        for (const double x : {-1.0, 1.0})
+          for (const double along : {0.0, 1.0}) {
+            const Vec3 edge(x, 0, 0), back = -Vec3::UnitY();
+            floor.insert(floor.end(), {edge - along * up, edge - along * up - 3 * back});
+            wall.insert(wall.end(), {edge + along * up, edge + along * up + back});
+          }
+        ground.add(make_hull(floor), Frame());
+        ground.add(make_hull(wall), Frame());
+        const Vec3 side = 0.05 * Vec3::UnitX();
+        const ShapePtr spike =
+            make_hull({Vec3::Zero(), 0.5 * up + side, 0.5 * up - side, 0.5 * up + side + 0.1 * out,
+                       0.5 * up - side + 0.1 * out});
+        const Vec3 tip = -depth / std::cos(lean) * up - into * out + 0.1 * Vec3::UnitX();
+        const Points points = ground.meets(spike, Frame(Mat3::Identity(), tip), 1e-6, false);
+        const auto holds = [&](const Vec3& normal) {
+          return std::any_of(points.begin(), points.end(), [&](const ManifoldPoint& p) {
+            return p.normal.dot(normal) > 1 - 1e-6 && std::abs(p.gap - normal.dot(tip)) < 1e-9;
+          });
+        };
+        EXPECT_TRUE(holds(Vec3::UnitZ())) << lean << " " << depth << " " << into;
+        // the end of a table is no floor
+        Ground table;
+        table.add(ground.shapes[0], Frame());
+        for (const ManifoldPoint& p : table.meets(spike, Frame(Mat3::Identity(), tip), 1e-6, false))
+          EXPECT_LT(p.normal.z(), 0.99) << lean << " " << depth << " " << into;
+      }
+}
+
 // The plate ends just behind the wall's face; the corner, from below, is before the plate's end.
 TEST(Valleys, what_is_behind_the_ground_under_a_wall_is_not_held_by_the_wall) {
   Ground ground;

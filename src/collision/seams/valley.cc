@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "base/constants.h"
 #include "collision/manifold-parts.h"
@@ -24,19 +25,49 @@ bool hold(const std::vector<SeamNeighbour>& neighbours, const Vec3& place, doubl
   });
 }
 
-// What a face goes on by beyond the sides that the foot of a point is beyond.
+// What a face goes on by beyond the sides that a point is beyond.
 struct Beyond {
   const Polyhedron& part;
   const Polyhedron::Face& face;
   const Frame& world;
   const std::vector<SeamNeighbour>& neighbours;
   double size;
-  Vec3 foot, middle;
+  Vec3 point, middle;
+  double height = face.normal.dot(point) - face.offset;  // m
+  Vec3 foot = point - height * face.normal;
   double over = face.normal.dot(middle) - face.offset;  // of the middle, m
 
-  // Whether a neighbour holds the point and `depth` (m) around it.
-  bool is_held(const Vec3& point, double depth) const {
-    return hold(neighbours, world * point, depth);
+  // Whether the foot is, or the point under the face is before the wall beneath that side: where
+  // that leans in under the face, the foot may be on the face.
+  bool is_beyond(const Polyhedron::Side& side) const {
+    if (side.inward.dot(foot) < side.offset) return true;
+    if (height >= 0) return false;
+    const Polyhedron::Edge& edge = part.edges()[static_cast<std::size_t>(side.edge)];
+    const Polyhedron::Face& left = part.face(edge.left);
+    const Polyhedron::Face& wall = &left == &face ? part.face(edge.right) : left;
+    return wall.normal.dot(point) > wall.offset;
+  }
+
+  // The place on the border nearest to the foot, of the sides that it is beyond; false: none.
+  bool find_border(Vec3& border) const {
+    if (!over_face(part, face, foot, 0)) {
+      border = nearest_on_face(part, face, foot);
+      return true;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < face.count; ++i) {
+      const Polyhedron::Side& side = part.side(face.first + i);
+      const double within = side.inward.dot(foot) - side.offset;
+      if (within >= least || !is_beyond(side)) continue;
+      least = within;
+      border = nearest_on_face(part, face, foot - within * side.inward);
+    }
+    return std::isfinite(least);
+  }
+
+  // Whether a neighbour holds the place and `depth` (m) around it.
+  bool is_held(const Vec3& place, double depth) const {
+    return hold(neighbours, world * place, depth);
   }
 
   // Whether none is between the two: they are on both sides of a slit, or in it.  What the body is
@@ -70,7 +101,7 @@ struct Beyond {
     for (double aside = seam::probe * size; aside <= widest(depth); aside *= 2)
       for (int i = 0; i < face.count; ++i) {
         const Polyhedron::Side& side = part.side(face.first + i);
-        if (side.inward.dot(foot) >= side.offset) continue;
+        if (!is_beyond(side)) continue;
         for (const double sign : {-1.0, 1.0}) {
           border = from + sign * aside * face.normal.cross(side.inward);
           if (over_face(part, face, border, seam::same_point * size) && is_slope(border))
@@ -80,15 +111,14 @@ struct Beyond {
     return false;
   }
 
-  // Whether beyond the side, as seen from that place on the border, a neighbour is above the face:
-  // straight beyond but for `aside`, and up to an angle of `most`, rad.
-  bool is_beneath(const Vec3& border, const Polyhedron::Side& side, const Vec3& aside,
+  // Whether `away` (m) beyond the side, as seen from that place on the border, a neighbour is above
+  // the face: straight beyond but for `aside`, and up to an angle of `most`, rad.
+  bool is_beneath(const Vec3& border, const Polyhedron::Side& side, const Vec3& aside, double away,
                   double most) const {
-    const double probe = seam::probe * size;
-    const Vec3 beyond = aside - probe * side.inward;
+    const Vec3 beyond = aside - away * side.inward;
     for (const double rise : seam::rises) {
       if (rise > most) break;
-      const Vec3 there = border + std::cos(rise) * beyond + probe * std::sin(rise) * face.normal;
+      const Vec3 there = border + std::cos(rise) * beyond + away * std::sin(rise) * face.normal;
       if (is_held(there, seam::buried_margin * size)) return true;
     }
     return false;
@@ -128,21 +158,26 @@ struct Beyond {
     return false;
   }
 
-  // Whether each of the sides that the foot is beyond, as seen from the place on it nearest to
+  // Whether each of the sides that it is beyond, as seen from the place on it nearest to
   // `from`, is beneath a neighbour, to the left and to the right, at two places each, for one may
-  // be on a wall between two neighbours; over a slit up to where the body is seen, but not straight
-  // up, as the walls of what stands on the face may be.
+  // be on a wall between two neighbours, and nearer by, for in a corner walls may end at a slant;
+  // over a slit up to where the body is seen, but not straight up, as the walls of what stands on
+  // the face may be.
   bool ends_beneath(const Vec3& from, double depth, bool is_slit) const {
     for (int i = 0; i < face.count; ++i) {
       const Polyhedron::Side& side = part.side(face.first + i);
-      if (side.inward.dot(foot) >= side.offset) continue;
+      if (!is_beyond(side)) continue;
       const double most = is_slit ? std::atan2(over, side.offset - side.inward.dot(middle)) : 0;
       OnSide border;
       if (!find_on_side(i, from, depth, border)) return false;
-      for (const double sign : {-1.0, 1.0})
-        if (!is_beneath(border.place, side, sign * border.aside, most) &&
-            !is_beneath(border.place, side, 2.0 / 3 * sign * border.aside, most))
+      const double probe = seam::probe * size;
+      for (const double sign : {-1.0, 1.0}) {
+        const Vec3 aside = sign * border.aside, nearer = 2.0 / 3 * aside;
+        if (!is_beneath(border.place, side, aside, probe, most) &&
+            !is_beneath(border.place, side, nearer, probe, most) &&
+            !is_beneath(border.place, side, nearer, 0.1 * probe, most))
           return false;
+      }
     }
     return true;
   }
@@ -153,15 +188,16 @@ struct Beyond {
 bool goes_on_to(const Polyhedron& part, const Polyhedron::Face& face, const Vec3& point,
                 const Vec3& middle, const Frame& world,
                 const std::vector<SeamNeighbour>& neighbours, double farthest, double size) {
-  const double height = face.normal.dot(point) - face.offset, slack = seam::same_point * size;
-  const Beyond beyond{part, face, world, neighbours, size, point - height * face.normal, middle};
+  const Beyond beyond{part, face, world, neighbours, size, point, middle};
   const Vec3& foot = beyond.foot;
-  if (beyond.over <= 0 || over_face(part, face, foot, 0)) return false;
-  const Vec3 nearest = nearest_on_face(part, face, foot);
+  const double height = beyond.height, slack = seam::same_point * size;
+  Vec3 nearest, border;
+  if (beyond.over <= 0 || !beyond.find_border(nearest)) return false;
   if ((nearest - foot).norm() > farthest) return false;
-  Vec3 border;
   if (!beyond.find_slope(nearest, -height, border)) return false;
-  if (beyond.is_held(foot, -slack) && (height >= -slack || beyond.is_held(point, -slack)) &&
+  // where the foot is on the face, what a neighbour holds beneath it is looked at as under the face
+  if (!over_face(part, face, foot, 0) && beyond.is_held(foot, -slack) &&
+      (height >= -slack || beyond.is_held(point, -slack)) &&
       beyond.ends_beneath(nearest, -height, false))
     return true;
 
