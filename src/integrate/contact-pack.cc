@@ -451,12 +451,13 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes hard = squared < cap ? half * squared : cap - half * over;
   const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
   Lanes all = normal;
-  if (pack.bend >= 0)
-    all += bend_energy(pack.resistance, state.n, state.resistance.z, state.stiffness / state.grip);
+  // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back; as
+  // deep as they are, or as hard as they press while they still get deeper
+  const Lanes pressing = max(state.stiffness, state.N) / state.grip;
+  if (pack.bend >= 0) all += bend_energy(pack.resistance, state.n, state.resistance.z, pressing);
   if (pack.law != FrictionLaw::anchored) return all;
-  // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back
   const LaneVec st = state.s - dot(state.n, state.s) * state.n;
-  const Lanes cone = pack.mu * state.stiffness / state.grip;
+  const Lanes cone = pack.mu * pressing;
   const Lanes tiny = lanes(1e-300);
   return all + half * min(pack.kt * dot(st, st), cone * cone / max(pack.kt, tiny));
 }
