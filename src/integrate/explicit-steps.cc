@@ -9,6 +9,7 @@
 #include "integrate/group-stepper.h"
 #include "integrate/joint-equations.h"
 #include "integrate/runge-kutta.h"
+#include "integrate/step-polynomials.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
@@ -107,34 +108,33 @@ bool GroupStepper::tree_step() {
   return true;
 }
 
-// Cubics of the record follow a polynomial of degree 7 in parts.  The error of a cubic with the
-// values and rates of its ends is largest near its middle and falls with the fourth power of its
-// length: in tolerances, from a few parts on.
-int GroupStepper::parts_of(const DenseStep& step, double from, double to) const {
-  constexpr int tried = 4;
-  const double h = (to - from) / tried;
+// Cubics of the record follow a polynomial of higher degree in parts.  One with the values and
+// rates of its ends errs by |y''''| l^4/384 over a length l: the number of parts by which that is
+// within the tolerances, as fourth derivatives are at four places of the step.  `powers` as of
+// DenseStep.
+int GroupStepper::parts_of(const std::vector<double>& powers) const {
+  const std::size_t size = 12 * start_.members.size();
+  const std::size_t degree = powers.size() / size - 1;
   double worst = 0;
-  for (int i = 0; i < tried; ++i) {
-    const double t0 = from + i * h, t1 = i + 1 < tried ? t0 + h : to, middle = 0.5 * (t0 + t1);
-    const auto error = [&](int value, int rate, bool is_rate) -> double {
-      const auto slope = [&](double t) -> Vec3 {
-        return is_rate ? step.vector_rate(rate, t) : step.vector(rate, t);
-      };
-      const Vec3 cubic = 0.5 * (step.vector(value, t0) + step.vector(value, t1)) +
-                         0.125 * (t1 - t0) * (slope(t0) - slope(t1));
-      return (cubic - step.vector(value, middle)).norm();
+  for (const double r : {0.0, 1.0 / 3, 2.0 / 3, 1.0}) {
+    const auto fourth = [&](std::size_t first) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t k = degree; k >= 4; --k)
+        sum = r * sum + static_cast<double>(k * (k - 1) * (k - 2) * (k - 3)) *
+                            vec(powers.data() + size * k + first);
+      return sum.norm();
     };
-    for (int m = 0; m < system_.members(); ++m) {
-      const GroupMember& member = start_.members[index(m)];
-      const int at = 12 * m;
+    for (std::size_t m = 0; m < start_.members.size(); ++m) {
+      const GroupMember& member = start_.members[m];
+      const std::size_t at = 12 * m;
       const double turning = member.radius / member.moments.minCoeff();
-      worst = std::max({worst, error(at, at + 6, false) / start_.position_tolerance,
-                        error(at + 3, at + 3, true) * member.radius / start_.position_tolerance,
-                        error(at + 6, at + 6, true) / start_.velocity_tolerance,
-                        error(at + 9, at + 9, true) * turning / start_.velocity_tolerance});
+      worst = std::max({worst, fourth(at) / start_.position_tolerance,
+                        fourth(at + 3) * member.radius / start_.position_tolerance,
+                        fourth(at + 6) / start_.velocity_tolerance,
+                        fourth(at + 9) * turning / start_.velocity_tolerance});
     }
   }
-  const double parts = std::ceil(tried * std::sqrt(std::sqrt(worst)));
+  const double parts = std::ceil(std::sqrt(std::sqrt(worst / 384)));
   return static_cast<int>(std::clamp(parts, 1.0, answer::most_parts));
 }
 
@@ -146,28 +146,36 @@ bool GroupStepper::spring_step() {
   if (!extend_explicit(from, start_.end)) return false;
   const DenseStep& step = explicit_->at(from);
   const double to = explicit_->reached();
-  const int parts = parts_of(step, from, to);
+  const std::vector<double> powers = step.powers();
+  const int parts = parts_of(powers), size = 12 * system_.members();
+  StepPolynomials whole(from, size, step.degree());
+  whole.append(to, powers);
+  std::vector<double> y(index(size)), rates(index(size)), rates_before(index(size));
+  whole.rates(0, 0, rates_before.data());
   GroupScratch& s = system_.scratch();
   for (int i = 1; i <= parts; ++i) {
     const double t0 = record_.reached(), t1 = i < parts ? from + (to - from) * i / parts : to;
+    const double h = t1 - t0, r = i < parts ? whole.fraction(0, t1) : 1;
+    whole.values(0, r, y.data());
+    whole.rates(0, r, rates.data());
     record_.load_last(system_, s.state.data());
-    const double h = t1 - t0;
     double *y1 = s.trial.data(), *d3 = s.stage[4].data(), *d4 = s.stage[5].data();
     for (int m = 0; m < system_.members(); ++m) {
       const int at = 12 * m;
-      const Quat q = short_rotation(step.vector(at + 3, t1)) * quat(step.chart() + 4 * m);
-      vec(y1 + at) = step.vector(at, t1);
+      const Quat q = short_rotation(vec(y.data() + at + 3)) * quat(step.chart() + 4 * m);
+      vec(y1 + at) = vec(y.data() + at);
       vec(y1 + at + 3) = turn_between(system_.attitude(m), q);
       // (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) with the rates of both ends
       for (const int row : {at + 6, at + 9}) {
-        const Vec3 end = step.vector(row, t1), change = end - vec(s.state.data() + row);
-        const Vec3 first = h * step.vector_rate(row, t0) - change;
+        const Vec3 end = vec(y.data() + row), change = end - vec(s.state.data() + row);
+        const Vec3 first = h * vec(rates_before.data() + row) - change;
         vec(y1 + row) = end;
         vec(d3 + row) = first;
-        vec(d4 + row) = change - first - h * step.vector_rate(row, t1);
+        vec(d4 + row) = change - first - h * vec(rates.data() + row);
       }
     }
     record_.append(t1, system_, y1, d3, d4);
+    std::swap(rates, rates_before);
   }
   next_step_ = 0;
   if (explicit_->counts().steps % answer::steps_between_choices == 0 && !swings_here())

@@ -43,7 +43,7 @@ class GroupStepper {
   void leave_explicit();
   bool extend_explicit(double from, double latest = never);
   bool tree_step();
-  int parts_of(const DenseStep& step, double from, double to) const;
+  int parts_of(const std::vector<double>& powers) const;
   bool spring_step();
   double first_step(GroupScratch& s) const;
   double unforeseen(double h, GroupScratch& s) const;
