@@ -91,6 +91,10 @@ inline constexpr double break_away_cut = 0.25;
 // such time sees does not exist, unless it gets deeper than this share of the thinner one
 // (detect/dip.h).
 inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
+// Two are apart over a whole piece, which is not looked at on the grid then, if so many times what
+// rounding may make of no distance is left: a root's bracket ends within a few of these, and where
+// it does must not depend on where a piece happens to be cut.
+inline constexpr double apart_in_roundings = 16;
 // When contacts stop telling the truth is known to this share of the depth that they may miss.
 inline constexpr double end_resolution = 1e-6;
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
 #include "collision/near-parts.h"
 
 namespace tw {
@@ -46,7 +47,8 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   // remembered, or by the bounding balls, or by a query: what is left of it at the end
   const bool remembered = known.from <= from && from <= known.until;
   const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
-  const double rounding = distance_rounding(a, ta.center, b, tb.center);
+  const double rounding =
+      answer::apart_in_roundings * distance_rounding(a, ta.center, b, tb.center);
   double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
   if (!(left > rounding)) {
     const Frame fa = piece.a->trajectory().frame(from), fb = piece.b->trajectory().frame(from);

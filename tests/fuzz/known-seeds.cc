@@ -87,6 +87,9 @@ const MendedSeed mended[] = {
     {"corner", 2265, "a tip slid into a slit that leans in under the floor"},
     {"corner", 2512, "a tip left a room where two walls that end at a slant meet"},
     {"hills", 21288, "a tip was on the wall beneath the crest that ends a valley"},
+    {"cards", 28212,
+     "what touched to its last digits was apart on a piece that was cut: another history"},
+    {"round", 25349, "of what friction held in a blow a tenth was counted as energy"},
     {"chains", 21212, "in weak gravity stops were thousands of times too stiff"},
 };
 
