@@ -11,16 +11,21 @@
 #include <csignal>
 #include <exception>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/constants.h"
 #include "base/cpu-clock.h"
+#include "base/never.h"
 #include "base/work-count.h"
 
 namespace tw {
 namespace {
 
+struct Shared;
 thread_local Team* team_of_thread = nullptr;
+// Whose item this thread is at; null: nobody's.
+thread_local const Shared* at_item_of = nullptr;
 
 void pause_a_little() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -74,6 +79,7 @@ struct Shared {
   const std::size_t items, grain;
   const Team::Item item;
   void* const loop;
+  const Shared* const outer = at_item_of;  // whose item it is a loop of
   std::atomic<std::size_t> next{0};
   std::atomic<int> helping{0};
   SpinLock lock;  // of what follows
@@ -83,7 +89,19 @@ struct Shared {
   Shared(std::size_t all, std::size_t at_a_time, Team::Item of, void* whose)
       : items(all), grain(at_a_time), item(of), loop(whose) {}
   bool has_items() const { return next.load(std::memory_order_relaxed) < items; }
+  bool is_within(const Shared& other) const {
+    const Shared* at = outer;
+    while (at && at != &other) at = at->outer;
+    return at;
+  }
   void work() {
+    const Shared* const before = std::exchange(at_item_of, this);
+    do_items();
+    at_item_of = before;
+  }
+
+ private:
+  void do_items() {
     try {
       for (std::size_t i; (i = next.fetch_add(grain, std::memory_order_relaxed)) < items;)
         for (std::size_t k = i; k < std::min(items, i + grain); ++k) item(loop, k);
@@ -99,7 +117,7 @@ struct Shared {
 
 // Helpers look for loops that have items left.  Between two loops of a run there are some hundred
 // microseconds, and to be woken takes a helper half as long: so it looks on for a while before it
-// sleeps.
+// sleeps.  Who waits for the last items of a loop helps with the loops within them meanwhile.
 class Team::Pool {
  public:
   explicit Pool(Team& team) : patience_(team.threads() > cores() ? 0 : cost::helper_patience) {
@@ -115,7 +133,8 @@ class Team::Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  // The caller takes items of this loop alone, for it may be in the midst of an item of another.
+  // The caller takes items of this loop alone and of those within it, for it may be in the midst of
+  // an item of another.
   void run(Shared& shared) {
     {
       const Locked locked(lock_);
@@ -129,14 +148,20 @@ class Team::Pool {
       std::erase(open_, &shared);
     }
     for (int looks = 0; shared.helping.load(std::memory_order_acquire) > 0; ++looks)
-      looks < 4096 ? pause_a_little() : std::this_thread::yield();
+      if (Shared* inner = looks % looks_between == 0 ? join(&shared) : nullptr)
+        help_with(*inner);
+      else
+        looks < 4096 ? pause_a_little() : std::this_thread::yield();
   }
 
  private:
-  Shared* join() {
+  static constexpr int looks_between = 16;
+
+  // One with items left, within `outer` if that is given; null: there is none.
+  Shared* join(const Shared* outer = nullptr) {
     const Locked locked(lock_);
     for (Shared* shared : open_)
-      if (shared->has_items()) {
+      if (shared->has_items() && (!outer || shared->is_within(*outer))) {
         shared->helping.fetch_add(1, std::memory_order_relaxed);
         return shared;
       }
@@ -148,18 +173,20 @@ class Team::Pool {
     while (!stop_) {
       const std::uint32_t seen = published_.load();
       if (Shared* shared = join())
-        help_with(*shared);
+        help_with(*shared, thread_cpu_seconds());
       else
         await_other_than(seen);
     }
   }
 
-  static void help_with(Shared& shared) {
+  // What is done counts for who called the loop; the time, too, of a helper that has nothing else
+  // to do and began then.
+  static void help_with(Shared& shared, double begun = never) {
     const WorkCount before = work_count;
-    const double begun = thread_cpu_seconds();
     shared.work();
     WorkCount done = work_count.since(before);
-    done.helper_seconds += thread_cpu_seconds() - begun;
+    work_count = before;
+    if (begun < never) done.helper_seconds += thread_cpu_seconds() - begun;
     {
       const Locked locked(shared.lock);
       shared.helped.add(done);

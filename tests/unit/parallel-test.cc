@@ -105,6 +105,29 @@ TEST(Parallel, loops_far_apart_are_shared_as_well) {
   }
 }
 
+TEST(Parallel, who_waits_for_the_last_item_helps_with_the_loops_within_it) {
+  Team team(2);
+  const Team::Scope scope(&team);
+  const std::thread::id self = std::this_thread::get_id();
+  const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  const auto wait_for = [&](const auto& it) {
+    while (!it() && std::chrono::steady_clock::now() < late) wait_a_little();
+  };
+  std::atomic<bool> taken = false;
+  std::atomic<int> begun = 0;
+  each_in_parallel(2, 1, [&](std::size_t) {
+    if (std::this_thread::get_id() == self) return wait_for([&] { return taken.load(); });
+    taken = true;
+    // neither of these ends before the other one has begun
+    each_in_parallel(2, 1, [&](std::size_t) {
+      ++begun;
+      wait_for([&] { return begun.load() == 2; });
+    });
+  });
+  EXPECT_TRUE(taken);
+  EXPECT_LT(std::chrono::steady_clock::now(), late);
+}
+
 TEST(Parallel, an_exception_of_an_item_comes_out) {
   Team team(3);
   const Team::Scope scope(&team);
