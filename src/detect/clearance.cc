@@ -47,17 +47,16 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
   // remembered, or by the bounding balls, or by a query: what is left of it at the end
   const bool remembered = known.from <= from && from <= known.until;
   const double balls = (tb.center - ta.center).norm() - a.radius - b.radius;
-  const double rounding =
-      answer::apart_in_roundings * distance_rounding(a, ta.center, b, tb.center);
+  const double least = answer::apart_in_roundings * distance_rounding(a, ta.center, b, tb.center);
   double left = std::max(remembered ? known.distance : 0, balls) - travel.most();
-  if (!(left > rounding)) {
+  if (!(left > least)) {
     const Frame fa = piece.a->trajectory().frame(from), fb = piece.b->trajectory().frame(from);
     const Shape& shape_a = *a.shape_P;
     const Shape& shape_b = *b.shape_P;
     const std::size_t pairs = shape_a.part_count() * shape_b.part_count();
     left = never;
     const auto look = [&](std::size_t i, std::size_t j) {
-      if (!(left > rounding)) return;
+      if (!(left > least)) return;
       SimplexCache& cache = caches.of(i * shape_b.part_count() + j, pairs);
       const Separation s = part_separation(shape_a.part(i), fa, shape_b.part(j), fb, &cache);
       left = std::min(left, s.distance - travel.against(s.normal));
@@ -70,11 +69,11 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
       left = farthest - travel.most();
       visit_near_parts(shape_a, fa, shape_b, fb, farthest, look);
     } else {
-      for (std::size_t i = 0; i < shape_a.part_count() && left > rounding; ++i)
-        for (std::size_t j = 0; j < shape_b.part_count() && left > rounding; ++j) look(i, j);
+      for (std::size_t i = 0; i < shape_a.part_count() && left > least; ++i)
+        for (std::size_t j = 0; j < shape_b.part_count() && left > least; ++j) look(i, j);
     }
   }
-  if (!(left > rounding)) return false;
+  if (!(left > least)) return false;
   known = {left, from, to};
   return true;
 }

@@ -19,7 +19,7 @@ void Simulation::require_before_first_run(const char* what) const {
              std::string(what) + " after the simulation began; expected before the first run");
 }
 
-void Simulation::scale_joints() const {
+void Simulation::scale_joints() {
   for (const auto& multibody : scene.multibodies)
     multibody->tree.set_gravity(scene.gravity_scale());
 }

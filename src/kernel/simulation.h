@@ -50,9 +50,9 @@ struct Simulation {
   ProcessId process_of(BodyId id) const { return scene.process_of(id); }
   Process& process(const Body& body) { return processes[number(body.process)]; }
   const Process& process(const Body& body) const { return processes[number(body.process)]; }
-  // What stands before a key, and what groups are decided by.
   // As many as a run may take.
   int threads() const { return options.threads > 0 ? options.threads : Team::cores(); }
+  // What stands before a key, and what groups are decided by.
   Before before(const Key& key, ReadLog* log = nullptr) const {
     return Before(scene, graph, key, log);
   }
@@ -63,7 +63,7 @@ struct Simulation {
   }
 
   // Joints follow the gravity that is set.
-  void scale_joints() const;
+  void scale_joints();
 
   // UserError: "WHAT inside a callback or observer; expected ...", "WHAT after the simulation ...".
   void require_between_runs(const char* what) const;
