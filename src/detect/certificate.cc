@@ -95,11 +95,42 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
   return side.longest_along(n, least);
 }
 
-// How high a part reaches along n; `point` is where it does, but for what is not known better.
-double top_along(const MovingBody& side, const ConvexPart& part, const Vec3& n, const Vec3& point) {
-  if (part.kind == PartKind::half_space || part.kind == PartKind::sphere) return n.dot(point);
+// A point of a part farthest along the unit n; `point` is one, for what is not known better.
+Vec3 top_along(const MovingBody& side, const ConvexPart& part, const Vec3& n, const Vec3& point) {
+  if (part.kind == PartKind::half_space || part.kind == PartKind::sphere) return point;
   const SupportCore core(part, side.frame * part.placement);
-  return n.dot(core.support(n)) + core.margin;
+  return core.support(n) + core.margin * n;
+}
+
+// A second look at the plane between two parts: at the middle of what reaches highest of either,
+// and square to a normal made truer.  Of nearest points some roundings apart the direction is
+// hardly known, and what lies along an edge or over a face would reach through with its far end.
+// Square to what leads from the nearest points to the farthest ones the normal is exact: to one
+// such direction along an edge, to two over a face.
+Plane truer_plane(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
+                  const ConvexPart& part_b, const Separation& s) {
+  Plane plane;
+  Vec3 n = s.normal, along = Vec3::Zero();
+  double widest = -never;
+  for (int look = 0; look < 3; ++look) {
+    const Vec3 top_a = top_along(a, part_a, n, s.point_a);
+    const Vec3 top_b = top_along(b, part_b, -n, s.point_b);
+    const double gap = n.dot(top_b - top_a);
+    if (gap > widest) {
+      widest = gap;
+      plane.n = n;
+      plane.c = 0.5 * n.dot(top_a + top_b);
+    }
+    if (s.distance <= 0 || 2 * gap >= s.distance) break;  // exact, or as wide as may be
+    const Vec3 to_farthest = (top_b - top_a) - (s.point_b - s.point_a);
+    Vec3 square = look == 0 ? Vec3(n - n.dot(to_farthest) / to_farthest.squaredNorm() * to_farthest)
+                            : along.cross(to_farthest);
+    along = to_farthest;
+    const double length = square.norm();
+    if (!(length > 0)) break;
+    n = std::copysign(1 / length, square.dot(s.normal)) * square;
+  }
+  return plane;
 }
 
 // Seconds until the two parts may meet, given n from a to b and the witness points; the plane
@@ -242,7 +273,7 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
     }
   }
 
-  const Separation& s = separation(i, j);
+  Separation s = separation(i, j);
   if (!(s.distance > sure)) return -never;
   const auto by_plane = [&](double c) {
     return longest([&](const MovingBody& x, const MovingBody& y) {
@@ -250,11 +281,11 @@ double Certificates::parts_apart(std::size_t i, std::size_t j, double allowance)
     });
   };
   double apart = by_plane(0.5 * s.normal.dot(s.point_a + s.point_b));
-  // where faces that hardly lean overlap by less than the allowance, the nearest points may lie
-  // lower than what reaches highest
-  if (!(apart > 0) && s.distance <= 0)
-    apart = by_plane(
-        0.5 * (top_along(a, pa, s.normal, s.point_a) - top_along(b, pb, -s.normal, s.point_b)));
+  if (!(apart > 0)) {
+    const Plane truer = truer_plane(a, pa, b, pb, s);
+    s.normal = truer.n;
+    apart = by_plane(truer.c);
+  }
   // where edges and faces turn past each other, a plane that turns with them lasts longer
   if (apart < cost::soon && can_turn(a, pa) && can_turn(b, pb))
     apart = std::max(apart, by_step([&](const MovingBody& x, const MovingBody& y) {

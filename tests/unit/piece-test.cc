@@ -249,6 +249,26 @@ TEST(Certificates, what_lies_on_what_turns_is_apart_for_long) {
   }
 }
 
+// Cylinders of 620 m that lean along the plane between them and are near at their ends: of points
+// 0.1 um apart the direction is known to 1e-6 only, and far ends reach through the plane square to
+// it.
+TEST(Certificates, what_stands_side_by_side_is_apart_although_its_normal_is_hardly_known) {
+  const double gap = 1e-13, radius = 310.6197153363118;
+  const ShapePtr drum = make_cylinder(radius, 2 * radius);
+  Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    const auto lean = [&] { return random.real(1e-5, 4e-5) * Vec3::UnitY(); };
+    Flyer a(0, drum, {6 * radius, 0, radius + 0.0115}, Vec3::Zero());
+    Flyer b(1, drum, {6 * radius + 0.015, 2 * radius + gap, 3 * radius - 0.002}, {0.05, 0, 0});
+    a.state.q = rotation_by(lean());
+    b.state.q = rotation_by(-lean());
+    let_fly(a.body, a.state);
+    let_fly(b.body, b.state);
+    SimplexCaches caches;
+    EXPECT_GT(certificate(between(a, b), caches, 0, 0), 1e-3) << i;
+  }
+}
+
 // A plate 20 um thick on end, 5 mm above the ground, that turns at 1e5 rad/s: its corners are below
 // for some microseconds of every turn of 63, the deepest for a time that is given.
 TEST(Dips, what_comes_and_goes_between_two_grid_points_is_seen) {
