@@ -132,5 +132,6 @@ may do both."
   (squeezed-part squeezing fourth))
 
 (define (squeezed-share squeezing)
-  "Return the deeper overlap of SQUEEZING at its time as a share of the body's least width."
+  "Return the deeper overlap of SQUEEZING at its time as a share of the thinner one's
+thickness: of the body, or of who pushes it; of a union that of its thinnest part."
   (squeezed-part squeezing fifth))

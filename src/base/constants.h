@@ -110,7 +110,8 @@ inline constexpr std::size_t most_placed = 4096;
 // A pair that carries less in their balance than this share of the lighter one's weight carries
 // nothing.
 inline constexpr double carried_share = 1e-6;
-// A body is squeezed from this overlap on, over its least width: heaps stay below a tenth of it.
+// A body is squeezed from this overlap on, over the thickness of it or of who pushes it, the
+// thinner one: heaps stay below a tenth of it.
 // The lesser of the forces on its two sides is at least this share of the other.
 inline constexpr double squeezed_share = 0.02, squeezed_force_share = 0.1;
 

@@ -18,6 +18,7 @@ struct Push {
   Vec3 force = Vec3::Zero();   // on it, world, N
   Vec3 point = Vec3::Zero();
   double depth = 0;  // m
+  double share = 0;  // of the thinner one's thickness
 };
 
 // Of its springs, on the other body, N.  A body in a corner with friction is held by forces that
@@ -46,6 +47,7 @@ struct Squeeze {
 
   explicit operator bool() const { return one; }
   double depth() const { return std::max(one->depth, two->depth); }
+  double share() const { return std::max(one->share, two->share); }
 };
 
 // Of all successors with new arcs, by body; none where no contact is deep enough.
@@ -61,8 +63,9 @@ class Pushes {
         if (!(contact.gap < 0)) return;
         const ContactTag& tag = contact.tag;
         const Vec3 force = spring_force_of(contact, work.attitude(tag.reference));
-        add({tag.other, tag.reference, contact.normal, force, contact.point, -contact.gap});
-        add({tag.reference, tag.other, -contact.normal, -force, contact.point, -contact.gap});
+        const double depth = -contact.gap, share = share_of(contact);
+        add({tag.other, tag.reference, contact.normal, force, contact.point, depth, share});
+        add({tag.reference, tag.other, -contact.normal, -force, contact.point, depth, share});
       });
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Push& x, const Push& y) { return x.body < y.body; });
@@ -74,16 +77,16 @@ class Pushes {
                          [](const Push& x, const Push& y) { return x.body < y.body; });
     return {first, last};
   }
-  // The two that push it against each other, one as deep as `least` and `held` on both sides: those
-  // with the deepest.
+  // The two that push it against each other, one by as great a share as `least` and `held` on both
+  // sides: those with the greatest.
   Squeeze squeeze(BodyId body, double least, bool held) const {
     const std::span<const Push> pushes = on(body);
     Squeeze deepest;
     for (std::size_t i = 0; i < pushes.size(); ++i)
       for (std::size_t j = i + 1; j < pushes.size(); ++j) {
         const Squeeze found{&pushes[i], &pushes[j]};
-        if (found.depth() < least || !oppose(pushes[i], pushes[j])) continue;
-        if (deepest && found.depth() <= deepest.depth()) continue;
+        if (found.share() < least || !oppose(pushes[i], pushes[j])) continue;
+        if (deepest && found.share() <= deepest.share()) continue;
         if (held && !(is_held(pushes[i]) && is_held(pushes[j]))) continue;
         deepest = found;
       }
@@ -91,12 +94,12 @@ class Pushes {
   }
 
  private:
-  double width(BodyId body) const { return work_.scene().body(body).least_width; }
-  // Whether it could keep a body squeezed.
-  bool is_deep(const NewContact& c) const {
-    const double narrower = std::min(width(c.tag.reference), width(c.tag.other));
-    return -c.gap >= 0.5 * answer::squeezed_share * narrower;
+  double thickness(BodyId body) const { return work_.scene().body(body).thickness; }
+  double share_of(const NewContact& c) const {
+    return -c.gap / std::min(thickness(c.tag.reference), thickness(c.tag.other));
   }
+  // Whether it could keep a body squeezed.
+  bool is_deep(const NewContact& c) const { return share_of(c) >= 0.5 * answer::squeezed_share; }
   // Of all forces on the body within 60 degrees of this one, N.
   double side(const Push& push) const {
     Vec3 sum = Vec3::Zero();
@@ -135,7 +138,7 @@ class Pushes {
 };
 
 Collision report_of(const Regrouping& work, const Squeeze& squeeze) {
-  const Push& deeper = *(squeeze.one->depth >= squeeze.two->depth ? squeeze.one : squeeze.two);
+  const Push& deeper = *(squeeze.one->share >= squeeze.two->share ? squeeze.one : squeeze.two);
   const Push& first = *(squeeze.one->by <= squeeze.two->by ? squeeze.one : squeeze.two);
   const Push& second = *(&first == squeeze.one ? squeeze.two : squeeze.one);
   Collision row;
@@ -148,7 +151,7 @@ Collision report_of(const Regrouping& work, const Squeeze& squeeze) {
   row.normal = first.normal;
   row.squeezed = deeper.body;
   row.depth = deeper.depth;
-  row.depth_share = deeper.depth / work.scene().body(deeper.body).least_width;
+  row.depth_share = deeper.share;
   return row;
 }
 
@@ -162,13 +165,13 @@ void note_squeezed(Regrouping& work) {
     const bool before = since < never;
     if (!before && pushes.empty()) continue;
     const Body& body = *successor.body;
-    const double least = answer::squeezed_share * body.least_width;
-    const Squeeze squeeze = pushes.squeeze(body.id(), before ? 0.5 * least : least, !before);
+    const double least = before ? 0.5 * answer::squeezed_share : answer::squeezed_share;
+    const Squeeze squeeze = pushes.squeeze(body.id(), least, !before);
     if (!squeeze) {
       since = never;
       continue;
     }
-    work.tally.note_squeezed(squeeze.depth(), squeeze.depth() / body.least_width);
+    work.tally.note_squeezed(squeeze.depth(), squeeze.share());
     if (before) continue;
     since = work.now();
     ++work.tally.squeezed;

@@ -1,7 +1,7 @@
 // Who is squeezed: pressed from two sides by what does not give way, so that it has nowhere to go.
 //
 // A body is squeezed from when two contacts push it against each other, one of them deeper than a
-// share of its least width, and behind each stands what does not give way: a fixed or kinematic
+// share of the thinner one's thickness (dynamics/body.h), and behind each stands what does not give way: a fixed or kinematic
 // body, or a dynamic one that is itself pushed along from behind, and so on to a fixed or kinematic
 // one, without the squeezed body in between.  They push it against each other where the forces of
 // their springs, friction's with them, are more than 120 degrees apart and neither side is small

@@ -52,7 +52,7 @@ struct Counters : GroupCounters, PairCounts {
   double placed_energy = 0;     // J, of contact springs that started loaded
   double max_penetration = 0;   // m, deepest overlap at impacts, in contacts and at frames
   std::uint64_t squeezed = 0;   // bodies that began to be, which max_penetration leaves out
-  double squeezed_depth = 0, squeezed_share = 0;  // m; over the least width
+  double squeezed_depth = 0, squeezed_share = 0;  // m; over the thinner one's thickness
 
   // time of this thread, s
   double cpu_seconds = 0, output_cpu_seconds = 0;

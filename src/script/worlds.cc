@@ -68,12 +68,13 @@ void warn_of_squeezing(World& world) {
         const std::string sides = told.body1 == told.body2
                                       ? "within " + name(told.body1)
                                       : "between " + name(told.body1) + " and " + name(told.body2);
-        std::fprintf(stderr,
-                     "timewarp: warning: at %s s %s is squeezed %s, %.2g m deep, %.1f %% of its "
-                     "least width; it has nowhere to go (told once; see `squeezed' in the "
-                     "statistics, and (observe! 'squeezed ...))\n",
-                     show(told.time).c_str(), name(told.squeezed).c_str(), sides.c_str(),
-                     told.depth, 100 * told.depth_share);
+        std::fprintf(
+            stderr,
+            "timewarp: warning: at %s s %s is squeezed %s, %.2g m deep, %.1f %% of the "
+            "thinner one's thickness; it has nowhere to go (told once; see `squeezed' in the "
+            "statistics, and (observe! 'squeezed ...))\n",
+            show(told.time).c_str(), name(told.squeezed).c_str(), sides.c_str(), told.depth,
+            100 * told.depth_share);
       },
       CollisionKind::squeezed);
 }

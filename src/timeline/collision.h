@@ -25,7 +25,8 @@ struct Collision {
   double speed = 0;             // approach speed there before the impulse, m/s, positive
   double impulse = 0;           // sum of the normal impulses, N s
   BodyId squeezed = 0;
-  double depth = 0, depth_share = 0;  // m, and over its least width: of the deeper of two overlaps
+  // Of the deeper of two overlaps: m, and over the thinner one's thickness.
+  double depth = 0, depth_share = 0;
 };
 
 // What one discontinuity tells observers.

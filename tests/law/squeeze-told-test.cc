@@ -76,6 +76,26 @@ TEST(SqueezeTold, once_each_time_that_it_begins_with_who_and_how_deep) {
   EXPECT_LT(number_of(table, "max_penetration"), 0.03 * width);
 }
 
+// Between two plates of a tenth of its width: overlaps are measured by what is thinner.
+TEST(SqueezeTold, by_plates_as_soon_as_these_are_deep_in_it) {
+  World world;
+  world.set_gravity(Vec3::Zero());
+  constexpr double thin = 0.1 * width;
+  add_block(world, {thin, 4, 4}, {-0.5 * thin, 0, 0});
+  const BodyId cube = add_box(world, Vec3::Constant(width), {0.5 * width, 0, 0});
+  BodyDef plate;
+  plate.shape = make_box({thin, 4, 4});
+  const double at = width + 0.5 * thin;
+  plate.motion = make_keyframes({{0, {at, 0, 0}, {}}, {1, {at - 0.1 * thin, 0, 0}, {}}}, false);
+  world.add_body(plate);
+  const std::vector<Told> told = record(world, 1);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].body, cube);
+  EXPECT_GE(told[0].share, 0.02);
+  EXPECT_NEAR(told[0].share, 0.02, 0.01);
+  EXPECT_DOUBLE_EQ(told[0].depth, told[0].share * thin);
+}
+
 // In a row each is held by the next, and so on to the walls.
 TEST(SqueezeTold, of_a_row_each_is_told_with_its_neighbours) {
   World world;
