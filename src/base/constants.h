@@ -95,6 +95,10 @@ inline constexpr double check_grid = 0x1p-20, dip_share = 0x1p-10;
 // rounding may make of no distance is left: a root's bracket ends within a few of these, and where
 // it does must not depend on where a piece happens to be cut.
 inline constexpr double apart_in_roundings = 16;
+// Depth that does not count as penetration is so many times that at least: where the two get deeper
+// than is surely apart, and not yet too deep, each point of the grid is looked at; a small part of
+// the way to there.
+inline constexpr double slack_in_roundings = 64;
 // When contacts stop telling the truth is known to this share of the depth that they may miss.
 inline constexpr double end_resolution = 1e-6;
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a

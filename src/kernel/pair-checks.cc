@@ -52,7 +52,7 @@ double slack_of(const Scene& scene, const Piece& piece) {
   // above rounding, or nothing that touches would surely be apart
   return std::max((integrated ? answer::stepped_slack : answer::depth_slack) *
                       std::min(a.least_width, b.least_width),
-                  4 * distance_rounding(a, piece.a->x, b, piece.b->x));
+                  answer::slack_in_roundings * distance_rounding(a, piece.a->x, b, piece.b->x));
 }
 
 // How deep the two may be, m, before it counts as penetration: as deep as they are when the piece
