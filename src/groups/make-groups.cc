@@ -154,6 +154,7 @@ void start_arc(Regrouping& work, Group& group) {
       contact.contact.a = index_of(contact.tag.reference);
       contact.contact.b = index_of(contact.tag.other);
       start.contacts.push_back(contact.contact);
+      start.contacts.back().pressed = contact.gap < contact.contact.offset;
       group.tags.push_back(contact.tag);
       group.gaps.push_back(contact.gap);
       pair.has_borne_load = pair.has_borne_load || contact.gap < contact.reach();

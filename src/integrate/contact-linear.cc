@@ -191,8 +191,10 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
 }  // namespace
 
 void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) {
-  for (int r = 0; r < 3; ++r) o.Ra.row[r] = s.Ra.row[r];
+  o.idle = s.idle;
   o.n = s.n;
+  if (s.idle) return;
+  for (int r = 0; r < 3; ++r) o.Ra.row[r] = s.Ra.row[r];
   o.l = s.l;
   o.ra = s.ra;
   o.rb = s.rb;
@@ -252,6 +254,7 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
 }
 
 void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
+  if (o.idle) return;
   if (pack.bend >= 0) set_resistance_stage(sigma, o.resistance);
   if (pack.law != FrictionLaw::anchored) return;
   const Lanes s = lanes(sigma), zero = lanes(0), one = lanes(1);

@@ -54,6 +54,7 @@ struct BodyWrench {
 
 // What derivatives of a pack need.
 struct PackLinear {
+  bool idle = false;  // as the state: then n alone is set, and all derivatives are 0
   LaneMat Ra;
   LaneVec n, l, ra, rb, sa, sb, wb, dw, vr, f,
       bend;  // dw = w_b - w_a; bend = y (kt s + ct v_r), or v_r

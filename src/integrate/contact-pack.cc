@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 
 #include "base/constants.h"
 
@@ -11,32 +12,40 @@ namespace tw {
 
 namespace {
 
-// what a contact needs of one of its bodies
-struct LaneKinematics {
-  LaneVec x, v, w;
-  LaneMat R;
-};
-
-TW_LANES void gather(const ContactPack& pack, const BodyKinematics* bodies,
-                     const int (&slot)[lane_count], LaneKinematics& out) {
-  const BodyKinematics* body[lane_count];
-  for (int i = 0; i < lane_count; ++i) body[i] = &bodies[slot[i]];
-  if (pack.uniform) {
-    out.x = broadcast(body[0]->x);
-    out.v = broadcast(body[0]->v);
-    out.w = broadcast(body[0]->w);
-    for (int r = 0; r < 3; ++r) out.R.row[r] = broadcast(body[0]->R + 3 * r);
-    return;
+// One of the bodies of each contact.
+class LaneBodies {
+ public:
+  TW_LANES LaneBodies(const ContactPack& pack, const BodyKinematics* bodies,
+                      const int (&slot)[lane_count])
+      : uniform_(pack.uniform) {
+    for (int i = 0; i < lane_count; ++i) body_[i] = &bodies[slot[i]];
   }
-  const auto vec = [&](auto of) {
-    return gather_vec(of(body[0]), of(body[1]), of(body[2]), of(body[3]));
-  };
-  out.x = vec([](const BodyKinematics* b) { return b->x; });
-  out.v = vec([](const BodyKinematics* b) { return b->v; });
-  out.w = vec([](const BodyKinematics* b) { return b->w; });
-  for (int r = 0; r < 3; ++r)
-    out.R.row[r] = vec([r](const BodyKinematics* b) { return b->R + 3 * r; });
-}
+  TW_LANES LaneVec x() const {
+    return of([](const BodyKinematics* b) { return b->x; });
+  }
+  TW_LANES LaneVec v() const {
+    return of([](const BodyKinematics* b) { return b->v; });
+  }
+  TW_LANES LaneVec w() const {
+    return of([](const BodyKinematics* b) { return b->w; });
+  }
+  TW_LANES LaneMat R() const {
+    LaneMat R;
+    for (int r = 0; r < 3; ++r)
+      R.row[r] = of([r](const BodyKinematics* b) { return b->R + 3 * r; });
+    return R;
+  }
+
+ private:
+  template <class Get>
+  TW_LANES LaneVec of(Get get) const {
+    if (uniform_) return broadcast(get(body_[0]));
+    return gather_vec(get(body_[0]), get(body_[1]), get(body_[2]), get(body_[3]));
+  }
+
+  const BodyKinematics* body_[lane_count];
+  bool uniform_;
+};
 
 TW_LANES LaneVec unit(const LaneVec& v) {
   const Lanes length = sqrt(dot(v, v));
@@ -215,10 +224,30 @@ TW_LANES void set_normal(const ContactPack& pack, const LaneVec& D, const LaneVe
   o.gap = sign * length - pack.radius_a - pack.radius_b;
 }
 
+// Whether no contact of the pack presses, or touches so nearly that it could.
+TW_LANES bool is_idle(const ContactPack& pack, const PackState& o) {
+  const Lanes zero = lanes(0), ratio = o.depth * pack.inverse_hardening;
+  return pack.bend < 0 && !any((pack.k > zero) & (ratio > lanes(-answer::just_touching)));
+}
+
+// Stretches relax, and nothing else happens.
+TW_LANES void set_idle(const ContactPack& pack, const LaneVec& stretch, PackState& o) {
+  const LaneVec none = {lanes(0), lanes(0), lanes(0)};
+  o.damping = pack.damping;
+  o.grip = lanes(1);
+  o.kt = pack.kt;
+  o.ct = pack.ct;
+  o.N = o.stiffness = o.target_length = o.scale = o.drag = lanes(0);
+  o.target = o.F = o.f = none;
+  o.slipping = o.gap > o.gap;
+  o.deep = o.turns = false;
+  o.stretch_rate = pack.law == FrictionLaw::anchored ? (-pack.kt / pack.ct) * stretch : none;
+}
+
 // N = max(0, k d h (1 - b vn)), h = 1 + min((d/dh)^2, cap), b less beyond the cap; y = sqrt(h)
 TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
-  const Lanes depth = o.depth = pack.offset - o.gap, ratio = depth * pack.inverse_hardening;
+  const Lanes depth = o.depth, ratio = depth * pack.inverse_hardening;
   const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
   const Lanes ease = min(one, lanes(answer::hardest_ratio) / max(ratio, lanes(1e-300)));
   o.damping = ease * pack.damping;
@@ -287,31 +316,30 @@ TW_LANES void add_resistance(const ContactPack& pack, const LaneVec& bend, PackS
 
 template <ContactFeature feature>
 void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-              const LaneVec& bend, const LaneVec& side, PackState& o) {
+              const LaneVec& bend, const LaneVec& side, bool forces_alone, PackState& o) {
   // core points
-  LaneKinematics a, b;
-  gather(pack, bodies, pack.a, a);
-  gather(pack, bodies, pack.b, b);
-  for (int r = 0; r < 3; ++r) o.Ra.row[r] = a.R.row[r];
-  o.rb = b.R * pack.point_b;
-  o.ra = b.x - a.x + o.rb;
+  const LaneBodies a(pack, bodies, pack.a), b(pack, bodies, pack.b);
+  o.Ra = a.R();
+  const LaneMat Rb = b.R();
+  o.rb = Rb * pack.point_b;
+  o.ra = b.x() - a.x() + o.rb;
   const LaneVec D = o.ra - o.Ra * pack.point_a;
   if constexpr (runs(feature)) {
     o.l = o.Ra * pack.direction;
     o.inverse_length = lanes(0);
     LaneVec along;
     if constexpr (feature == ContactFeature::rim)
-      along = set_rim(pack, D, b.R, side, o);
+      along = set_rim(pack, D, Rb, side, o);
     else
-      along = set_crossing(pack, D, b.R, side, o);
+      along = set_crossing(pack, D, Rb, side, o);
     o.ra = o.ra + along;
     o.rb = o.rb + along;
   } else if constexpr (rolls(feature)) {
     LaneVec lowest;
     if constexpr (feature == ContactFeature::curved) {
-      lowest = set_curved(pack, D, b.R, side, o);
+      lowest = set_curved(pack, D, Rb, side, o);
     } else {
-      lowest = set_tangent_plane(pack, b.R, o);
+      lowest = set_tangent_plane(pack, Rb, o);
       o.gap = dot(o.n, D + lowest) - pack.radius_b;
     }
     o.ra = o.ra + lowest;
@@ -321,18 +349,24 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
     set_normal<feature>(pack, D, side, o);
   }
 
+  o.depth = pack.offset - o.gap;
+  o.idle = is_idle(pack, o);
+  if (o.idle) set_idle(pack, stretch, o);
+  if (o.idle && forces_alone) return;
+
   // velocity at the contact point
   o.sa = o.ra - pack.radius_b * o.n;
   o.sb = o.rb - pack.radius_b * o.n;
-  o.wa = a.w;
-  o.wb = b.w;
-  o.vr = b.v + cross(b.w, o.sb) - a.v - cross(a.w, o.sa);
+  o.wa = a.w();
+  o.wb = b.w();
+  o.vr = b.v() + cross(o.wb, o.sb) - a.v() - cross(o.wa, o.sa);
   o.vn = dot(o.n, o.vr);
   o.u = o.vr - o.vn * o.n;
+  o.s = o.Ra * stretch;
+  if (o.idle) return;
 
   // force
   set_normal_force(pack, o);
-  o.s = o.Ra * stretch;
   if (pack.law == FrictionLaw::anchored)
     set_anchored_friction(pack, o);
   else
@@ -416,29 +450,30 @@ ContactPack empty_pack() {
 }  // namespace
 
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-                   const LaneVec& bend, const LaneVec& side, PackState& out) {
+                   const LaneVec& bend, const LaneVec& side, PackState& out, bool forces_alone) {
+  const auto evaluate_as = [&](auto feature) {
+    evaluate<decltype(feature)::value>(pack, bodies, stretch, bend, side, forces_alone, out);
+  };
   switch (pack.feature) {
     case ContactFeature::plane:
-      return evaluate<ContactFeature::plane>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::plane>());
     case ContactFeature::line:
-      return evaluate<ContactFeature::line>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::line>());
     case ContactFeature::point:
-      return evaluate<ContactFeature::point>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::point>());
     case ContactFeature::crossing:
-      return evaluate<ContactFeature::crossing>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::crossing>());
     case ContactFeature::rim:
-      return evaluate<ContactFeature::rim>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::rim>());
     case ContactFeature::tangent_plane:
-      return evaluate<ContactFeature::tangent_plane>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::tangent_plane>());
     case ContactFeature::curved:
-      return evaluate<ContactFeature::curved>(pack, bodies, stretch, bend, side, out);
+      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::curved>());
   }
 }
 
 LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies) {
-  LaneKinematics a;
-  gather(pack, bodies, pack.a, a);
-  return a.R * pack.normal;
+  return LaneBodies(pack, bodies, pack.a).R() * pack.normal;
 }
 
 Lanes pack_energy(const ContactPack& pack, const PackState& state) {
@@ -469,12 +504,12 @@ ContactPacks make_contact_packs(const GroupStart& start) {
   result.slots = members + static_cast<int>(start.outside.size());
   result.places.resize(contacts.size());
 
-  // by feature and law
+  // by feature and law, and what presses apart from what is open: packs of that cost little
   std::vector<int> order(contacts.size());
   std::iota(order.begin(), order.end(), 0);
   const auto kind = [&](int i) {
     const GroupContact& c = contacts[static_cast<std::size_t>(i)];
-    return 2 * static_cast<int>(c.feature) + static_cast<int>(c.law.law);
+    return 4 * static_cast<int>(c.feature) + 2 * static_cast<int>(c.law.law) + !c.pressed;
   };
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return kind(i) < kind(j); });
 

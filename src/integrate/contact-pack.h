@@ -98,6 +98,7 @@ struct PackState {
   // and n by dn; curved: n does by turn (dp + roll dom).
   LaneMat roll, bulge, turn;
   Lanes gap, depth, vn;        // depth = offset - gap
+  bool idle = false;           // all are open, and nothing resists turns: no forces, no derivatives
   Lanes damping;               // b at this depth
   Lanes grip;                  // y at this depth
   Lanes kt, ct;                // y kt, y ct; anchored
@@ -116,9 +117,11 @@ struct PackState {
 };
 
 // `stretch`, `bend`: a's frame; bends count where the pack has some.  `side`: the normals at an
-// earlier instant, which choose their sign (line, point).
+// earlier instant, which choose their sign (line, point).  `forces_alone`: of an idle pack points
+// and velocities may be left out.
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-                   const LaneVec& bend, const LaneVec& side, PackState& out);
+                   const LaneVec& bend, const LaneVec& side, PackState& out,
+                   bool forces_alone = false);
 
 // The normals that the definition of the contacts gives at the start of an arc: they choose the
 // sign.

@@ -112,6 +112,7 @@ void GroupSystem::change_couplings(const Couplings& couplings, GroupScratch& s) 
   for (const int p : couplings.packs) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
+    if (linear.idle) continue;
     PackChange change;
     change_pack(pack, linear, s.changes.data(), {}, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());

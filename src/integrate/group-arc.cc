@@ -60,14 +60,20 @@ struct GroupArc::Data {
   int link_of(int member) const { return start.members[static_cast<std::size_t>(member)].link; }
   // kinematics of all slots at a time that is reached
   void set_bodies(double time, GroupScratch& s) const;
-  void set_slot(int slot, double time, GroupScratch& s) const;
+  void set_slot(int slot, double time, BodyKinematics& body) const;
   struct KeptPack {
-    std::uint64_t arc = 0;
-    int pack = -1;
-    double time = 0;
     PackState state;
     Vec3 center_b[lane_count];
   };
+  // What was asked of an arc at one instant.
+  struct KeptInstant {
+    std::uint64_t arc = 0;
+    double time = 0;
+    std::vector<BodyKinematics> bodies;  // by slot
+    std::vector<KeptPack> packs;         // by number
+    std::vector<bool> has_body, has_pack;
+  };
+  KeptInstant& instant_at(double at) const;
   const KeptPack& pack_at(int number, double at) const;
   // What a contact does to a member, and where; where the work counts, how fast the outside body's
   // material moves there, and its turning.
@@ -109,10 +115,9 @@ void GroupArc::Data::fail() {
   failure = text.str();
 }
 
-void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
+void GroupArc::Data::set_slot(int slot, double time, BodyKinematics& body) const {
   if (const JointRecord* joints = joints_of(slot)) {
     const PoseTwist point = joints->at(link_of(slot), time);
-    BodyKinematics& body = s.bodies[static_cast<std::size_t>(slot)];
     rows::vec(body.x) = point.x;
     rows::vec(body.v) = point.v;
     rows::vec(body.w) = point.w;
@@ -122,12 +127,13 @@ void GroupArc::Data::set_slot(int slot, double time, GroupScratch& s) const {
   Vec3 x, v, L;
   Quat q;
   record.motion(slot, time, x, q, v, L);
-  system.set_member(slot, x, q, v, L, s.bodies[static_cast<std::size_t>(slot)]);
+  system.set_member(slot, x, q, v, L, body);
 }
 
 void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
   system.set_outside(time, s.bodies);
-  for (int i = 0; i < system.members(); ++i) set_slot(i, time, s);
+  for (int i = 0; i < system.members(); ++i)
+    set_slot(i, time, s.bodies[static_cast<std::size_t>(i)]);
 }
 
 GroupArc::GroupArc(GroupStart start) : data_(std::make_unique<Data>(std::move(start))) {
@@ -298,32 +304,46 @@ Vec3 GroupArc::bend(int contact, double time) const {
   return {z.x[place.lane], z.y[place.lane], z.z[place.lane]};
 }
 
-// The pack of the contact at one instant.  Those of a contact pair are asked for one after the
-// other, and mostly share a pack: the last one is kept.
-const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
-  thread_local KeptPack kept;
-  if (kept.arc == serial && kept.pack == number && kept.time == at) return kept;
-  GroupScratch& s = system.scratch();
-  const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(number)];
-  // contacts of one pair stand beside each other: their bodies once
-  for (const auto& slots : {pack.a, pack.b})
-    for (int i = 0; i < pack.count; ++i)
-      if (i > 0 && slots[i] == slots[i - 1])
-        continue;
-      else if (slots[i] < system.members())
-        set_slot(slots[i], at, s);
-      else
-        system.set_outside_slot(slots[i], at, s.bodies);
-  evaluate_pack(pack, s.bodies.data(), record.stretch(number, at), record.bend(pack, at),
-                record.side(number, at), kept.state);
-  for (int i = 0; i < pack.count; ++i) {
-    const double* x = s.bodies[static_cast<std::size_t>(pack.b[i])].x;
-    kept.center_b[i] = Vec3(x[0], x[1], x[2]);
-  }
+// The contacts of a group are asked for one after the other at one instant, and those of a pair, of
+// a body or of a pack stand apart: what was made for the ones before is kept.
+GroupArc::Data::KeptInstant& GroupArc::Data::instant_at(double at) const {
+  thread_local KeptInstant kept;
+  if (kept.arc == serial && kept.time == at) return kept;
+  const ContactPacks& all = system.contact_packs();
   kept.arc = serial;
-  kept.pack = number;
   kept.time = at;
+  kept.has_body.assign(static_cast<std::size_t>(all.slots), false);
+  kept.has_pack.assign(all.packs.size(), false);
+  if (kept.bodies.size() < kept.has_body.size()) kept.bodies.resize(kept.has_body.size());
+  if (kept.packs.size() < kept.has_pack.size()) kept.packs.resize(kept.has_pack.size());
   return kept;
+}
+
+// The pack of the contact at one instant.
+const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
+  KeptInstant& kept = instant_at(at);
+  const std::size_t index = static_cast<std::size_t>(number);
+  KeptPack& result = kept.packs[index];
+  if (kept.has_pack[index]) return result;
+  const ContactPack& pack = system.contact_packs().packs[index];
+  for (const auto& slots : {pack.a, pack.b})
+    for (int i = 0; i < pack.count; ++i) {
+      const std::size_t slot = static_cast<std::size_t>(slots[i]);
+      if (kept.has_body[slot]) continue;
+      if (slots[i] < system.members())
+        set_slot(slots[i], at, kept.bodies[slot]);
+      else
+        system.set_outside_slot(slots[i], at, kept.bodies[slot]);
+      kept.has_body[slot] = true;
+    }
+  evaluate_pack(pack, kept.bodies.data(), record.stretch(number, at), record.bend(pack, at),
+                record.side(number, at), result.state);
+  for (int i = 0; i < pack.count; ++i) {
+    const double* x = kept.bodies[static_cast<std::size_t>(pack.b[i])].x;
+    result.center_b[i] = Vec3(x[0], x[1], x[2]);
+  }
+  kept.has_pack[index] = true;
+  return result;
 }
 
 ContactForce GroupArc::contact_force(int contact, double time) const {
@@ -359,9 +379,7 @@ GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingCo
   if (kept.state.turns) result.torque = (is_b ? 1 : -1) * lane(kept.state.torque);
   if (!c.counts) return result;
   const int other = is_b ? pack.a[i] : pack.b[i];
-  GroupScratch& s = system.scratch();
-  system.set_outside_slot(other, at, s.bodies);
-  const BodyKinematics& body = s.bodies[static_cast<std::size_t>(other)];
+  const BodyKinematics& body = instant_at(at).bodies[static_cast<std::size_t>(other)];
   const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
   result.other_turn = vec(body.w);
   result.other_velocity = vec(body.v) + result.other_turn.cross(result.point - vec(body.x));

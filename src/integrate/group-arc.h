@@ -115,6 +115,7 @@ struct GroupContact {
   double offset = 0;                                    // m: the depth that presses is offset - gap
   double share = 1;                                     // of k, kt, ct
   ContactConstants law;
+  bool pressed = true;          // at the start: packed apart from what is open then
   Vec3 stretch = Vec3::Zero();  // at the start, a's frame, tangential
   // At the start, a's frame, rad: what rolling (across the normal) and spinning (along it) are held
   // back by.

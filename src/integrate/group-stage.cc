@@ -85,6 +85,7 @@ void GroupSystem::set_time_slope(double time, double step, const double* y, cons
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
+    if (linear.idle) continue;
     PackChange change;
     change_pack(pack, linear, s.changes.data(), {}, true, change);
     scatter_change(pack, linear, change, s.wrenches.data());
@@ -159,7 +160,8 @@ double GroupSystem::squared_frequency(GroupScratch& s) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     // whether what just touches presses already is rounding
-    const Lanes slope = max(pack.k, sqrt(dot(s.linear[index(p)].g, s.linear[index(p)].g)));
+    const PackLinear& linear = s.linear[index(p)];
+    const Lanes slope = linear.idle ? pack.k : max(pack.k, sqrt(dot(linear.g, linear.g)));
     for (int i = 0; i < pack.count; ++i)
       for (const int body : {pack.a[i], pack.b[i]})
         if (body < members_) total[body] += slope[i];
@@ -238,9 +240,10 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
-    set_stage_rate(pack, sigma, s.linear[index(p)]);
-    pack_blocks(pack, s.linear[index(p)], sigma, gather(pack, pack.a), gather(pack, pack.b),
-                blocks);
+    PackLinear& linear = s.linear[index(p)];
+    if (linear.idle) continue;
+    set_stage_rate(pack, sigma, linear);
+    pack_blocks(pack, linear, sigma, gather(pack, pack.a), gather(pack, pack.b), blocks);
     const auto add_lane = [&](int lane, auto number) {
       const int body[2] = {pack.a[lane], pack.b[lane]};
       for (int Y = 0; Y < 2; ++Y)
@@ -322,6 +325,7 @@ void GroupSystem::scatter_stretches(GroupScratch& s, const double* stage) const 
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const PackLinear& linear = s.linear[index(p)];
+    if (linear.idle) continue;
     PackChange change;
     change_pack(pack, linear, s.changes.data(), sides_of(p, linear, stage), false, change);
     scatter_change(pack, linear, change, s.wrenches.data());
@@ -335,6 +339,12 @@ void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
     const bool anchored = pack.law == FrictionLaw::anchored, bends = pack.bend >= 0;
     if (!anchored && !bends) continue;
     const PackLinear& linear = s.linear[index(p)];
+    if (linear.idle) {
+      // z' = -kt z/ct, in any frame
+      double* row = stage + stretch_row(p);
+      if (anchored) store(lanes(1) / (lanes(sigma_) + pack.kt / pack.ct) * load(row), row);
+      continue;
+    }
     const PackSides sides = sides_of(p, linear, stage);
     PackChange change;
     change_pack(pack, linear, s.changes.data(), sides, false, change);

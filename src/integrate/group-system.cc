@@ -124,12 +124,11 @@ void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) 
   set_moving(time, bodies);
 }
 
-void GroupSystem::set_outside_slot(int slot, double time,
-                                   std::vector<BodyKinematics>& bodies) const {
+void GroupSystem::set_outside_slot(int slot, double time, BodyKinematics& body) const {
   if (std::binary_search(moving_slots_.begin(), moving_slots_.end(), slot))
-    place_outside(slot, time, bodies[index(slot)]);
+    place_outside(slot, time, body);
   else
-    bodies[index(slot)] = outside_at_start_[index(slot - members_)];
+    body = outside_at_start_[index(slot - members_)];
 }
 
 void GroupSystem::set_moving(double time, std::vector<BodyKinematics>& bodies) const {
@@ -179,9 +178,10 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
     const ContactPack& pack = packs_.packs[index(p)];
     const std::size_t at = stretch_row(p);
     const LaneVec bend = pack.bend >= 0 ? load(y + bend_row(pack)) : LaneVec{};
-    evaluate_pack(pack, s.bodies.data(), load(y + at), bend, sides_[index(p)], state);
+    evaluate_pack(pack, s.bodies.data(), load(y + at), bend, sides_[index(p)], state, true);
     if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
     store(state.stretch_rate, slope + at);
+    if (state.idle) continue;
     if (pack.bend >= 0) store(state.resistance.rate, slope + bend_row(pack));
     LaneVec on_a = cross(state.sa, state.f), on_b = cross(state.sb, state.f);
     if (state.turns) {

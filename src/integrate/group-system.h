@@ -104,7 +104,7 @@ class GroupSystem {
   void set_member(int member, const Vec3& x, const Quat& q, const Vec3& v, const Vec3& L,
                   BodyKinematics& out) const;
   void set_outside(double time, std::vector<BodyKinematics>& bodies) const;
-  void set_outside_slot(int slot, double time, std::vector<BodyKinematics>& bodies) const;
+  void set_outside_slot(int slot, double time, BodyKinematics& body) const;
 
  private:
   struct Member {

@@ -322,6 +322,29 @@ TEST_P(GroupSystemTest, time_slope_is_that_of_the_outside_motion_to_1e_6) {
   }
 }
 
+// Of ten contacts every third presses at the start.
+TEST(ContactPacks, hold_what_presses_apart_from_what_is_open) {
+  GroupStart start;
+  start.members.resize(10);
+  for (int i = 0; i < 10; ++i) {
+    GroupContact contact;
+    contact.a = -1;
+    contact.b = i;
+    contact.pressed = i % 3 == 0;
+    start.contacts.push_back(contact);
+  }
+  start.outside.push_back(make_standing({Vec3::Zero(), Quat::Identity()}));
+  const ContactPacks packs = make_contact_packs(start);
+  ASSERT_EQ(packs.packs.size(), 3u);
+  for (const ContactPack& pack : packs.packs)
+    for (int i = 0; i < pack.count; ++i)
+      EXPECT_EQ(pack.contact[i] % 3 == 0, &pack == &packs.packs.front());
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_EQ(
+        packs.packs[static_cast<std::size_t>(packs.places[i].pack)].contact[packs.places[i].lane],
+        static_cast<int>(i));
+}
+
 constexpr ContactFeature features[] = {ContactFeature::plane, ContactFeature::line,
                                        ContactFeature::point, ContactFeature::crossing,
                                        ContactFeature::rim,   ContactFeature::tangent_plane,
