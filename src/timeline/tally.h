@@ -18,7 +18,8 @@ struct Tally {
   double placed_energy = 0;     // J, of contact springs that started loaded
   double momentum_dropped = 0;  // N s, that bodies at the border of a region miss
   double depth = 0;             // m, of the deepest overlap at the points that touch
-  // bodies that begin to be squeezed; the deepest overlap of what is, m and over the thinner one's thickness
+  // bodies that begin to be squeezed; the deepest overlap of what is, m and over the thinner one's
+  // thickness
   std::uint16_t squeezed = 0;
   double squeezed_depth = 0, squeezed_share = 0;
 
