@@ -54,9 +54,7 @@ struct Squeeze {
 class Pushes {
  public:
   explicit Pushes(const Regrouping& work) : work_(work) {
-    if (std::none_of(work.contacts.begin(), work.contacts.end(),
-                     [this](const NewContact& c) { return is_deep(c); }))
-      return;
+    if (std::none_of(work.contacts.begin(), work.contacts.end(), is_deep)) return;
     for (const ContactPair& pair : work.pairs)
       each_contact(pair, [&](std::uint32_t c) {
         const NewContact& contact = work.contacts[c];
@@ -94,12 +92,9 @@ class Pushes {
   }
 
  private:
-  double thickness(BodyId body) const { return work_.scene().body(body).thickness; }
-  double share_of(const NewContact& c) const {
-    return -c.gap / std::min(thickness(c.tag.reference), thickness(c.tag.other));
-  }
+  static double share_of(const NewContact& c) { return -c.gap / c.contact.law.size; }
   // Whether it could keep a body squeezed.
-  bool is_deep(const NewContact& c) const { return share_of(c) >= 0.5 * answer::squeezed_share; }
+  static bool is_deep(const NewContact& c) { return share_of(c) >= 0.5 * answer::squeezed_share; }
   // Of all forces on the body within 60 degrees of this one, N.
   double side(const Push& push) const {
     Vec3 sum = Vec3::Zero();

@@ -54,7 +54,6 @@ struct BodyWrench {
 
 // What derivatives of a pack need.
 struct PackLinear {
-  bool idle = false;  // as the state: then n alone is set, and all derivatives are 0
   LaneMat Ra;
   LaneVec n, l, ra, rb, sa, sb, wb, dw, vr, f,
       bend;  // dw = w_b - w_a; bend = y (kt s + ct v_r), or v_r
@@ -67,6 +66,7 @@ struct PackLinear {
   LaneVec harder, relaxing;            // dF and dR - dF by dd
   Lanes inverse_ct, tau;
   LaneMask sticking;
+  bool idle = false;  // as the state: then n alone is set, and all derivatives are 0
   bool deep, turns;
   ResistanceLinear resistance;  // set where the pack has bends
   Lanes damper;                 // c

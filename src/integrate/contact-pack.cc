@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <type_traits>
 
 #include "base/constants.h"
 
@@ -239,7 +238,7 @@ TW_LANES void set_idle(const ContactPack& pack, const LaneVec& stretch, PackStat
   o.ct = pack.ct;
   o.N = o.stiffness = o.target_length = o.scale = o.drag = lanes(0);
   o.target = o.F = o.f = none;
-  o.slipping = o.gap > o.gap;
+  o.slipping = LaneMask{};
   o.deep = o.turns = false;
   o.stretch_rate = pack.law == FrictionLaw::anchored ? (-pack.kt / pack.ct) * stretch : none;
 }
@@ -451,24 +450,18 @@ ContactPack empty_pack() {
 
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
                    const LaneVec& bend, const LaneVec& side, PackState& out, bool forces_alone) {
-  const auto evaluate_as = [&](auto feature) {
-    evaluate<decltype(feature)::value>(pack, bodies, stretch, bend, side, forces_alone, out);
-  };
+  using F = ContactFeature;
   switch (pack.feature) {
-    case ContactFeature::plane:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::plane>());
-    case ContactFeature::line:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::line>());
-    case ContactFeature::point:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::point>());
-    case ContactFeature::crossing:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::crossing>());
-    case ContactFeature::rim:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::rim>());
-    case ContactFeature::tangent_plane:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::tangent_plane>());
-    case ContactFeature::curved:
-      return evaluate_as(std::integral_constant<ContactFeature, ContactFeature::curved>());
+    case F::plane: return evaluate<F::plane>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::line: return evaluate<F::line>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::point: return evaluate<F::point>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::crossing:
+      return evaluate<F::crossing>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::rim: return evaluate<F::rim>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::tangent_plane:
+      return evaluate<F::tangent_plane>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::curved:
+      return evaluate<F::curved>(pack, bodies, stretch, bend, side, forces_alone, out);
   }
 }
 

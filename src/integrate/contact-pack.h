@@ -98,7 +98,6 @@ struct PackState {
   // and n by dn; curved: n does by turn (dp + roll dom).
   LaneMat roll, bulge, turn;
   Lanes gap, depth, vn;        // depth = offset - gap
-  bool idle = false;           // all are open, and nothing resists turns: no forces, no derivatives
   Lanes damping;               // b at this depth
   Lanes grip;                  // y at this depth
   Lanes kt, ct;                // y kt, y ct; anchored
@@ -107,6 +106,7 @@ struct PackState {
   Lanes target_length, scale;  // F = scale target
   LaneMask slipping;
   LaneVec F, stretch_rate;     // the rate in a's frame
+  bool idle = false;           // all are open, and nothing resists turns: no forces, no derivatives
   bool deep = false;           // whether any is beyond the hardest ratio
   Lanes drag;                  // c of the tangential damper there, N s/m
   LaneVec f;                   // N n + F - drag u
