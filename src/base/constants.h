@@ -346,12 +346,6 @@ inline constexpr double longest_window = 8;
 // or hardly ever asks: its ball at once.
 inline constexpr double hardly_turns = 0.5;
 
-// ---- impacts ----
-// So many impacts and checks are decided at once, of so many events that come soon.  Those that are
-// so many radii apart enter at once: of those nearer to each other every tenth is taken back.
-inline constexpr std::size_t decided_at_once = 6, events_looked_ahead = 341;
-inline constexpr double felt_in_radii = 3;
-
 // ---- threads ----
 // A helper that finds nothing to do looks on for so long, s, before it sleeps.
 inline constexpr double helper_patience = 300e-6;

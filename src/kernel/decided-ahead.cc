@@ -14,20 +14,18 @@ constexpr auto before = [](const std::unique_ptr<Decision>& decision, const Key&
 
 }  // namespace
 
-void DecidedAhead::add(std::vector<std::unique_ptr<Decision>> decisions) {
+std::size_t DecidedAhead::add(std::vector<std::unique_ptr<Decision>> decisions) {
+  std::size_t added = 0;
   for (std::unique_ptr<Decision>& decision : decisions) {
     if (!decision) continue;
+    ++added;
     const auto at = std::lower_bound(decisions_.begin(), decisions_.end(), decision->key, before);
     if (at != decisions_.end() && (*at)->key == decision->key)
       *at = std::move(decision);
     else
       decisions_.insert(at, std::move(decision));
   }
-}
-
-bool DecidedAhead::has(const Key& key) const {
-  const auto at = std::lower_bound(decisions_.begin(), decisions_.end(), key, before);
-  return at != decisions_.end() && (*at)->key == key;
+  return added;
 }
 
 bool DecidedAhead::has_at(double time) const {

@@ -23,9 +23,8 @@ struct Decision {
 
 class DecidedAhead {
  public:
-  // Adds those that are not null; one of the same key goes.
-  void add(std::vector<std::unique_ptr<Decision>> decisions);
-  bool has(const Key& key) const;
+  // Adds those that are not null, and says how many these are; one of the same key goes.
+  std::size_t add(std::vector<std::unique_ptr<Decision>> decisions);
   // Whether anything was decided for that instant.
   bool has_at(double time) const;
   // What was decided for the key; null: nothing, or it holds no more.

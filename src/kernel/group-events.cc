@@ -18,13 +18,12 @@
 namespace tw {
 
 GroupEvents::GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
-                         const Delivery& delivery, DecidedAhead& ahead)
+                         const Delivery& delivery)
     : sim_(simulation),
       counters_(simulation.present.counters),
       claims_(claims),
       discontinuities_(discontinuities),
-      delivery_(delivery),
-      ahead_(ahead) {}
+      delivery_(delivery) {}
 
 // Whether the process's arc ends at the time of the key, and the check that stands there comes
 // first.
@@ -156,12 +155,13 @@ std::vector<ProcessId> GroupEvents::concerned(const Before& before,
                                                : family(before, group);
 }
 
+// The group whose common check the event is, if that can be decided ahead of it; else null.
 std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
   const State& tail = *sim_.graph.tail(ProcessId{event.subject});
   const std::shared_ptr<Group>& group = tail.group;
   const double when = event.key.time;
   if (!group || tail.error || group->at_rest || !group->end_tested || !group->arc->complete() ||
-      group->key.time >= when || tail.arc_end() != when)
+      group->key.time >= when || tail.arc_end() != when || group->next_check != when)
     return nullptr;
   for (const BodyId mover : sim_.kinematic) {
     const Body& body = sim_.body(mover);
@@ -171,6 +171,8 @@ std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
   return group;
 }
 
+// What its check at that time (s) comes to, and the arcs of its groups up to their ends, if it can
+// be said now; else null.  Several threads may ask at once.
 std::unique_ptr<Decision> GroupEvents::decide_ahead(const std::shared_ptr<Group>& group,
                                                     double when) const {
   auto decision = std::make_unique<Decision>();
@@ -178,44 +180,42 @@ std::unique_ptr<Decision> GroupEvents::decide_ahead(const std::shared_ptr<Group>
   std::vector<ProcessId>& all = decision->concerned;
   do {
     if (!all.empty()) key.id = number(all.front());
-    all = concerned(sim_.before(key, &decision->log), group);
+    all = family(sim_.before(key, &decision->log), group);
     if (all.empty()) return nullptr;
   } while (key.id != number(all.front()));
   const Known is_known = [&](ProcessId member) { return may_be_read(member, sim_.before(key)); };
-  // each family once
-  if (!group->contains(all.front()) || !std::all_of(all.begin(), all.end(), is_known))
+  // each family once, by the group that its first one is in: others still name it if it left them
+  if (sim_.before(key, &decision->log).state(all.front()).group != group ||
+      !std::all_of(all.begin(), all.end(), is_known))
     return nullptr;
-  const Cause cause = when < group->next_check ? Cause::early_check : Cause::check;
   Decided decided =
-      decide(sim_.before(key, &decision->log), all, cause, is_known, decision->counters);
-  return made(std::move(decision), std::move(decided));
-}
-
-std::unique_ptr<Decision> GroupEvents::made(std::unique_ptr<Decision> decision,
-                                            Decided decided) const {
+      decide(sim_.before(key, &decision->log), all, Cause::check, is_known, decision->counters);
   Regrouped* regrouped = std::get_if<Regrouped>(&decided);
   if (!regrouped) return nullptr;
   decision->successors = std::move(regrouped->successors);
   // (what is redone is compared as it enters, untested)
   for (const Successor& successor : decision->successors)
-    if (const auto& group = successor.data.group;
-        group && group->key == decision->key && !sim_.options.undo_redo)
-      test_end(sim_.scene, sim_.surroundings, *group, decision->counters);
+    if (const auto& made = successor.data.group;
+        made && made->key == key && !sim_.options.undo_redo)
+      test_end(sim_.scene, sim_.surroundings, *made, decision->counters);
   decision->log.close(sim_.graph);
   return decision;
 }
 
-// The groups whose checks are due at the queue's first instant, in the order of their members.
+// The groups whose checks are due at the queue's first instant, the largest first: who else decides
+// has done the others by the time that it is ready, and helps with the loops within it.
 Groups GroupEvents::due_groups(double when) const {
   std::vector<Event> events;
   sim_.queue.first_ones(events);
   Groups groups;
   for (const Event& event : events) {
     if (event.kind != EventKind::group_check || event.key.time != when) continue;
-    const std::shared_ptr<Group> group = checked_by(event);
-    if (group && group->next_check == when) groups.push_back(group);
+    if (const std::shared_ptr<Group> group = checked_by(event)) groups.push_back(group);
   }
   sort_once(groups);
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& x, const auto& y) {
+    return x->members.size() > y->members.size();
+  });
   return groups;
 }
 
@@ -231,25 +231,18 @@ void GroupEvents::decide_instant(double when) {
   std::vector<std::unique_ptr<Decision>> decisions(groups.size());
   each_in_parallel(groups.size(), 1,
                    [&](std::size_t i) { decisions[i] = decide_ahead(groups[i], when); });
-  ahead_.add(std::move(decisions));
+  counters_.checks_decided_ahead += ahead_.add(std::move(decisions));
 }
 
 bool GroupEvents::amid_decisions() const {
   return !sim_.queue.empty() && ahead_.has_at(sim_.queue.top().key.time);
 }
 
+// Whether several threads may look at the process's arc before the key at once: it is known, and
+// complete.
 bool GroupEvents::may_be_read(ProcessId id, const Before& before) const {
   const Group* group = before.state(id).group.get();
   return (!group || group->at_rest || group->arc->complete()) && known(id, before.key());
-}
-
-bool GroupEvents::may_be_struck(std::span<const BodyId> bodies, const Before& before) const {
-  const auto may = [&](ProcessId id) { return may_be_read(id, before); };
-  const auto may_body = [&](BodyId id) { return may(sim_.process_of(id)); };
-  if (!std::all_of(bodies.begin(), bodies.end(), may_body)) return false;
-  const Region region = region_struck(bodies, before);
-  return std::all_of(region.inside.begin(), region.inside.end(), may) &&
-         std::all_of(region.border.begin(), region.border.end(), may);
 }
 
 Progress GroupEvents::check(ProcessId id) {
@@ -289,6 +282,7 @@ Progress GroupEvents::check(ProcessId id) {
   decide_instant(when);
   if (const auto decision = ahead_.take(key, sim_.graph); decision && decision->concerned == all) {
     counters_.add(decision->counters);
+    ++counters_.decisions_used;
     discontinuities_.enter(key, decision->successors);
     return Progress::done;
   }

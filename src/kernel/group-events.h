@@ -28,7 +28,7 @@ struct Simulation;
 class GroupEvents {
  public:
   GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
-              const Delivery& delivery, DecidedAhead& ahead);
+              const Delivery& delivery);
 
   // Claims windows of a process until its arcs are known to `key`.  False: something else comes
   // first, perhaps; whoever asked has done nothing, and is asked again when its event is due once
@@ -37,11 +37,6 @@ class GroupEvents {
   bool await(const Region& region, const Key& key);
   // The same of all that a discontinuity of these bodies may concern.
   bool await_struck(std::span<const BodyId> bodies, const Key& key);
-  // Whether several threads may look at the process's arc before the key at once: it is known, and
-  // complete.
-  bool may_be_read(ProcessId id, const Before& before) const;
-  // Whether that holds of all that a discontinuity of these bodies may concern.
-  bool may_be_struck(std::span<const BodyId> bodies, const Before& before) const;
   // The groups that follow a discontinuity that changed some of the successors; adds those of all
   // others that take part.
   Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
@@ -59,17 +54,13 @@ class GroupEvents {
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.
   Progress check(ProcessId id);
-  // The group that the event is to check, if that can be decided ahead of it; else null.
-  std::shared_ptr<Group> checked_by(const Event& event) const;
-  // What its check at that time (s) comes to, if it can be said now; else null.  Several threads
-  // may ask at once.
-  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
-  // The decision with what was decided, and the arcs of its groups up to their ends; null if that
-  // has to wait.
-  std::unique_ptr<Decision> made(std::unique_ptr<Decision> decision, Decided decided) const;
   // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
   bool amid_decisions() const;
-  void begin_run() { decided_at_ = -never; }
+  // Between runs anything may change: what was decided ahead holds no longer.
+  void forget_decisions() {
+    ahead_.forget();
+    decided_at_ = -never;
+  }
 
  private:
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
@@ -77,6 +68,9 @@ class GroupEvents {
   std::vector<ProcessId> concerned(const Before& before, const std::shared_ptr<Group>& group) const;
   void decide_instant(double when);
   Groups due_groups(double when) const;
+  std::shared_ptr<Group> checked_by(const Event& event) const;
+  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
+  bool may_be_read(ProcessId id, const Before& before) const;
   Progress stop_driven(ProcessId id);
   Region region_struck(std::span<const BodyId> bodies, const Before& before) const;
   bool own_check_before(ProcessId id, const Key& key) const;
@@ -87,7 +81,7 @@ class GroupEvents {
   Claims& claims_;
   Discontinuities& discontinuities_;
   const Delivery& delivery_;
-  DecidedAhead& ahead_;
+  DecidedAhead ahead_;
   double decided_at_ = -never;  // s: the instant whose checks were decided together
 };
 

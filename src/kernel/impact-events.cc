@@ -15,14 +15,13 @@ namespace tw {
 
 ImpactEvents::ImpactEvents(Simulation& simulation, const ActivePairs& pairs,
                            Discontinuities& discontinuities, GroupEvents& groups,
-                           const Delivery& delivery, DecidedAhead& ahead)
+                           const Delivery& delivery)
     : sim_(simulation),
       counters_(simulation.present.counters),
       pairs_(pairs),
       discontinuities_(discontinuities),
       groups_(groups),
-      delivery_(delivery),
-      ahead_(ahead) {}
+      delivery_(delivery) {}
 
 bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
   if (delivery_.observed(CollisionKind::collision)) return true;
@@ -86,35 +85,12 @@ GroupEvents::Decided ImpactEvents::decide(std::uint32_t pair, const Before& befo
   return Regrouped{std::move(successors)};
 }
 
-bool ImpactEvents::concerns_group(std::uint32_t pair) const {
-  const auto in_group = [&](BodyId id) {
-    return sim_.body(id).dynamic() && sim_.graph.tail(sim_.process_of(id))->group;
-  };
-  return in_group(pairs_[pair].a) || in_group(pairs_[pair].b);
-}
-
-std::unique_ptr<Decision> ImpactEvents::decide_ahead(std::uint32_t pair) const {
-  auto decision = std::make_unique<Decision>();
-  decision->key = pairs_[pair].impact;
-  const Before before = sim_.before(decision->key, &decision->log);
-  const BodyId struck[] = {pairs_[pair].a, pairs_[pair].b};
-  if (!groups_.may_be_struck(struck, before)) return nullptr;
-  const Known is_known = [&](ProcessId id) { return groups_.may_be_read(id, before); };
-  GroupEvents::Decided decided = decide(pair, before, is_known, decision->counters);
-  return groups_.made(std::move(decision), std::move(decided));
-}
-
 // The pending impact of an active pair.
 Progress ImpactEvents::process(std::uint32_t pair) {
   const Key key = pairs_[pair].impact;
   // only after the claims of the receivers, and of those they touch, have reached its time
   const BodyId struck[] = {pairs_[pair].a, pairs_[pair].b};
   if (!groups_.await_struck(struck, key)) return Progress::try_again;
-  if (const auto decision = ahead_.take(key, sim_.graph)) {
-    counters_.add(decision->counters);
-    discontinuities_.enter(key, decision->successors);
-    return Progress::done;
-  }
   const Known is_known = [&](ProcessId id) { return groups_.known(id, key); };
   GroupEvents::Decided decided = decide(pair, sim_.before(key), is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decided)) {

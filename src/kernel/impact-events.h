@@ -3,11 +3,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "kernel/counters.h"
-#include "kernel/decided-ahead.h"
 #include "kernel/definitions.h"
 #include "kernel/group-events.h"
 #include "kernel/progress.h"
@@ -23,17 +21,11 @@ struct Simulation;
 class ImpactEvents {
  public:
   ImpactEvents(Simulation& simulation, const ActivePairs& pairs, Discontinuities& discontinuities,
-               GroupEvents& groups, const Delivery& delivery, DecidedAhead& ahead);
+               GroupEvents& groups, const Delivery& delivery);
 
   void add_callback(const CollisionCallbackDef& def) { callbacks_.push_back(def); }
   // The pending impact of an active pair.
   Progress process(std::uint32_t pair);
-  // What the pending impact comes to, if it can be said now; else null.  Several threads may ask at
-  // once, unless users' procedures are called.
-  std::unique_ptr<Decision> decide_ahead(std::uint32_t pair) const;
-  bool calls_back() const { return !callbacks_.empty(); }
-  // Whether one of the two is in a group.
-  bool concerns_group(std::uint32_t pair) const;
 
  private:
   GroupEvents::Decided decide(std::uint32_t pair, const Before& before, const Known& is_known,
@@ -48,7 +40,6 @@ class ImpactEvents {
   Discontinuities& discontinuities_;
   GroupEvents& groups_;
   const Delivery& delivery_;
-  DecidedAhead& ahead_;
   std::vector<CollisionCallbackDef> callbacks_;
 };
 

@@ -65,14 +65,9 @@ Progress Kernel::process(const Event& event) {
   switch (event.kind) {
     case EventKind::advance: claims.claim_due(event); break;
     case EventKind::callback: return callback_events.process(event.subject);
-    case EventKind::group_check:
-      if (look_ahead.process(event)) break;
-      return groups.check(ProcessId{event.subject});
+    case EventKind::group_check: return groups.check(ProcessId{event.subject});
     case EventKind::pair:
-      if (pairs[event.subject].pending) {
-        if (look_ahead.process(event)) break;
-        return impacts.process(event.subject);
-      }
+      if (pairs[event.subject].pending) return impacts.process(event.subject);
       checks.pursue(event.subject);
       break;
   }
@@ -93,7 +88,6 @@ void Kernel::process_next() {
 
 // Those that came since the last run claim first; what stopped somebody is tried again.
 void Kernel::begin_run() {
-  groups.begin_run();
   discontinuities.retry_errors();
   Present& present = simulation.present;
   if (bodies.any_newborn()) {
@@ -120,13 +114,13 @@ namespace {
 // Between runs anything may change: what was decided ahead holds no longer.
 class ForgetAtEnd {
  public:
-  explicit ForgetAtEnd(DecidedAhead& ahead) : ahead_(ahead) {}
-  ~ForgetAtEnd() { ahead_.forget(); }
+  explicit ForgetAtEnd(GroupEvents& groups) : groups_(groups) {}
+  ~ForgetAtEnd() { groups_.forget_decisions(); }
   ForgetAtEnd(const ForgetAtEnd&) = delete;
   ForgetAtEnd& operator=(const ForgetAtEnd&) = delete;
 
  private:
-  DecidedAhead& ahead_;
+  GroupEvents& groups_;
 };
 
 }  // namespace
@@ -138,7 +132,7 @@ RunStatus Kernel::advance(double until, double slice) {
              "a run was started inside a callback or observer; expected to be between runs");
   if (until < simulation.present.time) return RunStatus::finished;
   const RunGuard guard(simulation);
-  const ForgetAtEnd forget(decided_ahead);
+  const ForgetAtEnd forget(groups);
   begin_run();
 
   const double wall_end = slice < never ? wall_seconds() + slice : never;
@@ -161,7 +155,7 @@ bool Kernel::step(double until) {
   TW_REQUIRE(!simulation.running,
              "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(simulation);
-  const ForgetAtEnd forget(decided_ahead);
+  const ForgetAtEnd forget(groups);
   begin_run();
   commit.begin_run(until, never);
   if (commit.finished()) return false;

@@ -27,13 +27,11 @@
 #include "kernel/checkpoint.h"
 #include "kernel/claims.h"
 #include "kernel/commit.h"
-#include "kernel/decided-ahead.h"
 #include "kernel/delivery.h"
 #include "kernel/discontinuities.h"
 #include "kernel/editing.h"
 #include "kernel/group-events.h"
 #include "kernel/impact-events.h"
-#include "kernel/look-ahead.h"
 #include "kernel/pair-checks.h"
 #include "kernel/simulation.h"
 #include "kernel/statistics.h"
@@ -71,10 +69,8 @@ class Kernel {
   PairChecks checks{simulation, pairs};
   Claims claims{simulation, pairs, checks, callbacks};
   Discontinuities discontinuities{simulation, pairs, checks, callbacks, claims};
-  DecidedAhead decided_ahead;
-  GroupEvents groups{simulation, claims, discontinuities, delivery, decided_ahead};
-  ImpactEvents impacts{simulation, pairs, discontinuities, groups, delivery, decided_ahead};
-  LookAhead look_ahead{simulation, pairs, discontinuities, groups, impacts, claims, decided_ahead};
+  GroupEvents groups{simulation, claims, discontinuities, delivery};
+  ImpactEvents impacts{simulation, pairs, discontinuities, groups, delivery};
   CallbackEvents callback_events{simulation, callbacks, discontinuities, groups};
   Editing editing{simulation, discontinuities, groups};
   Bodies bodies{simulation, pairs, callbacks, claims, discontinuities, editing};

@@ -145,6 +145,8 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"callbacks_run", whole(counters.callbacks_run)},
       {"groups", whole(counters.groups)},
       {"group_checks", whole(counters.group_checks)},
+      {"checks_decided_ahead", whole(counters.checks_decided_ahead)},
+      {"decided_in_vain", whole(counters.checks_decided_ahead - counters.decisions_used)},
       {"largest_group_bodies", whole(counters.largest_group_bodies)},
       {"largest_group_contacts", whole(counters.largest_group_contacts)},
       {"early_ends", whole(counters.early_ends)},

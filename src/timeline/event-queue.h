@@ -38,12 +38,6 @@ class EventQueue {
   const Event& event(Handle handle) const { return events_[handle]; }
   // Appends all events of that priority, in no order; nothing comes before.
   void first_ones(std::vector<Event>& events) const;
-  // Calls visit(event) for `most` events at most that come soon: those nearest to the top, in no
-  // order.
-  template <class Visit>
-  void visit_soon(std::size_t most, Visit&& visit) const {
-    for (std::size_t i = 0; i < std::min(most, heap_.size()); ++i) visit(events_[heap_[i].handle]);
-  }
   // The least time of all events' keys; never before the priority of the top.  `never` if empty.
   double least_time() const;
   // The least time of the keys of all events but those of one kind; `never`: there is none.

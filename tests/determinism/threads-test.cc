@@ -77,6 +77,17 @@ TEST(Threads, count_as_one_does) {
   EXPECT_LT(static_cast<double>(queries[1]), 1.2 * static_cast<double>(queries[0]));
 }
 
+// A check that falls to several groups of one heap is decided by one of them.
+TEST(Threads, decide_little_in_vain) {
+  World world;
+  world.set_threads(2);
+  heap_scene(60, 0).fill(world);
+  world.advance(1.2);
+  const std::int64_t ahead = count_of(world.statistics(), "checks_decided_ahead");
+  EXPECT_GT(ahead, 500);
+  EXPECT_LT(count_of(world.statistics(), "decided_in_vain"), ahead / 10);
+}
+
 TEST(Threads, number_is_checked) {
   World world;
   EXPECT_THROW(world.set_threads(-1), UserError);

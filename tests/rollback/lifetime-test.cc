@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "base/constants.h"
 #include "groups/group.h"
 #include "support/heap-scenes.h"
 #include "support/schedule.h"
@@ -24,9 +23,7 @@ TEST(Lifetime, groups_of_the_past_go) {
       most = std::max(most, Group::alive() - before);
     }
     EXPECT_GT(count_of(world.statistics(), "groups"), 200);
-    // one of each body, one more, and on several threads those that were decided ahead
-    const auto ahead = static_cast<std::int64_t>(cost::decided_at_once);
-    EXPECT_LE(most, threads == 1 ? 13 : 13 + ahead);
+    EXPECT_LE(most, 13);  // one of each body and one more
   }
   EXPECT_EQ(Group::alive(), before);
 }
