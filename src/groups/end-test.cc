@@ -8,6 +8,7 @@
 
 #include "base/constants.h"
 #include "base/parallel.h"
+#include "collision/overlap-along.h"
 #include "collision/seams/seams.h"
 #include "groups/check-times.h"
 #include "groups/components.h"
@@ -58,6 +59,14 @@ struct PairOnArc {
     double least = 0;
     for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
     return least;
+  }
+  // Whether it is surely no deeper than `depth`, m, as it overlaps no more along a contact's
+  // normal.
+  bool is_no_deeper(double depth, const ContactForce& contact, bool reference_is_a,
+                    double when) const {
+    const Vec3 normal = reference_is_a ? contact.normal : Vec3(-contact.normal);
+    return overlap_along(normal, *a.shape_P, trajectory(a).frame(when), *b.shape_P,
+                         trajectory(b).frame(when)) <= depth;
   }
   // The least gap that its contacts know of
   double represented(double when) const {
@@ -168,16 +177,31 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
   double from = start, unseen_before = -1, searched_to = start;
   for (int i = 1; i <= looks; ++i) {
     const double to = i < looks ? start + length * i / looks : group.next_check;
-    double end = never, known = 0;
+    double end = never, known = 0, least = never;
+    ContactForce nearest;
+    bool nearest_from_a = false;
     each_contact(pair, [&](std::uint32_t c) {
       const int contact = static_cast<int>(c);
-      const double last = group.arc->contact_force(contact, to).gap;
+      const ContactForce there = group.arc->contact_force(contact, to);
+      const double last = there.gap;
       const double first = std::exchange(gaps[c - pair.first], last);
       known = std::min(known, last);
+      if (last < least) {
+        least = last;
+        nearest = there;
+        nearest_from_a = group.tags[c].reference == pair.a();
+      }
       if (first > 0 && last < 0)
         end = std::min(end,
                        fast_touch(*group.arc, contact, from, to, first, last, scales.borne_speed));
     });
+    // most pairs are as deep as their contacts know, and one look along a normal says so
+    const bool may_be_phantom = -known > phantom;
+    if (end == never && !may_be_phantom && least < never &&
+        along.is_no_deeper(allowed - known, nearest, nearest_from_a, to)) {
+      from = to;
+      continue;
+    }
     double deepest = along.deepest(to, false), seen_to = to;
     if (answer::phantom_share * deepest - known > phantom)
       end = std::min(end, phantom_touch(along, from, to, phantom));

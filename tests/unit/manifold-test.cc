@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "base/constants.h"
+#include "collision/overlap-along.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
@@ -510,6 +512,31 @@ TEST(Manifold, points_of_tilted_faces_near_as_fast_as_the_bodies) {
     }
   }
   EXPECT_GE(corners, 9);
+}
+
+// Along any normal two hulls overlap at least as far as they are deep, along that of their nearest
+// points just so far.
+TEST(Manifold, overlap_along_a_normal_bounds_the_depth) {
+  Random random(31);
+  const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
+  for (const ShapePtr& a : zoo)
+    for (const ShapePtr& b : zoo) {
+      const double depth = std::pow(10, uniform(random, -6, -3));
+      const ShallowPose pose(random, a, b, depth);
+      const Separation apart = separation(*a, pose.frame_a, *b, pose.frame_b);
+      const auto overlap = [&](const Vec3& normal) {
+        return overlap_along(normal, *a, pose.frame_a, *b, pose.frame_b);
+      };
+      EXPECT_NEAR(overlap(apart.normal), -apart.distance, 1e-12);
+      const double deepest = -least_gap(manifold_of(a, pose.frame_a, b, pose.frame_b, 0));
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 aside = 0.3 * k * 0.05 * random_direction(random);
+        EXPECT_GE(overlap((apart.normal + aside).normalized()), deepest - 1e-9);
+      }
+      EXPECT_GT(overlap(random_direction(random)), 0);
+    }
+  EXPECT_EQ(overlap_along(Vec3::UnitZ(), *cube(), at(0, 0, 0), *make_sphere(1), at(0, 0, 1)),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
