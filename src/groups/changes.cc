@@ -39,7 +39,7 @@ Collision fission_of(const Regrouping& work, const PairBefore& old) {
   const ContactPair& pair = *old.pair;
   Collision row = work.told_of(CollisionKind::fission, pair);
   if (pair.count > 0) {
-    const ContactForce f = old.owner->contact_at(pair.first, work.now());
+    const ContactForce f = old.owner->lone_contact_at(pair.first, work.now());
     const bool straight = old.owner->tags[pair.first].reference == row.body1;
     row.point = f.point;
     row.normal = straight ? f.normal : Vec3(-f.normal);

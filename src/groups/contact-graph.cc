@@ -190,7 +190,7 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
   Vec3 before = Vec3::Zero();  // from a to b, at the deepest
   each_contact(*before_it.pair, [&](std::uint32_t c) {
     if (group.tags[c].parts != deepest->pair) return;
-    const ContactForce f = group.contact_at(c, now);
+    const ContactForce f = group.lone_contact_at(c, now);
     if (-f.gap <= depth) return;
     depth = -f.gap;
     before = group.tags[c].reference == a.body->id() ? f.normal : Vec3(-f.normal);
@@ -430,7 +430,7 @@ void carry(Regrouping& work, const PairBefore& old) {
   work.pairs.push_back({pair.id, static_cast<std::uint32_t>(work.contacts.size()), pair.count,
                         pair.has_borne_load, pair.masses});
   each_contact(pair, [&](std::uint32_t c) {
-    const ContactForce f = group.arc->contact_force(static_cast<int>(c), now);
+    const ContactForce f = group.arc->lone_contact_force(static_cast<int>(c), now);
     const GroupContact& known = group.arc->start().contacts[c];
     NewContact contact{known, group.tags[c], f.gap, f.normal, f.point, known.law};
     contact.share_before = known.share;

@@ -99,6 +99,10 @@ struct Group : Counted<Group> {
   ContactForce contact_at(std::uint32_t contact, double when) const {
     return arc->contact_force(static_cast<int>(contact), contact_time(when));
   }
+  // The same, cheaper where few of its contacts are asked for at that instant.
+  ContactForce lone_contact_at(std::uint32_t contact, double when) const {
+    return arc->lone_contact_force(static_cast<int>(contact), contact_time(when));
+  }
   // The next check as a discontinuity at `now` may know it: of a group that was made at that very
   // instant the one before its end test, for whether that was made hangs on the schedule.
   double next_check_at(double now) const { return key.time < now ? next_check : arc->start().end; }

@@ -14,7 +14,7 @@ namespace {
 // Whether a contact pair carries a load at `when`.
 bool carries(const Group& owner, const ContactPair& pair, double when) {
   for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c)
-    if (owner.contact_at(c, when).gap <= owner.reach_of(c)) return true;
+    if (owner.lone_contact_at(c, when).gap <= owner.reach_of(c)) return true;
   return false;
 }
 
@@ -22,7 +22,7 @@ bool carries(const Group& owner, const ContactPair& pair, double when) {
 Vec3 force_on(BodyId body, const Group& owner, const ContactPair& pair, double when) {
   Vec3 sum = Vec3::Zero();
   each_contact(pair, [&](std::uint32_t c) {
-    const ContactForce f = owner.contact_at(c, when);
+    const ContactForce f = owner.lone_contact_at(c, when);
     const Vec3 force = f.normal_force * f.normal + f.friction;
     sum += owner.tags[c].other == body ? force : Vec3(-force);
   });
@@ -34,7 +34,7 @@ Wrench load_on(const Body& body, const Vec3& centre, const Group& owner, const C
                double when) {
   Wrench sum;
   each_contact(pair, [&](std::uint32_t c) {
-    const ContactForce f = owner.contact_at(c, when);
+    const ContactForce f = owner.lone_contact_at(c, when);
     const double sign = owner.tags[c].other == body.id() ? 1 : -1;
     const Vec3 force = sign * (f.normal_force * f.normal + f.friction);
     sum.force += force;
@@ -43,25 +43,54 @@ Wrench load_on(const Body& body, const Vec3& centre, const Group& owner, const C
   return sum;
 }
 
-// What `group` gives a body at its border and the body's own group does not know of, N s: Simpson's
-// rule over the steps.
-Vec3 missed_impulse(BodyId body, const Group& group, const ContactPair& pair, const Group& theirs) {
-  const ContactPair* known = theirs.find(pair.id);
-  const auto missed = [&](double when) {
-    const Vec3 force = force_on(body, group, pair, when);
-    return known ? Vec3(force - force_on(body, theirs, *known, when)) : force;
-  };
-  Vec3 sum = Vec3::Zero();
-  double from = group.arc->start().time;
-  Vec3 first = missed(from);
-  while (from < group.arc->reached()) {
-    const double to = group.arc->step_end(from);
-    const Vec3 middle = missed(0.5 * (from + to)), last = missed(to);
-    sum += (to - from) / 6 * (first + 4 * middle + last);
-    from = to;
-    first = last;
+// A moving body beyond a new group's border, and its contact with a member.
+struct Neighbour {
+  const Body* body;
+  const ContactPair* pair;
+  const Group* theirs;
+  const ContactPair* known;  // the contact as `theirs` has it; null: it has none
+};
+
+// The ends and middles of an arc's steps, s.
+std::vector<double> nodes_of(const GroupArc& arc) {
+  std::vector<double> nodes{arc.start().time};
+  while (nodes.back() < arc.reached()) {
+    const double from = nodes.back(), to = arc.step_end(from);
+    nodes.push_back(0.5 * (from + to));
+    nodes.push_back(to);
   }
-  return sum;
+  return nodes;
+}
+
+// What `group` gives each of these and their own groups do not know of, N s: Simpson's rule over
+// its steps.  All contacts at one instant, then the next, as an arc keeps what it is asked for.
+std::vector<Vec3> missed_impulses(const Group& group, const std::vector<Neighbour>& neighbours) {
+  const std::vector<double> nodes = nodes_of(*group.arc);
+  const std::size_t count = nodes.size();
+  std::vector<Vec3> missed(neighbours.size() * count);
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < neighbours.size(); ++i)
+      missed[i * count + k] =
+          force_on(neighbours[i].body->id(), group, *neighbours[i].pair, nodes[k]);
+  std::vector<const Group*> seen;
+  for (const Neighbour& first : neighbours) {
+    if (!first.known || std::find(seen.begin(), seen.end(), first.theirs) != seen.end()) continue;
+    seen.push_back(first.theirs);
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t i = 0; i < neighbours.size(); ++i)
+        if (const Neighbour& n = neighbours[i]; n.known && n.theirs == first.theirs)
+          missed[i * count + k] -= force_on(n.body->id(), *n.theirs, *n.known, nodes[k]);
+  }
+  std::vector<Vec3> sums;
+  sums.reserve(neighbours.size());
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    const Vec3* force = &missed[i * count];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k + 2 < count; k += 2)
+      sum += (nodes[k + 2] - nodes[k]) / 6 * (force[k] + 4 * force[k + 1] + force[k + 2]);
+    sums.push_back(sum);
+  }
+  return sums;
 }
 
 // How far a member's new arc takes it from the old one by the end, as a speed, m/s.
@@ -132,29 +161,47 @@ bool wakes(const Regrouping& work, const Body& body, const Wrench& change, doubl
   return change.force.norm() > least || change.torque.norm() > least * lever;
 }
 
-// Whether the body beyond a new group's border notices what it does at their contact.
-bool notices(Regrouping& work, const Group& group, const ContactPair& pair, const Body& body,
-             const Body& member) {
-  const Group& theirs = *work.successor_of(body.process)->data.group;
-  if (theirs.at_rest) {
-    const double end = group.arc->reached();
-    const ContactPair* known = theirs.find(pair.id);
-    const Vec3 centre = work.successor_of(body.process)->point.x;
-    Wrench change = load_on(body, centre, group, pair, end);
-    if (known) {
-      const Wrench before = load_on(body, centre, theirs, *known, end);
-      change.force -= before.force;
-      change.torque -= before.torque;
-    }
-    return wakes(work, body, change, lever_of(body, group, pair));
+// Whether what rests beyond a new group's border notices what it does at their contact.
+bool is_woken(const Regrouping& work, const Group& group, const ContactPair& pair,
+              const Body& body) {
+  const Successor& successor = *work.successor_of(body.process);
+  const Group& theirs = *successor.data.group;
+  const double end = group.arc->reached();
+  Wrench change = load_on(body, successor.point.x, group, pair, end);
+  if (const ContactPair* known = theirs.find(pair.id)) {
+    const Wrench before = load_on(body, successor.point.x, theirs, *known, end);
+    change.force -= before.force;
+    change.torque -= before.torque;
   }
+  return wakes(work, body, change, lever_of(body, group, pair));
+}
+
+// Adds those beyond a new group's border that notice what it does at their contacts.
+void add_noticing(Regrouping& work, const Group& group, std::vector<ProcessId>& found) {
   // the impulse only where the neighbour's motion could have changed it
   const double tolerance = answer::missed_share * group.arc->start().velocity_tolerance;
-  if (!(deviation(work.before, group, member) > tolerance)) return false;
-  const double missed = missed_impulse(body.id(), group, pair, theirs).norm();
-  if (missed > tolerance * body.mass) return true;
-  work.tally.momentum_dropped += missed;
-  return false;
+  std::vector<Neighbour> moving;
+  for (const ContactPair& pair : group.pairs) {
+    const BodyId other = work.lies_beyond(pair.a()) ? pair.a() : pair.b();
+    if (!work.lies_beyond(other)) continue;
+    const Body& body = work.scene().body(other);
+    const Group& theirs = *work.successor_of(body.process)->data.group;
+    if (!theirs.at_rest) {
+      if (deviation(work.before, group, work.scene().body(pair.other(other))) > tolerance)
+        moving.push_back({&body, &pair, &theirs, theirs.find(pair.id)});
+    } else if (is_woken(work, group, pair, body)) {
+      found.push_back(body.process);
+    }
+  }
+  if (moving.empty()) return;
+  const std::vector<Vec3> missed = missed_impulses(group, moving);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const double impulse = missed[i].norm();
+    if (impulse > tolerance * moving[i].body->mass)
+      found.push_back(moving[i].body->process);
+    else
+      work.tally.momentum_dropped += impulse;
+  }
 }
 
 // Whether what rests has lost a support that carried it.
@@ -193,13 +240,7 @@ std::vector<ProcessId> who_notices(Regrouping& work) {
   for (const auto& group : work.made) {
     if (!group->has_border) continue;
     if (!group->at_rest) group->arc->extend_patiently(group->next_check);
-    for (const ContactPair& pair : group->pairs) {
-      const BodyId other = work.lies_beyond(pair.a()) ? pair.a() : pair.b();
-      if (!work.lies_beyond(other)) continue;
-      const Body& body = scene.body(other);
-      if (notices(work, *group, pair, body, scene.body(pair.other(other))))
-        found.push_back(body.process);
-    }
+    add_noticing(work, *group, found);
   }
   for (const PairBefore& old : work.pairs_before) {
     const BodyId other = work.lies_beyond(old.pair->a()) ? old.pair->a() : old.pair->b();

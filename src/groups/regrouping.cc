@@ -3,13 +3,21 @@
 #include "groups/regrouping.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace tw {
 
+// Where the process stands, or the free slot where it would.
+std::size_t Regrouping::slot_of(ProcessId process) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t at = (number(process) * std::size_t{0x9e3779b1} >> 7) & mask;
+  while (slots_[at].place != none && slots_[at].process != process) at = (at + 1) & mask;
+  return at;
+}
+
 Successor* Regrouping::successor_of(ProcessId process) const {
-  const auto at =
-      std::lower_bound(index_.begin(), index_.end(), std::pair{process, std::size_t{0}});
-  return at != index_.end() && at->first == process ? &successors[at->second] : nullptr;
+  const std::uint32_t place = slots_[slot_of(process)].place;
+  return place != none ? &successors[place] : nullptr;
 }
 
 void Regrouping::update_index() {
@@ -17,6 +25,9 @@ void Regrouping::update_index() {
   for (std::size_t i = 0; i < successors.size(); ++i)
     index_.push_back({successors[i].process(), i});
   std::sort(index_.begin(), index_.end());
+  slots_.assign(std::bit_ceil(2 * successors.size() + 1), {});
+  for (std::uint32_t i = 0; i < successors.size(); ++i)
+    slots_[slot_of(successors[i].process())] = {successors[i].process(), i};
 }
 
 const PairBefore* Regrouping::pair_before(std::uint64_t pair) const {

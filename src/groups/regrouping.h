@@ -125,7 +125,16 @@ struct Regrouping {
   Collision told_of(CollisionKind kind, const ContactPair& pair) const;
 
  private:
+  // By process, with linear probing: they are looked up some hundred times for each of them.
+  struct Slot {
+    ProcessId process{};
+    std::uint32_t place = none;
+  };
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::size_t slot_of(ProcessId process) const;
+
   std::vector<std::pair<ProcessId, std::size_t>> index_;
+  std::vector<Slot> slots_;  // a power of two
 };
 
 inline PlacedBody placed(const Successor& successor) {

@@ -71,10 +71,13 @@ struct GroupArc::Data {
     double time = 0;
     std::vector<BodyKinematics> bodies;  // by slot
     std::vector<KeptPack> packs;         // by number
-    std::vector<bool> has_body, has_pack;
+    std::vector<bool> has_body;
+    std::vector<std::uint8_t> lanes;  // of each pack: those that are set, a bit each
   };
   KeptInstant& instant_at(double at) const;
-  const KeptPack& pack_at(int number, double at) const;
+  static constexpr unsigned all_lanes = (1u << lane_count) - 1;
+  const KeptPack& pack_at(int number, double at, unsigned lanes = all_lanes) const;
+  ContactForce contact_force(int contact, double at, bool lone) const;
   // What a contact does to a member, and where; where the work counts, how fast the outside body's
   // material moves there, and its turning.
   struct MemberForce {
@@ -313,21 +316,25 @@ GroupArc::Data::KeptInstant& GroupArc::Data::instant_at(double at) const {
   kept.arc = serial;
   kept.time = at;
   kept.has_body.assign(static_cast<std::size_t>(all.slots), false);
-  kept.has_pack.assign(all.packs.size(), false);
+  kept.lanes.assign(all.packs.size(), 0);
   if (kept.bodies.size() < kept.has_body.size()) kept.bodies.resize(kept.has_body.size());
-  if (kept.packs.size() < kept.has_pack.size()) kept.packs.resize(kept.has_pack.size());
+  if (kept.packs.size() < kept.lanes.size()) kept.packs.resize(kept.lanes.size());
   return kept;
 }
 
-// The pack of the contact at one instant.
-const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) const {
+// A pack of contacts at one instant, of which these lanes are wanted.  The others are those of
+// bodies of another instant, if nobody has asked for them: lanes have nothing to do with each
+// other, but for the signs of zeros.
+const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at,
+                                                        unsigned lanes) const {
   KeptInstant& kept = instant_at(at);
   const std::size_t index = static_cast<std::size_t>(number);
   KeptPack& result = kept.packs[index];
-  if (kept.has_pack[index]) return result;
+  if ((kept.lanes[index] & lanes) == lanes) return result;
   const ContactPack& pack = system.contact_packs().packs[index];
   for (const auto& slots : {pack.a, pack.b})
     for (int i = 0; i < pack.count; ++i) {
+      if (!(lanes >> i & 1)) continue;
       const std::size_t slot = static_cast<std::size_t>(slots[i]);
       if (kept.has_body[slot]) continue;
       if (slots[i] < system.members())
@@ -338,31 +345,44 @@ const GroupArc::Data::KeptPack& GroupArc::Data::pack_at(int number, double at) c
     }
   evaluate_pack(pack, kept.bodies.data(), record.stretch(number, at), record.bend(pack, at),
                 record.side(number, at), result.state);
+  unsigned set = all_lanes & ~((1u << pack.count) - 1);
   for (int i = 0; i < pack.count; ++i) {
-    const double* x = kept.bodies[static_cast<std::size_t>(pack.b[i])].x;
+    const std::size_t a = static_cast<std::size_t>(pack.a[i]);
+    const std::size_t b = static_cast<std::size_t>(pack.b[i]);
+    if (!kept.has_body[a] || !kept.has_body[b]) continue;
+    const double* x = kept.bodies[b].x;
     result.center_b[i] = Vec3(x[0], x[1], x[2]);
+    set |= 1u << i;
   }
-  kept.has_pack[index] = true;
+  kept.lanes[index] = static_cast<std::uint8_t>(set);
   return result;
 }
 
-ContactForce GroupArc::contact_force(int contact, double time) const {
-  const Data& d = *data_;
-  const ContactPlace place = d.system.contact_packs().places[static_cast<std::size_t>(contact)];
-  const Data::KeptPack& kept = d.pack_at(place.pack, d.at(time));
-  const PackState& state = kept.state;
+ContactForce GroupArc::Data::contact_force(int contact, double at, bool lone) const {
+  const ContactPlace place = system.contact_packs().places[static_cast<std::size_t>(contact)];
   const int i = place.lane;
+  const KeptPack& kept = pack_at(place.pack, at, lone ? 1u << i : all_lanes);
+  const PackState& state = kept.state;
   const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
   ContactForce force;
   force.point = kept.center_b[i] + lane(state.sb);
   force.normal = lane(state.n);
   force.gap = state.gap[i];
   force.normal_force = state.N[i];
-  force.friction = lane(state.F) - state.drag[i] * lane(state.u);
+  // (a sum with 0 is no -0)
+  force.friction = lane(state.F) - state.drag[i] * lane(state.u) + Vec3::Zero();
   force.velocity = lane(state.vr);
   force.slipping = state.slipping[i] != 0 && state.N[i] > 0;
-  if (state.turns) force.torque = lane(state.torque);
+  if (state.turns) force.torque = lane(state.torque) + Vec3::Zero();
   return force;
+}
+
+ContactForce GroupArc::contact_force(int contact, double time) const {
+  return data_->contact_force(contact, data_->at(time), false);
+}
+
+ContactForce GroupArc::lone_contact_force(int contact, double time) const {
+  return data_->contact_force(contact, data_->at(time), true);
 }
 
 GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingContact& c,

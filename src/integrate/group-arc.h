@@ -230,6 +230,8 @@ class GroupArc : public Counted<GroupArc> {
   Vec3 stretch(int contact, double time) const;  // a's frame
   Vec3 bend(int contact, double time) const;     // a's frame, rad; 0 where nothing resists
   ContactForce contact_force(int contact, double time) const;
+  // The same, cheaper where few of the group's contacts are asked for at that instant.
+  ContactForce lone_contact_force(int contact, double time) const;
   // The work done on a member over [from, to] at those of its contacts that count, by the outside
   // bodies that it meets there, J: force times the outside body's own speed where it acts, torque
   // times its turning.
