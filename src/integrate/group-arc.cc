@@ -388,8 +388,8 @@ ContactForce GroupArc::lone_contact_force(int contact, double time) const {
 GroupArc::Data::MemberForce GroupArc::Data::force_on(int member, const WorkingContact& c,
                                                      double at) const {
   const ContactPlace place = system.contact_packs().places[static_cast<std::size_t>(c.contact)];
-  const KeptPack& kept = pack_at(place.pack, at);
   const int i = place.lane;
+  const KeptPack& kept = pack_at(place.pack, at, 1u << i);
   const auto lane = [i](const LaneVec& v) { return Vec3(v.x[i], v.y[i], v.z[i]); };
   const Vec3 on_b = lane(kept.state.f);
   const ContactPack& pack = system.contact_packs().packs[static_cast<std::size_t>(place.pack)];
