@@ -41,6 +41,9 @@ class Writer {
 
 Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
 
+Vec3 vec(Lanes v) { return {v[0], v[1], v[2]}; }
+TW_LANES Lanes xyz(const double* p) { return Lanes{p[0], p[1], p[2], 0}; }
+
 LaneVec load(const double* p) {
   LaneVec v;
   std::memcpy(&v, p, sizeof v);
@@ -50,6 +53,17 @@ LaneVec load(const double* p) {
 Quat normalized(const Quat& q) {
   const double n = 1 / std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   return Quat(n * q.w(), n * q.x(), n * q.y(), n * q.z());
+}
+
+// x^2 + (y^2 + z^2), as Eigen's
+TW_LANES double squared(Lanes v) {
+  const Lanes s = v * v;
+  return s[0] + (s[1] + s[2]);
+}
+
+void add(Aabb& box, Lanes lo, Lanes hi) {
+  box.add(vec(lo));
+  box.add(vec(hi));
 }
 
 }  // namespace
@@ -185,20 +199,18 @@ const double* GroupRecord::member_step(int i, int member) const {
 }
 
 // rate(0) = y1 - y0 + D3, rate(1) = y1 - y0 - D3 - D4
-GroupRecord::Cubic GroupRecord::hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1,
-                                        const Vec3& rate1, double h) {
-  const Vec3 d3 = h * rate0 - (y1 - y0);
-  return {y0, y1, d3, (y1 - y0) - d3 - h * rate1};
-}
-
 GroupRecord::Cubic GroupRecord::path(int i, int member) const {
   const double *a = member_node(i, member), *b = member_node(i + 1, member);
-  return hermite(vec(a + x_at), vec(a + v_at), vec(b + x_at), vec(b + v_at), length(i));
+  const Lanes y0 = xyz(a + x_at), y1 = xyz(b + x_at), h = lanes(length(i));
+  const Lanes d3 = h * xyz(a + v_at) - (y1 - y0);
+  return {y0, y1, d3, (y1 - y0) - d3 - h * xyz(b + v_at)};
 }
 
 GroupRecord::Cubic GroupRecord::rotation(int i, int member) const {
   const double *a = member_node(i, member), *s = member_step(i, member);
-  return hermite(Vec3::Zero(), vec(a + w_at), vec(s + theta_at), vec(s + rate_at), length(i));
+  const Lanes y1 = xyz(s + theta_at), h = lanes(length(i));
+  const Lanes d3 = h * xyz(a + w_at) - y1;
+  return {lanes(0), y1, d3, y1 - d3 - h * xyz(s + rate_at)};
 }
 
 GroupRecord::Place GroupRecord::place(double t) const {
@@ -208,13 +220,13 @@ GroupRecord::Place GroupRecord::place(double t) const {
 
 Vec3 GroupRecord::position(int member, Place at) const {
   const auto [i, r] = at;
-  return r > 0 ? path(i, member).value(r) : vec(member_node(i, member) + x_at);
+  return r > 0 ? vec(path(i, member).value(r)) : vec(member_node(i, member) + x_at);
 }
 
 Quat GroupRecord::attitude(int member, Place at) const {
   const auto [i, r] = at;
   const Quat begin = quat(member_node(i, member) + q_at);
-  return r > 0 ? Quat(short_rotation(rotation(i, member).value(r)) * begin) : begin;
+  return r > 0 ? Quat(short_rotation(vec(rotation(i, member).value(r))) * begin) : begin;
 }
 
 void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
@@ -224,8 +236,13 @@ void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
   L = vec(a + L_at);
   if (!(r > 0)) return;
   const double *b = member_node(i + 1, member), *s = member_step(i, member);
-  v = Cubic{v, vec(b + v_at), vec(s + d3_at), vec(s + d4_at)}.value(r);
-  L = Cubic{L, vec(b + L_at), vec(s + d3_at + 3), vec(s + d4_at + 3)}.value(r);
+  const auto along = [&](int value_at, int change) {
+    const Cubic cubic{xyz(a + value_at), xyz(b + value_at), xyz(s + d3_at + change),
+                      xyz(s + d4_at + change)};
+    return vec(cubic.value(r));
+  };
+  v = along(v_at, 0);
+  L = along(L_at, 3);
 }
 
 LaneVec GroupRecord::row(int number, double t) const {
@@ -247,8 +264,8 @@ void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {
   const int i = step_to(t);
   const double r = fraction(i, t), rate = 1 / length(i);
   const Cubic turn = rotation(i, member);
-  dx = rate * path(i, member).rate(r);
-  w = angular_velocity(turn.value(r), rate * turn.rate(r));
+  dx = vec(lanes(rate) * path(i, member).rate(r));
+  w = angular_velocity(vec(turn.value(r)), vec(lanes(rate) * turn.rate(r)));
 }
 
 void GroupRecord::add_step_bounds(int i, int member, double from, double to,
@@ -257,31 +274,33 @@ void GroupRecord::add_step_bounds(int i, int member, double from, double to,
 
   // path: control points over [r0, r1]: p(r0), p + (r1-r0) p'/3 from either end, p(r1)
   const Cubic way = path(i, member);
-  const Vec3 p0 = way.value(r0), p1 = way.value(r1), u0 = way.rate(r0), u1 = way.rate(r1);
-  const double third = (r1 - r0) / 3;
-  const Vec3 control0 = p0 + third * u0, control1 = p1 - third * u1;
-  for (const Vec3& p : {p0, p1, control0, control1}) bounds.path.add(p);
+  const Lanes p0 = way.value(r0), p1 = way.value(r1), u0 = way.rate(r0), u1 = way.rate(r1);
+  const Lanes third = lanes((r1 - r0) / 3), half = lanes(0.5 * (r1 - r0));
+  const Lanes control0 = p0 + third * u0, control1 = p1 - third * u1;
+  add(bounds.path, min(min(p0, p1), min(control0, control1)),
+      max(max(p0, p1), max(control0, control1)));
 
   // x' is quadratic: within its control points
-  const Vec3 u = u0 + 0.5 * (r1 - r0) * way.second(r0);
-  const double fastest = std::max({u0.squaredNorm(), u.squaredNorm(), u1.squaredNorm()});
+  const Lanes s0 = way.second(r0), s1 = way.second(r1), u = u0 + half * s0;
+  const double fastest = std::max({squared(u0), squared(u), squared(u1)});
   bounds.speed = std::max(bounds.speed, rate * std::sqrt(fastest));
 
   // x'' is linear: largest at an end
-  for (const double r : {r0, r1}) bounds.acceleration.add(Vec3(rate * rate * way.second(r)));
+  const Lanes by_time = lanes(rate * rate);
+  add(bounds.acceleration, min(by_time * s0, by_time * s1), max(by_time * s0, by_time * s1));
 
   // |w| <= |theta'|, quadratic: within its control points; |Jl| <= 1
   const Cubic turn = rotation(i, member);
-  const Vec3 t0 = turn.rate(r0), t1 = turn.rate(r1);
-  const Vec3 middle = t0 + 0.5 * (r1 - r0) * turn.second(r0);
-  const double speed = rate * std::max({t0.norm(), t1.norm(), middle.norm()});
+  const Lanes t0 = turn.rate(r0), t1 = turn.rate(r1), middle = t0 + half * turn.second(r0);
+  const double speed = rate * std::sqrt(std::max({squared(t0), squared(t1), squared(middle)}));
   bounds.turn = std::max(bounds.turn, speed);
 
   // |w'| <= |theta''| + |theta'| |theta x theta'|/6, and theta x theta' = r^2 e x (-D3 +
   // (1-2r) D4)/h with e = theta/r = theta1 + (1-r)(D3 + r D4)
-  const double swing = turn.d3.norm() + turn.d4.norm();
-  const double bend = r1 * r1 * rate * (turn.y1.norm() + swing) * swing;
-  const double turn_second = rate * rate * std::max(turn.second(r0).norm(), turn.second(r1).norm());
+  const double swing = std::sqrt(squared(turn.d3)) + std::sqrt(squared(turn.d4));
+  const double bend = r1 * r1 * rate * (std::sqrt(squared(turn.y1)) + swing) * swing;
+  const double turn_second =
+      rate * rate * std::sqrt(std::max(squared(turn.second(r0)), squared(turn.second(r1))));
   bounds.turn_change = std::max(bounds.turn_change, turn_second + speed * bend / 6);
 }
 
@@ -322,8 +341,8 @@ double GroupRecord::turn_change_across(const Vec3& n, int member, double from, d
     const double r0 = fraction(i, std::max(from, time(i))),
                  r1 = fraction(i, std::min(to, time(i + 1))), rate = 1 / length(i), h = r1 - r0;
     const Cubic turn = rotation(i, member);
-    const Vec3 p0 = turn.value(r0), p1 = turn.value(r1), u0 = turn.rate(r0), u1 = turn.rate(r1),
-               s0 = turn.second(r0), s1 = turn.second(r1);
+    const Vec3 p0 = vec(turn.value(r0)), p1 = vec(turn.value(r1)), u0 = vec(turn.rate(r0)),
+               u1 = vec(turn.rate(r1)), s0 = vec(turn.second(r0)), s1 = vec(turn.second(r1));
     const Vec3 theta[] = {p0, p0 + h / 3 * u0, p1 - h / 3 * u1, p1};
     const Vec3 rates[] = {rate * u0, rate * (u0 + 0.5 * h * s0), rate * u1};
     const Vec3 seconds[] = {rate * rate * s0, rate * rate * s1};

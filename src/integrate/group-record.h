@@ -20,6 +20,7 @@
 
 #include "integrate/bounds-tree.h"
 #include "integrate/group-system.h"
+#include "integrate/lanes.h"
 
 namespace tw {
 
@@ -84,13 +85,18 @@ class GroupRecord {
   double turn_change_across(const Vec3& n, int member, double from, double to) const;
 
  private:
-  // cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step
+  // Cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step; lanes are x, y, z, and one that is 0.
   struct Cubic {
-    Vec3 y0, y1, d3, d4;
-    Vec3 value(double r) const { return (1 - r) * y0 + r * (y1 + (1 - r) * (d3 + r * d4)); }
+    Lanes y0, y1, d3, d4;
+    Lanes value(double r) const {
+      const Lanes rest = lanes(1 - r), at = lanes(r);
+      return rest * y0 + at * (y1 + rest * (d3 + at * d4));
+    }
     // by r
-    Vec3 rate(double r) const { return y1 - y0 + (1 - 2 * r) * d3 + r * (2 - 3 * r) * d4; }
-    Vec3 second(double r) const { return -2 * d3 + (2 - 6 * r) * d4; }
+    Lanes rate(double r) const {
+      return y1 - y0 + lanes(1 - 2 * r) * d3 + lanes(r * (2 - 3 * r)) * d4;
+    }
+    Lanes second(double r) const { return lanes(-2) * d3 + lanes(2 - 6 * r) * d4; }
   };
 
   const double* node(int i) const {
@@ -114,8 +120,6 @@ class GroupRecord {
   LaneVec row(int number, double time) const;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
-  static Cubic hermite(const Vec3& y0, const Vec3& rate0, const Vec3& y1, const Vec3& rate1,
-                       double h);
   Cubic path(int step, int member) const;
   Cubic rotation(int step, int member) const;
   const double* member_node(int node, int member) const;
