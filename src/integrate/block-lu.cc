@@ -90,6 +90,18 @@ TW_BLOCK void subtract_product_vector(const double* a, const double* x, double* 
   store(sum, y);
 }
 
+// y += |a| |x|
+TW_BLOCK void add_magnitudes(const double* a, const double* x, double* y) {
+  Column sum = load(y);
+#pragma GCC unroll 6
+  for (int k = 0; k < B; ++k) {
+    const Column c = load(a + B * k);
+    const Column size = {c.head < 0 ? -c.head : c.head, c.tail < 0 ? -c.tail : c.tail};
+    subtract(sum, size, -std::abs(x[k]));
+  }
+  store(sum, y);
+}
+
 // The unit of the second half of a block's columns in terms of the first.  The halves have units of
 // their own (speeds and forces, angular momenta and torques): a pivot is large or small only in
 // units in which the four quarters, the largest of each, are balanced.  With VV, VL, LV, LL: rows
@@ -289,13 +301,8 @@ double BlockLu::backward_error(const double* values, const double* x, const doub
   const auto add = [&](std::size_t index, int row, int column) {
     const double* a = at(values, index);
     const double* from = x + B * pivots_[u(column)];
-    double *r = rest.data() + B * pivots_[u(row)], *s = scale.data() + B * pivots_[u(row)];
-    for (int k = 0; k < B; ++k)
-      for (int i = 0; i < B; ++i) {
-        const double term = a[B * k + i] * from[k];
-        r[i] -= term;
-        s[i] += std::abs(term);
-      }
+    subtract_product_vector(a, from, rest.data() + B * pivots_[u(row)]);
+    add_magnitudes(a, from, scale.data() + B * pivots_[u(row)]);
   };
   for (int k = 0; k < rows_; ++k) {
     add(u(k), k, k);

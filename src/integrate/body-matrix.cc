@@ -59,14 +59,11 @@ BodyMatrix::Pivoted::Pivoted(int bodies, const std::vector<std::pair<int, int>>&
 }
 
 BodyMatrix::BodyMatrix(int bodies, const std::vector<std::pair<int, int>>& pairs)
-    : bodies_(bodies), pairs_(pairs), blocks_(bodies, pairs) {
-  values_.resize(blocks_.size());
-  factors_.resize(blocks_.size());
-}
+    : bodies_(bodies), pairs_(pairs), blocks_(bodies, pairs) {}
 
 BodyMatrix::~BodyMatrix() = default;
 
-void BodyMatrix::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
+void BodyMatrix::clear() { values_.assign(blocks_.size(), 0.0); }
 
 bool BodyMatrix::factor() {
   ++factorizations_;

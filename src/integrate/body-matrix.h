@@ -29,6 +29,7 @@ class BodyMatrix {
   BodyMatrix(const BodyMatrix&) = delete;
   BodyMatrix& operator=(const BodyMatrix&) = delete;
 
+  // All zeros; first of all, too.
   void clear();
   // A block of the pattern, by columns; to be added to.
   std::size_t offset(int row, int column) const { return blocks_.offset(row, column); }
