@@ -24,7 +24,8 @@ Vec3 vec(const double* p) { return {p[0], p[1], p[2]}; }
 // Puts numbers down one after the other, at the end of a row that grows by so many.
 class Writer {
  public:
-  Writer(std::vector<double>& row, std::size_t count) {
+  template <class Row>
+  Writer(Row& row, std::size_t count) {
     row.resize(row.size() + count);
     to_ = row.data() + row.size() - count;
   }

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/leaves-unset.h"
 #include "integrate/bounds-tree.h"
 #include "integrate/group-system.h"
 #include "integrate/lanes.h"
@@ -85,6 +86,7 @@ class GroupRecord {
   double turn_change_across(const Vec3& n, int member, double from, double to) const;
 
  private:
+  using Row = std::vector<double, LeavesUnset<double>>;
   // Cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step; lanes are x, y, z, and one that is 0.
   struct Cubic {
     Lanes y0, y1, d3, d4;
@@ -131,7 +133,8 @@ class GroupRecord {
   int members_ = 0, packs_ = 0, rows_ = 0;  // rows: of stretches, then of bends
   bool with_sides_ = false;
   std::size_t node_size_ = 0, step_size_ = 0;
-  std::vector<double> times_, nodes_, steps_;
+  std::vector<double> times_;
+  Row nodes_, steps_;
   std::vector<LaneVec> first_sides_;
   std::vector<BoundsTree> kept_bounds_;  // of each member, by blocks of steps
 };
