@@ -150,17 +150,6 @@
                #:position (vector (- (* 1/2 spacing (1- columns)) 32)
                                   (- (* 1/2 spacing (1- rows)) 66) 0))))
 
-;; a height of its centre at which a ball above (x, y) clears all triangles near it
-(define (height-over x y radius)
-  (define (near? coordinate of triangle)
-    (let ((all (map of triangle)))
-      (<= (- (apply min all) radius) coordinate (+ (apply max all) radius))))
-  (fold (lambda (triangle height)
-          (if (and (near? x x-of triangle) (near? y y-of triangle))
-              (max height (plane-height triangle x y radius))
-              height))
-        -1000 triangles))
-
 ;;; Boulders that stick in the ground make up the 524 pieces.
 (define boulders (- 524 (length triangles)))
 (for-each
@@ -192,13 +181,33 @@
            (angle (uniform 0 (* 4 (acos 0)) rock-state)))
       (list (+ x (* a r (cos angle))) (+ y (* b r (sin angle)))))))
 
+;; a height of its centre at which a ball above (x, y) clears all triangles near it
+(define bowl-triangles                     ; those within 2 m of the bowl, each after its sides:
+  (match-let (((x y a b) bowl))            ; (least x, greatest x, least y, greatest y . triangle)
+    (filter-map
+     (lambda (triangle)
+       (let* ((xs (map x-of triangle)) (west (apply min xs)) (east (apply max xs))
+              (ys (map y-of triangle)) (south (apply min ys)) (north (apply max ys)))
+         (and (<= (- west a 2) x (+ east a 2)) (<= (- south b 2) y (+ north b 2))
+              (cons* west east south north triangle))))
+     triangles)))
+(define (height-over x y radius)
+  (fold (lambda (bounded height)
+          (match bounded
+            ((west east south north . triangle)
+             (if (and (<= (- west radius) x (+ east radius))
+                      (<= (- south radius) y (+ north radius)))
+                 (max height (plane-height triangle x y radius))
+                 height))))
+        -1000 bowl-triangles))
+
 ;; least height at which a ball at (x, y) clears the balls ((center . radius) ...) laid so far
 (define (height-on-balls x y radius balls)
-  (fold (match-lambda*
-          (((center . other) height)
-           (let* ((dx (- x (x-of center))) (dy (- y (y-of center)))
-                  (up (- (expt (+ radius other 0.01) 2) (* dx dx) (* dy dy))))
-             (if (positive? up) (max height (+ (z-of center) (sqrt up))) height))))
+  (fold (lambda (ball height)
+          (match-let (((center . other) ball))
+            (let* ((apart (+ radius other 0.01)) (dx (- x (x-of center))) (dy (- y (y-of center)))
+                   (up (- (* apart apart) (* dx dx) (* dy dy))))
+              (if (positive? up) (max height (+ (z-of center) (sqrt up))) height))))
         -1000 balls))
 
 (define (lowest-place radius balls)

@@ -72,14 +72,16 @@
 
 (define (v+ first . rest)
   "Return the sum of vectors of one length."
-  (let loop ((sum (reals first)) (rest rest))
-    (if (null? rest) sum (loop (map-pairs + sum (car rest)) (cdr rest)))))
+  (if (null? rest)
+      (reals first)
+      (let loop ((sum first) (rest rest))
+        (if (null? rest) sum (loop (map-pairs + sum (car rest)) (cdr rest))))))
 
 (define (v- first . rest)
   "Return FIRST minus the other vectors, all of one length; with one argument its negative."
   (if (null? rest)
       (map-one - first)
-      (let loop ((difference (reals first)) (rest rest))
+      (let loop ((difference first) (rest rest))
         (if (null? rest) difference (loop (map-pairs - difference (car rest)) (cdr rest))))))
 
 (define (v* a b)
