@@ -49,7 +49,7 @@ double kinematic_reach(const MovingBody& side, const ConvexPart& part, const Vec
   double least = never;
   for (const Vec3& vertex : part.core->vertices())
     least =
-        std::min(least, reach(side, n, c, u, alpha, side.frame.R * (part.placement * vertex), 0));
+        std::min(least, reach(side, n, c, u, alpha, side.frame.R * (part.placement() * vertex), 0));
   return least;
 }
 
@@ -70,7 +70,7 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
 
   // heights and speeds of points are linear in them: in the part's frame,
   // n.(x + r) = n.x + n_P.p + .., n.(v + w x r) = n.v + m_P.p + .. with m = n x w
-  const Frame frame(side.frame.R * part.placement.R, side.frame.R * part.placement.p);
+  const Frame frame = part.in(Frame(side.frame.R, Vec3::Zero()));
   const Vec3 m = n.cross(side.point.w);
   const Vec3 n_P = frame.R.transpose() * n, m_P = frame.R.transpose() * m;
   const double height = n.dot(side.point.x + frame.p), speed = n.dot(side.point.v) + m.dot(frame.p);
@@ -98,7 +98,7 @@ double part_reach(const MovingBody& side, const ConvexPart& part, const Plane& p
 // A point of a part farthest along the unit n; `point` is one, for what is not known better.
 Vec3 top_along(const MovingBody& side, const ConvexPart& part, const Vec3& n, const Vec3& point) {
   if (part.kind == PartKind::half_space || part.kind == PartKind::sphere) return point;
-  const SupportCore core(part, side.frame * part.placement);
+  const SupportCore core(part, part.in(side.frame));
   return core.support(n) + core.margin * n;
 }
 
@@ -204,13 +204,16 @@ double distance_rounding(const Body& a, const Vec3& at_a, const Body& b, const V
          of_coordinates * (coordinates(a, at_a) + coordinates(b, at_b));
 }
 
-Certificates::Certificates(const Piece& piece, SimplexCaches& caches, double when)
+Certificates::Certificates(const Piece& piece, SimplexCaches& caches, double when,
+                           const SeenApart* seen)
     : piece_(piece),
       caches_(caches),
       when_(when),
       a_(*piece.body_a, piece.a->trajectory(), when),
       b_(*piece.body_b, piece.b->trajectory(), when),
-      rounding_(distance_rounding(*a_.body, a_.point.x, *b_.body, b_.point.x)) {}
+      rounding_(distance_rounding(*a_.body, a_.point.x, *b_.body, b_.point.x)) {
+  if (seen && seen->when == when) kept_[0] = seen->separation;
+}
 
 const Separation& Certificates::separation(std::size_t i, std::size_t j) {
   const Shape& a = *a_.body->shape_P;
@@ -386,8 +389,9 @@ double Certificates::until(double allowance) {
   return when_ + least;
 }
 
-double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance) {
-  return Certificates(piece, caches, when).until(allowance);
+double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance,
+                   const SeenApart* seen) {
+  return Certificates(piece, caches, when, seen).until(allowance);
 }
 
 }  // namespace tw

@@ -55,10 +55,18 @@ class SimplexCaches {
   std::vector<Place> places_;
 };
 
+// What a query of two bodies of one part each found at a time, s.
+struct SeenApart {
+  double when = never;
+  Separation separation;
+};
+
 // The two bodies of a piece as seen at `when`, s.
 class Certificates {
  public:
-  Certificates(const Piece& piece, SimplexCaches& caches, double when);
+  // `seen`: need not be asked again if it was then; null: nothing was.
+  Certificates(const Piece& piece, SimplexCaches& caches, double when,
+               const SeenApart* seen = nullptr);
 
   // Until when the two are surely apart on the piece's arcs, s; -infinity: perhaps not at `when`.
   // Overlaps up to `allowance` (m) count as apart.
@@ -94,7 +102,8 @@ class Certificates {
   std::optional<Separation> last_;             // of others
 };
 
-double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance);
+double certificate(const Piece& piece, SimplexCaches& caches, double when, double allowance,
+                   const SeenApart* seen = nullptr);
 
 // What rounding may make of no distance between two bodies with their centres there, m.
 double distance_rounding(const Body& a, const Vec3& at_a, const Body& b, const Vec3& at_b);

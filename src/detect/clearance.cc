@@ -37,7 +37,7 @@ struct RelativeTravel {
 }  // namespace
 
 bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& caches, double from,
-                      double to, const Travels& travels) {
+                      double to, const Travels& travels, SeenApart* seen) {
   const Body& a = *piece.body_a;
   const Body& b = *piece.body_b;
   if (a.unbounded || b.unbounded) return false;
@@ -60,6 +60,7 @@ bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& cache
       SimplexCache& cache = caches.of(i * shape_b.part_count() + j, pairs);
       const Separation s = part_separation(shape_a.part(i), fa, shape_b.part(j), fb, &cache);
       left = std::min(left, s.distance - travel.against(s.normal));
+      if (seen && pairs == 1) *seen = {from, s};
     };
     if (shape_a.tree() || shape_b.tree()) {
       // what is farther than this is not looked at: some times the way, and of what hardly moves a

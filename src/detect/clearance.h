@@ -24,7 +24,8 @@ struct Clearance {
 };
 
 // Whether the two are surely apart over [from, to] on the piece's arcs; cheaper than a certificate.
+// `seen`: what a query at `from` found is left there, where the two have one part each.
 bool apart_throughout(const Piece& piece, Clearance& known, SimplexCaches& caches, double from,
-                      double to, const Travels& travels = {});
+                      double to, const Travels& travels = {}, SeenApart* seen = nullptr);
 
 }  // namespace tw

@@ -189,10 +189,11 @@ std::optional<PairOutcome> PairChecks::follow_exact(Pair& pair, const Piece& pie
 // where something presses the two together, or one is in a group and the other is fixed or moves
 // as it is told: the group's next check would find them in contact, and until then they would be
 // looked at without end.  True if one was found.
-bool PairChecks::check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const {
+bool PairChecks::check_common_start(Pair& pair, const Piece& piece, const SeenApart& seen,
+                                    PairCounts& counts) const {
   const double start = piece.start_time();
   ++counts.checks;
-  const double clear = certificate(piece, pair.caches, start, 0);
+  const double clear = certificate(piece, pair.caches, start, 0, &seen);
   counts.certificates += clear > -never;
   pair.next_check = std::max(grid_floor(clear), grid_after(start));
   if (clear > start) return false;
@@ -278,6 +279,7 @@ std::optional<PairOutcome> PairChecks::decided(Pair& pair, const Piece& piece) c
 
 // Follows a piece on the grid.
 std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& piece, double until,
+                                                      const SeenApart& seen,
                                                       PairCounts& counts) const {
   if (!pair.started || pair.checked_start != piece.start) {
     pair.started = true;
@@ -285,7 +287,7 @@ std::optional<PairOutcome> PairChecks::follow_on_grid(Pair& pair, const Piece& p
     pair.touch = 0;
     // an impact at the common start that was rolled back is found again from its own key on
     if (pair.from <= piece.start || pair.from.time == piece.start_time()) {
-      if (check_common_start(pair, piece, counts) ||
+      if (check_common_start(pair, piece, seen, counts) ||
           check_between(pair, piece, piece.start_time(), counts))
         return decided(pair, piece);
       raise_safe_time(pair, piece, piece.start_time());
@@ -337,6 +339,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
       return {PairOutcome::Kind::alone, {}};
     // arcs of moving groups are known as far as both have claimed
     double until = now;
+    SeenApart seen;
     if (moves_in_group(*piece.a) || moves_in_group(*piece.b)) {
       until = std::min(sim_.process(sim_.body(pair.a)).claim.time,
                        sim_.process(sim_.body(pair.b)).claim.time);
@@ -349,7 +352,8 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
         return waits;
       }
       const double to = std::min(until, piece.end.time);
-      if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to, travels)) {
+      if (apart_throughout(piece, pair.clearance, pair.caches, pair.from.time, to, travels,
+                           &seen)) {
         if (to == piece.end.time) {
           if (const auto end = next_piece(pair, piece)) return *end;
           continue;
@@ -364,7 +368,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
       if (moves_in_group(*state)) state->group->arc->extend(state->group->arc->start().end);
     try {
       const auto end = predicted_exactly(piece) ? follow_exact(pair, piece, counts)
-                                                : follow_on_grid(pair, piece, until, counts);
+                                                : follow_on_grid(pair, piece, until, seen, counts);
       if (end) return *end;
     } catch (...) {
       // Ctrl-C: a dip that was looked for is looked for again, so all is from the safe time on

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "detect/certificate.h"
 #include "kernel/counters.h"
 #include "kernel/pieces.h"
 
@@ -64,10 +65,11 @@ class PairChecks {
   PairOutcome follow(Pair& pair, PairCounts& counts, bool as_helper, const Travels& travels) const;
   std::optional<PairOutcome> follow_exact(Pair& pair, const Piece& piece, PairCounts& counts) const;
   std::optional<PairOutcome> follow_on_grid(Pair& pair, const Piece& piece, double until,
-                                            PairCounts& counts) const;
+                                            const SeenApart& seen, PairCounts& counts) const;
   std::optional<PairOutcome> decided(Pair& pair, const Piece& piece) const;
   std::optional<PairOutcome> next_piece(Pair& pair, const Piece& piece) const;
-  bool check_common_start(Pair& pair, const Piece& piece, PairCounts& counts) const;
+  bool check_common_start(Pair& pair, const Piece& piece, const SeenApart& seen,
+                          PairCounts& counts) const;
   bool check_grid_point(Pair& pair, const Piece& piece, double when, PairCounts& counts) const;
   bool find_crossing(Pair& pair, const Piece& piece, double start, double when, double right) const;
   bool check_between(Pair& pair, const Piece& piece, double from, PairCounts& counts) const;
