@@ -1,6 +1,6 @@
 // How far two bodies overlap along one direction: what one of them would have to be moved by to
-// part them, and so no less than they are deep in each other.  Two support points, a tenth of what
-// a manifold costs.
+// part them, and so no less than they are deep in each other.  Two support points, an eighth of
+// what a manifold costs.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

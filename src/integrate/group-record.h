@@ -18,7 +18,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/leaves-unset.h"
 #include "integrate/bounds-tree.h"
 #include "integrate/group-system.h"
 #include "integrate/lanes.h"
@@ -86,7 +85,7 @@ class GroupRecord {
   double turn_change_across(const Vec3& n, int member, double from, double to) const;
 
  private:
-  using Row = std::vector<double, LeavesUnset<double>>;
+  using Row = std::vector<double>;
   // Cubic (1-r) y0 + r (y1 + (1-r)(D3 + r D4)) of a step; lanes are x, y, z, and one that is 0.
   struct Cubic {
     Lanes y0, y1, d3, d4;

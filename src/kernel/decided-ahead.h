@@ -1,4 +1,4 @@
-// What discontinuities come to, decided ahead of their events: each is used if none of the queues
+// What group checks come to, decided ahead of their events: each is used if none of the queues
 // that it was made of has changed by then.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -7,7 +7,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
