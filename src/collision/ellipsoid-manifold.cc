@@ -37,11 +37,11 @@ struct Osculating {
   Osculating(const ConvexPart& of, const Frame& frame, const Vec3& point, const Vec3& outward)
       : is_ellipsoid(of.kind == PartKind::ellipsoid), part(of) {
     if (!is_ellipsoid) return;
-    const Frame world = frame * of.placement;
+    const Frame world = of.in(frame);
     radii = radii_at(of.semi_axes, world.R.transpose() * outward);
     ball.radius = radii.mean;
-    ball.placement.p = frame.to_local(point - ball.radius * outward);
-    ball.bound_center = ball.placement.p;
+    ball.bound_center = frame.to_local(point - ball.radius * outward);
+    ball.place({Mat3::Identity(), ball.bound_center});
     ball.bound_radius = ball.radius;
   }
   const ConvexPart& shown() const { return is_ellipsoid ? ball : part; }

@@ -44,7 +44,7 @@ struct View {
 
 // The face of a polyhedron that the normal is next to, as ground; false where there is none.
 bool face_ground(const View& v, Ground& ground) {
-  const Frame world = v.reference_frame * v.reference.placement;
+  const Frame world = v.reference.in(v.reference_frame);
   const Polyhedron& core = *v.reference.core;
   const Vec3 local = world.R.transpose() * v.normal;
   const int number = core.face_at_vertex(core.support(local, 0), local);
@@ -94,7 +94,8 @@ bool end_ball(const ConvexPart& part, const Frame& frame, const Vec3& point, Con
   const bool top = c.axis.dot(point - c.center) > 0;
   if (c.end_radius(top) > 0) return false;
   ball.radius = part.margin;
-  ball.placement.p = part.placement * Vec3(0, 0, top ? part.half_length : -part.half_length);
+  ball.place({Mat3::Identity(),
+              part.placement() * Vec3(0, 0, top ? part.half_length : -part.half_length)});
   return true;
 }
 
@@ -152,7 +153,7 @@ void add_on_cap(const View& v, const Ground& cap, std::vector<ManifoldPoint>& ou
   higher.clear();
   const PlacedFrustum c(v.reference, v.reference_frame);
   const double radius = c.end_radius(cap.normal.dot(c.axis) > 0);
-  const Frame world = v.other_frame * v.other.placement;
+  const Frame world = v.other.in(v.other_frame);
   const Polyhedron& core = *v.other.core;
   const double near = 1e-6 * radius;
   // what is this much beyond the reach lies flat with nothing on the cap
@@ -353,7 +354,7 @@ void add_on_side(const View& v, const Vec3& tail, const Vec3& along, double radi
 // The edge of a polyhedron, from its vertex farthest against the normal, that holds the witness;
 // zero where none does within 0.2 degrees.
 void witness_edge(const View& v, Vec3& tail, Vec3& along) {
-  const Frame world = v.other_frame * v.other.placement;
+  const Frame world = v.other.in(v.other_frame);
   const Polyhedron& core = *v.other.core;
   const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
   tail = world * core.vertex(vertex);
@@ -371,7 +372,7 @@ void witness_edge(const View& v, Vec3& tail, Vec3& along) {
 // The edge of a polyhedron, from its vertex farthest against the normal, that lies most along the
 // axis, within 6 degrees, and square to the normal within 0.2; zero where there is none.
 void level_edge(const View& v, Vec3& tail, Vec3& along) {
-  const Frame world = v.other_frame * v.other.placement;
+  const Frame world = v.other.in(v.other_frame);
   const Polyhedron& core = *v.other.core;
   const Vec3 axis = side_line(v.reference, v.reference_frame, v.on_reference).axis;
   const int vertex = core.support(-(world.R.transpose() * v.normal), 0);
@@ -415,9 +416,9 @@ void polyhedron_and_frustum(const View& of_polyhedron, const View& of_frustum,
 void frustum_and_sphere(const ConvexPart& frustum, const Frame& frame_f, const ConvexPart& sphere,
                         const Frame& frame_s, double reach, bool reference_is_a, int pair,
                         std::vector<ManifoldPoint>& out) {
-  const Frame world = frame_f * frustum.placement;
+  const Frame world = frustum.in(frame_f);
   ManifoldPoint p;
-  p.core_point = frame_s * sphere.placement.p;
+  p.core_point = frame_s * sphere.placement().p;
   const NearestOnFrustum near = nearest_on_frustum(frustum, world.to_local(p.core_point));
   p.gap = near.distance - sphere.radius;
   if (p.gap > reach) return;

@@ -137,7 +137,7 @@ PlacedFrustum::PlacedFrustum(const ConvexPart& part, const Frame& frame)
       top_radius(part.top_radius),
       half_length(part.half_length),
       margin(part.margin) {
-  const Frame world = frame * part.placement;
+  const Frame world = part.in(frame);
   center = world.p;
   axis = world.R.col(2);
   across = world.R.col(0);

@@ -102,5 +102,7 @@ void ellipsoid_manifold_at(const ConvexPart& a, const Frame& frame_a, const Conv
 
 // Signed distance of a point (world) from a part, m.
 double height_over(const SeamNeighbour& part, const Vec3& point);
+// Whether that is -depth (m) or less: the point lies so deep in the part, or deeper.
+bool holds(const SeamNeighbour& part, const Vec3& point, double depth);
 
 }  // namespace tw

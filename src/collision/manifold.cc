@@ -25,9 +25,9 @@ void ManifoldPoint::follow_lines(const Vec3& of_reference, const Vec3& of_other)
 void polyhedron_sphere_manifold(const ConvexPart& polyhedron, const Frame& frame_p,
                                 const ConvexPart& sphere, const Frame& frame_s, double reach,
                                 bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
-  const Frame world = frame_p * polyhedron.placement;
+  const Frame world = polyhedron.in(frame_p);
   ManifoldPoint p;
-  p.core_point = frame_s * sphere.placement.p;
+  p.core_point = frame_s * sphere.placement().p;
   const NearestToPoint near = nearest_to_point(*polyhedron.core, world.to_local(p.core_point));
   p.gap = near.distance - sphere.radius;
   if (p.gap > reach) return;
@@ -49,7 +49,7 @@ void half_space_sphere_manifold(const ConvexPart& half_space, const Frame& frame
                                 const ConvexPart& sphere, const Frame& frame_s, double reach,
                                 bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
   ManifoldPoint p;
-  p.core_point = frame_s * sphere.placement.p;
+  p.core_point = frame_s * sphere.placement().p;
   p.normal = frame_h.R * half_space.normal;
   const double height = p.normal.dot(p.core_point - frame_h.p) - half_space.offset;
   p.gap = height - sphere.radius;
@@ -68,8 +68,8 @@ void spheres_manifold(const ConvexPart& a, const Frame& frame_a, const ConvexPar
                       const Frame& frame_b, double reach, int pair,
                       std::vector<ManifoldPoint>& out) {
   ManifoldPoint p;
-  p.reference_point = frame_a * a.placement.p;
-  p.core_point = frame_b * b.placement.p;
+  p.reference_point = frame_a * a.placement().p;
+  p.core_point = frame_b * b.placement().p;
   const Vec3 apart = p.core_point - p.reference_point;
   const double length = apart.norm();
   p.gap = length - (a.radius + b.radius);

@@ -19,7 +19,7 @@ bool far_apart(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b, c
 FaceGap gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPart& other,
                       const Frame& other_frame) {
   if (other.kind != PartKind::polyhedron || part.kind == PartKind::half_space) return {};
-  const Frame world = other_frame * other.placement;
+  const Frame world = other.in(other_frame);
   const Vec3 center = frame * part.bound_center;
   int face = 0;
   const double height = other.core->face_separation(world.to_local(center), face);
@@ -27,7 +27,7 @@ FaceGap gap_over_face(const ConvexPart& part, const Frame& frame, const ConvexPa
   double reach = part.bound_radius;
   if (part.kind == PartKind::polyhedron) {
     const Vec3 down = -normal;
-    const Mat3 R = frame.R * part.placement.R;
+    const Mat3 R = frame.R * part.placement().R;
     reach = part.core->extent(R.transpose() * down, 0) - down.dot(R * part.core->center());
   }
   // less what rounding can do to it

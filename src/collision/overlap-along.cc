@@ -16,7 +16,7 @@ bool is_polyhedron(const Shape& shape) {
 // How far a placed polyhedron reaches along the direction, m from the origin.
 double reach(const Vec3& direction, const Shape& shape, const Frame& frame) {
   const ConvexPart& part = shape.part(0);
-  const Frame place = frame * part.placement;
+  const Frame place = part.in(frame);
   return direction.dot(place.p) + part.core->extent(place.R.transpose() * direction, 0);
 }
 

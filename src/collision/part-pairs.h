@@ -20,8 +20,8 @@ struct CorePair {
 
   CorePair(const ConvexPart& part_a, const Frame& frame_a, const ConvexPart& part_b,
            const Frame& frame_b)
-      : a(*part_a.core), b(*part_b.core), world_a(frame_a * part_a.placement) {
-    const Frame world_b = frame_b * part_b.placement;
+      : a(*part_a.core), b(*part_b.core), world_a(part_a.in(frame_a)) {
+    const Frame world_b = part_b.in(frame_b);
     b_in_a.R = world_a.R.transpose() * world_b.R;
     b_in_a.p = world_a.R.transpose() * (world_b.p - world_a.p);
   }

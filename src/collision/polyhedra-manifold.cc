@@ -336,7 +336,7 @@ void half_space_manifold(const ConvexPart& half_space, const Frame& frame_h,
                          const ConvexPart& polyhedron, const Frame& frame_p, double reach,
                          bool reference_is_a, int pair, std::vector<ManifoldPoint>& out) {
   thread_local std::vector<FacePoint> points;
-  const Frame world = frame_p * polyhedron.placement;
+  const Frame world = polyhedron.in(frame_p);
   ManifoldPoint p;
   p.reference_is_a = reference_is_a;
   p.normal = frame_h.R * half_space.normal;

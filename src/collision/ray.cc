@@ -180,7 +180,7 @@ std::optional<RayHit> cast_ray(const Shape& shape, const Frame& frame, const Vec
                                const Vec3& direction, double most) {
   std::optional<RayHit> nearest;
   const auto try_part = [&](const ConvexPart& part) {
-    const Frame place = part.kind == PartKind::half_space ? frame : Frame(frame * part.placement);
+    const Frame place = part.kind == PartKind::half_space ? frame : part.in(frame);
     if (part.kind != PartKind::half_space) {
       // past the ball that holds it
       const Vec3 way = frame * part.bound_center - from;

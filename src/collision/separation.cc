@@ -25,8 +25,8 @@ using Query = Separation (*)(const ConvexPart& a, const Frame& frame_a, const Co
 // Two spheres around points, whose centres are `apart` from a to b.
 Separation spheres(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                    const Frame& frame_b, SimplexCache*) {
-  const Vec3 center_a = frame_a * a.placement.p;
-  const Vec3 center_b = frame_b * b.placement.p;
+  const Vec3 center_a = frame_a * a.placement().p;
+  const Vec3 center_b = frame_b * b.placement().p;
   const Vec3 apart = center_b - center_a;
   const double length = apart.norm();
   Separation result;
@@ -79,8 +79,8 @@ CoreDistance polyhedron_to_point(const Polyhedron& core, const Vec3& point, Simp
 template <class NearestTo>
 Separation near_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& sphere,
                        const Frame& frame_s, const NearestTo& nearest_to) {
-  const Frame world_a = frame_a * a.placement;
-  const Vec3 center = frame_s * sphere.placement.p;
+  const Frame world_a = a.in(frame_a);
+  const Vec3 center = frame_s * sphere.placement().p;
   const CoreDistance near = nearest_to(world_a.to_local(center));
   Separation result;
   result.distance = near.distance - sphere.radius;
@@ -173,7 +173,7 @@ struct Plane {
 Separation half_space_sphere(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                              const Frame& frame_b, SimplexCache*) {
   const Plane plane(a, frame_a);
-  const Vec3 center = frame_b * b.placement.p;
+  const Vec3 center = frame_b * b.placement().p;
   Separation result;
   result.distance = plane.height(center) - b.radius;
   result.normal = plane.normal;
@@ -185,7 +185,7 @@ Separation half_space_sphere(const ConvexPart& a, const Frame& frame_a, const Co
 Separation half_space_polyhedron(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                                  const Frame& frame_b, SimplexCache* cache) {
   const Plane plane(a, frame_a);
-  const Frame world_b = frame_b * b.placement;
+  const Frame world_b = b.in(frame_b);
   const Vec3 down = -(world_b.R.transpose() * plane.normal);
   // hill climbing starts at the last vertex; near touch it starts cold, for ties
   const int start = cache != nullptr && cache->count > 0 ? cache->vertex_b[0] : 0;
@@ -222,7 +222,7 @@ Separation half_spaces(const ConvexPart& a, const Frame& frame_a, const ConvexPa
 Separation half_space_round(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                             const Frame& frame_b, SimplexCache*) {
   const Plane plane(a, frame_a);
-  const SupportCore core(b, frame_b * b.placement);
+  const SupportCore core(b, b.in(frame_b));
   Separation result;
   result.normal = plane.normal;
   result.point_b = core.support(-plane.normal);
@@ -255,8 +255,8 @@ bool is_segment(const ConvexPart& part) {
 // By their axes, which have no volume between them that a polytope could expand in.
 Separation capsules(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                     const Frame& frame_b) {
-  const Frame world_a = frame_a * a.placement;
-  const Frame world_b = frame_b * b.placement;
+  const Frame world_a = a.in(frame_a);
+  const Frame world_b = b.in(frame_b);
   const Vec3 axis_a = world_a.R.col(2), axis_b = world_b.R.col(2);
   Vec3 on_a, on_b;
   nearest_on_segments(world_a.p - a.half_length * axis_a, 2 * a.half_length * axis_a,
@@ -279,8 +279,8 @@ Separation capsules(const ConvexPart& a, const Frame& frame_a, const ConvexPart&
 Separation round_cores(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
                        const Frame& frame_b, SimplexCache*) {
   if (is_segment(a) && is_segment(b)) return capsules(a, frame_a, b, frame_b);
-  const Frame world_a = frame_a * a.placement;
-  const Frame world_b = frame_b * b.placement;
+  const Frame world_a = a.in(frame_a);
+  const Frame world_b = b.in(frame_b);
   const Mat3 back = world_a.R.transpose();
   const RoundDistance core =
       round_distance(SupportCore(a, Frame()),

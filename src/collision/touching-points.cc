@@ -77,7 +77,7 @@ void half_space_points(const ConvexPart& half_space, const Frame& frame_h,
   thread_local std::vector<ClippedPoint> points;
   ++work_count.distance_queries;
   const Vec3 normal = frame_h.R * half_space.normal;
-  const Frame world = frame_p * polyhedron.placement;
+  const Frame world = polyhedron.in(frame_p);
   points.clear();
   for (const Vec3& v : polyhedron.core->vertices()) {
     const Vec3 point = world * v;

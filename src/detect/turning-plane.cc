@@ -135,7 +135,7 @@ bool can_turn(const MovingBody& side, const ConvexPart& part) {
 double turning_time_apart(const MovingBody& a, const ConvexPart& part_a, const MovingBody& b,
                           const ConvexPart& part_b, const Separation& s, double allowance) {
   if (!(s.distance > 0)) return 0;
-  const Frame frame_a = a.frame * part_a.placement, frame_b = b.frame * part_b.placement;
+  const Frame frame_a = part_a.in(a.frame), frame_b = part_b.in(b.frame);
   const double depth =
       near_distances * s.distance + near_share * (part_a.bound_radius + part_b.bound_radius);
   const Facing on_a = facing(frame_a, part_a, s.normal, s.normal.dot(s.point_a), depth);

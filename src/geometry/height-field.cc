@@ -132,7 +132,7 @@ ConvexPart HeightField::make_part(std::size_t number) const {
 
   ConvexPart part;
   part.kind = PartKind::polyhedron;
-  part.placement.p = middle;
+  part.place({Mat3::Identity(), middle});
   part.core = std::make_shared<const Polyhedron>(std::move(vertices), faces);
   part.bound_center = middle + part.core->center();
   part.bound_radius = part.core->radius();

@@ -25,10 +25,19 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Unions of more parts than these have a tree.
 constexpr std::size_t few_parts = 32;
 
+}  // namespace
+
+void ConvexPart::place(const Frame& placement) {
+  placement_ = placement;
+  is_placed_ = placement.p != Vec3::Zero() || placement.R != Mat3::Identity();
+}
+
+namespace {
+
 // The vertices' box in the frame, exact for boxes by half edges, else over all vertices.
 Aabb polyhedron_bounds(const ConvexPart& part, const Frame& frame) {
   Aabb box;
-  const Frame world = frame * part.placement;
+  const Frame world = part.in(frame);
   if (part.is_box) {
     // a box reaches sum_j |R_ij| h_j along axis i
     const Vec3 reach = world.R.cwiseAbs() * part.half_edges;
@@ -58,7 +67,7 @@ Aabb half_space_bounds(const ConvexPart& part, const Frame& frame) {
 
 // Either end of a frustum reaches +-h a_i + r sqrt(1 - a_i^2) along axis i, a its own axis.
 Aabb frustum_bounds(const ConvexPart& part, const Frame& frame) {
-  const Frame world = frame * part.placement;
+  const Frame world = part.in(frame);
   Vec3 up, down;
   for (int i = 0; i < 3; ++i) {
     const double along = part.half_length * world.R(i, 2);
@@ -75,7 +84,7 @@ Aabb frustum_bounds(const ConvexPart& part, const Frame& frame) {
 
 // An ellipsoid reaches |A R^T e_i| along axis i.
 Aabb ellipsoid_bounds(const ConvexPart& part, const Frame& frame) {
-  const Frame world = frame * part.placement;
+  const Frame world = part.in(frame);
   const Vec3 reach = (world.R * part.semi_axes.asDiagonal()).rowwise().norm();
   Aabb box;
   box.add(world.p - reach);
@@ -85,19 +94,20 @@ Aabb ellipsoid_bounds(const ConvexPart& part, const Frame& frame) {
 
 double radius_about_origin_of(const ConvexPart& part) {
   if (part.kind == PartKind::half_space) return infinity;
-  if (part.kind == PartKind::sphere) return part.placement.p.norm() + part.radius;
-  if (part.kind == PartKind::ellipsoid) return part.placement.p.norm() + part.semi_axes.maxCoeff();
+  if (part.kind == PartKind::sphere) return part.placement().p.norm() + part.radius;
+  if (part.kind == PartKind::ellipsoid)
+    return part.placement().p.norm() + part.semi_axes.maxCoeff();
   if (part.kind == PartKind::frustum) {
     // the farthest point of the rims
-    const double along = part.placement.p.dot(part.placement.R.col(2));
-    const double across = (part.placement.p - along * part.placement.R.col(2)).norm();
+    const double along = part.placement().p.dot(part.placement().R.col(2));
+    const double across = (part.placement().p - along * part.placement().R.col(2)).norm();
     return std::max(std::hypot(along + part.half_length, across + part.top_radius),
                     std::hypot(along - part.half_length, across + part.radius)) +
            part.margin;
   }
   double radius = 0;
   for (const Vec3& v : part.core->vertices())
-    radius = std::max(radius, (part.placement * v).norm());
+    radius = std::max(radius, (part.placement() * v).norm());
   return radius;
 }
 
@@ -106,20 +116,21 @@ double radius_about_line_of(const ConvexPart& part, const Vec3& direction) {
   const auto off = [&](const Vec3& p) { return p.cross(direction).norm(); };
   if (part.kind == PartKind::polyhedron) {
     double radius = 0;
-    for (const Vec3& v : part.core->vertices()) radius = std::max(radius, off(part.placement * v));
+    for (const Vec3& v : part.core->vertices())
+      radius = std::max(radius, off(part.placement() * v));
     return radius;
   }
-  const Vec3 p = part.placement.p;
+  const Vec3 p = part.placement().p;
   if (part.kind == PartKind::ellipsoid) {
     // |A R^T u| over the unit vectors u square to the line
     const Mat3 square = Mat3::Identity() - direction * direction.transpose();
-    const Mat3 reach = square * part.placement.R * part.semi_axes.asDiagonal();
+    const Mat3 reach = square * part.placement().R * part.semi_axes.asDiagonal();
     return off(p) + std::sqrt(Eigen::SelfAdjointEigenSolver<Mat3>(reach * reach.transpose(),
                                                                   Eigen::EigenvaluesOnly)
                                   .eigenvalues()
                                   .maxCoeff());
   }
-  const Vec3 cap = part.half_length * part.placement.R.col(2);
+  const Vec3 cap = part.half_length * part.placement().R.col(2);
   const double bottom = part.kind == PartKind::frustum ? part.radius : 0;
   const double top = part.kind == PartKind::frustum ? part.top_radius : 0;
   const double margin = part.kind == PartKind::sphere ? part.radius : part.margin;
@@ -172,7 +183,7 @@ Aabb part_bounds(const ConvexPart& part, const Frame& frame) {
     case PartKind::sphere: break;
   }
   Aabb box;
-  box.add(frame * part.placement.p);
+  box.add(frame * part.placement().p);
   box.grow(part.radius);
   return box;
 }
@@ -198,9 +209,11 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
   if (shape->parts_.size() > 1)
     for (const ConvexPart& part : shape->parts_)
       if (part.kind != PartKind::half_space)
-        shape->thickness_ = std::min(
-            shape->thickness_,
-            part_bounds(part, Frame(part.placement.R.transpose(), Vec3::Zero())).size().minCoeff());
+        shape->thickness_ =
+            std::min(shape->thickness_,
+                     part_bounds(part, Frame(part.placement().R.transpose(), Vec3::Zero()))
+                         .size()
+                         .minCoeff());
   TW_REQUIRE(!shape->bounded_ || (shape->least_width_ >= least_length &&
                                   shape->radius_about_origin_ <= 4 * greatest_length),
              "a " + shape->kind_name_ + " is " + show(shape->least_width_) +
@@ -276,8 +289,8 @@ ShapePtr make_cone(double radius, double height) {
   require_length("the radius of a cone", radius);
   require_length("the height of a cone", height);
   ConvexPart part = frustum_part(radius, 0, height, 0);
-  part.placement.p.z() = 0.25 * height;
-  part.bound_center = part.placement.p;
+  part.bound_center.z() = 0.25 * height;
+  part.place({Mat3::Identity(), part.bound_center});
   return finish_shape({part}, "cone", cone_mass(radius, height));
 }
 
@@ -393,7 +406,7 @@ ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {
   const Frame move(Pose{pose.p, pose.q.normalized()});
   std::vector<ConvexPart> parts = shape->parts();
   for (ConvexPart& part : parts) {
-    part.placement = move * part.placement;
+    part.place(move * part.placement());
     part.bound_center = move * part.bound_center;
     if (part.kind != PartKind::half_space) continue;
     // n.(R^T (x - p)) <= offset

@@ -32,7 +32,6 @@ enum class PartKind { sphere, polyhedron, half_space, frustum, ellipsoid };
 // One convex part, placed in the frame of the shape.
 struct ConvexPart {
   PartKind kind = PartKind::sphere;
-  Frame placement;                         // part frame in the shape's frame
   double radius = 0;                       // sphere: its radius; frustum: at -half_length
   double top_radius = 0;                   // frustum: at +half_length
   double half_length = 0;                  // frustum: along z of the part's frame, to either side
@@ -46,6 +45,16 @@ struct ConvexPart {
   double bound_radius = 0;
   bool is_box = false;  // a box keeps its half edges for drawing
   Vec3 half_edges = Vec3::Zero();
+
+  // The part's frame in the shape's.
+  const Frame& placement() const { return placement_; }
+  void place(const Frame& placement);
+  // The part's frame where its shape's is this one; most lie in their shapes as they are.
+  Frame in(const Frame& shape) const { return is_placed_ ? shape * placement_ : shape; }
+
+ private:
+  Frame placement_;
+  bool is_placed_ = false;  // by more than nothing
 };
 
 // Volume integrals at density 1.  Frames: the shape's own; inertia about the centroid.

@@ -45,7 +45,7 @@ void flatten(ManifoldPoint& p, const PlacedBody& reference, const Body& body_b) 
   const ConvexPart& part = part_at(p, *reference.body, body_b);
   if (part.kind != PartKind::polyhedron) return;
   for (const Polyhedron::Face& face : part.core->faces()) {
-    const Vec3 normal = reference.frame.R * (part.placement.R * face.normal);
+    const Vec3 normal = reference.frame.R * (part.placement().R * face.normal);
     if (normal.dot(p.normal) < 1 - 0.5 * answer::flat_angle * answer::flat_angle) continue;
     p.kind =
         p.kind == ContactFeature::curved ? ContactFeature::tangent_plane : ContactFeature::plane;

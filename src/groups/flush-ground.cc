@@ -17,7 +17,7 @@ bool is_parallel(const Vec3& a, const Vec3& b) { return a.dot(b) > seam::same_no
 // Whether a face of the part lies in the plane.
 bool has_face_in(const StandingPlane& plane, const PlacedPart& ground, double size) {
   const ConvexPart& part = ground.part;
-  const Frame world = ground.frame * part.placement;
+  const Frame world = part.in(ground.frame);
   const Vec3 normal = world.R.transpose() * plane.normal;
   const double height = plane.height - plane.normal.dot(world.p);
   const auto& faces = part.core->faces();
@@ -29,7 +29,7 @@ bool has_face_in(const StandingPlane& plane, const PlacedPart& ground, double si
 // The least of direction.x over the part, m.
 double lowest_along(const Vec3& direction, const PlacedPart& p) {
   if (p.part.kind == PartKind::half_space) return -never;
-  const Frame world = p.frame * p.part.placement;
+  const Frame world = p.part.in(p.frame);
   if (p.part.kind == PartKind::sphere) return direction.dot(world.p) - p.part.radius;
   const SupportCore core(p.part, world);
   return direction.dot(core.support(-direction)) - core.margin;

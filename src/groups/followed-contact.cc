@@ -21,7 +21,7 @@ Followed circle(const Vec3& center, const Vec3& axis, double radius, double marg
 }
 
 Followed ellipsoid(const ConvexPart& part) {
-  return {part.placement.R * part.semi_axes.asDiagonal(), part.placement.p, 0};
+  return {part.placement().R * part.semi_axes.asDiagonal(), part.placement().p, 0};
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     return add_height_field(body, record);
   }
   for (const ConvexPart& part : body.shape->parts()) {
-    record.placement = part.placement;
+    record.placement = part.placement();
     record.color << color.cast<float>(), gloss_of(body.fixed, has_grain(part, body));
     if (has_grain(part, body)) ++grainy_parts_;
     add_part(part, body, record);

@@ -110,7 +110,7 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
     return most;
   }
   for (const ConvexPart& part : shape_->parts()) {
-    const Frame fa = a * part.placement, fb = b * part.placement;
+    const Frame fa = part.in(a), fb = part.in(b);
     if (part.kind == PartKind::sphere)
       most = std::max(most, ball_displacement(fb.p - fa.p, turn, part.radius));
     else if (part.kind != PartKind::polyhedron)

@@ -25,7 +25,7 @@ std::string obj_text(const DescribedBody& body) {
     const Polyhedron& core = *part.core;
     text += "o part-" + std::to_string(before) + "\n";
     for (const Vec3& vertex : core.vertices()) {
-      const Vec3 x = part.placement * vertex;
+      const Vec3 x = part.placement() * vertex;
       text += "v " + show(x.x()) + " " + show(x.y()) + " " + show(x.z()) + "\n";
     }
     for (const Polyhedron::Face& face : core.faces()) {

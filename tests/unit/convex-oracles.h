@@ -75,7 +75,7 @@ struct WorldFeatures {
 
   WorldFeatures(const ConvexPart& part, const Frame& frame) {
     const Polyhedron& core = *part.core;
-    const Frame world = frame * part.placement;
+    const Frame world = part.in(frame);
     for (const Vec3& v : core.vertices()) vertices.push_back(world * v);
     for (const auto& e : core.edges())
       edges.emplace_back(world * core.vertex(e.tail), world * core.vertex(e.head));

@@ -106,7 +106,7 @@ TEST(HeightField, joined_cells_cover_the_ground_once) {
           std::vector<std::size_t> under;
           field.tree().overlapping(line, [&](std::size_t number) {
             const ConvexPart& part = field.part(number);
-            const Vec3 below = Vec3(x, y, z - 1e-6) - part.placement.p;
+            const Vec3 below = Vec3(x, y, z - 1e-6) - part.placement().p;
             int face;
             if (part.core->face_separation(below, face) <= 0) under.push_back(number);
           });
@@ -234,9 +234,9 @@ TEST(PartTree, finds_no_part_of_a_field_twice) {
 // One part as a shape.
 ShapePtr alone(const ConvexPart& part) {
   if (part.kind == PartKind::sphere)
-    return place_shape(make_sphere(part.radius), {part.placement.p, Quat::Identity()});
+    return place_shape(make_sphere(part.radius), {part.placement().p, Quat::Identity()});
   std::vector<Vec3> corners;
-  for (const Vec3& v : part.core->vertices()) corners.push_back(part.placement * v);
+  for (const Vec3& v : part.core->vertices()) corners.push_back(part.placement() * v);
   return make_hull(corners);
 }
 

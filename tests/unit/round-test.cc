@@ -15,7 +15,7 @@ namespace {
 
 SupportCore placed(const ShapePtr& shape, const Frame& frame) {
   const ConvexPart& part = shape->parts()[0];
-  return SupportCore(part, frame * part.placement);
+  return SupportCore(part, part.in(frame));
 }
 
 Separation parts(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Frame& frame_b) {
@@ -49,7 +49,7 @@ double slab(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, const Fr
 // How far the point lies outside a core: positive outside.
 double outside(const ShapePtr& shape, const Frame& frame, const Vec3& point) {
   const ConvexPart& part = shape->parts()[0];
-  const Vec3 local = (frame * part.placement).to_local(point);
+  const Vec3 local = part.in(frame).to_local(point);
   if (part.kind == PartKind::frustum) return nearest_on_frustum(part, local).distance;
   if (part.kind == PartKind::ellipsoid) return nearest_on_ellipsoid(part.semi_axes, local).distance;
   int face = 0;
@@ -69,7 +69,7 @@ TEST(Cylinder, mass_is_that_of_the_closed_form_and_of_a_fine_prism) {
 // A hull of points all over the surface.
 ShapePtr fine_hull(const ShapePtr& shape) {
   const ConvexPart& part = shape->parts()[0];
-  const SupportCore core(part, part.placement);
+  const SupportCore core(part, part.placement());
   std::vector<Vec3> points;
   constexpr int rings = 60, around = 60;
   for (int i = 0; i <= rings; ++i)
@@ -106,7 +106,7 @@ TEST(Round, bounds_and_radii_hold_the_surface_and_no_more) {
       const Pose pose{random_vector(random, 1), random_rotation(random)};
       const ShapePtr moved = place_shape(shape, pose);
       const ConvexPart& part = moved->parts()[0];
-      const SupportCore core(part, part.placement);
+      const SupportCore core(part, part.placement());
       const Vec3 line = random_direction(random);
       const Aabb box = moved->bounds(Frame());
       for (int axis = 0; axis < 3; ++axis)

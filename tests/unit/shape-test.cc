@@ -85,7 +85,7 @@ TEST(Shape, placing_twice_is_placing_by_the_product) {
   const ShapePtr rock = random_rock(random, 12, {1, 1, 1});
   const ConvexPart twice = place_shape(place_shape(rock, first), second)->parts()[0];
   const ConvexPart once = place_shape(rock, second * first)->parts()[0];
-  EXPECT_NEAR((twice.placement.R - once.placement.R).norm(), 0, 1e-15);
+  EXPECT_NEAR((twice.placement().R - once.placement().R).norm(), 0, 1e-15);
   EXPECT_NEAR((twice.bound_center - once.bound_center).norm(), 0, 1e-15);
   // the core is shared, not copied
   EXPECT_EQ(twice.core, rock->parts()[0].core);

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/constants.h"
 #include "collision/ellipsoid-point.h"
@@ -31,7 +32,7 @@ Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
     const double height = normal.dot(point - q.frame.p) - part.offset;
     return {height > 0 ? Vec3(point - height * normal) : point, height, normal};
   }
-  const Frame world = q.frame * part.placement;
+  const Frame world = part.in(q.frame);
   if (part.kind == PartKind::sphere) {
     const Vec3 out = point - world.p;
     const double length = out.norm();
@@ -50,12 +51,11 @@ Nearest nearest_of(const SeamNeighbour& q, const Vec3& point) {
   return nearest(nearest_to_point(*part.core, world.to_local(point)));
 }
 
-// Whether a face plane of a polyhedron proves that the point is farther from it than this.
-bool surely_apart(const SeamNeighbour& q, const Vec3& point, double distance) {
-  if (q.part->kind != PartKind::polyhedron) return false;
+// How far outside a face plane of a polyhedron the point is at most, m; of others nothing.
+double beyond_planes(const SeamNeighbour& q, const Vec3& point) {
+  if (q.part->kind != PartKind::polyhedron) return -std::numeric_limits<double>::infinity();
   int face = 0;
-  const Vec3 local = q.part->placement.to_local(q.frame.to_local(point));
-  return q.part->core->face_separation(local, face) > distance;
+  return q.part->core->face_separation(q.part->in(q.frame).to_local(point), face);
 }
 
 // Of the part's surface where it is round, m, or `most`: of an ellipsoid's ends and of what is
@@ -69,27 +69,34 @@ double sharpest_radius(const ConvexPart& part, double most) {
   return part.margin > 0 ? std::min(most, part.margin) : most;
 }
 
-// Whether a neighbour that holds the point has no such normal there.  Where round parts meet flush,
-// as a cylinder and a ball of its radius, the one is over the other by r turn^2/2 before their
-// normals differ by `turn`: it is its own surface there, however near the other is.
-bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbour>& neighbours,
-            double size, double angle) {
+// Whether a neighbour that holds the point has no such normal there, by more than angle() (rad;
+// asked where one holds it).  Where round parts meet flush, as a cylinder and a ball of its radius,
+// the one is over the other by r turn^2/2 before their normals differ by `turn`: it is its own
+// surface there, however near the other is.
+template <class Angle>
+bool denied_beyond(const Angle& angle, const Vec3& point, const Vec3& normal,
+                   const std::vector<SeamNeighbour>& neighbours, double size) {
   for (const SeamNeighbour& q : neighbours) {
     const Vec3 center = q.frame * q.part->bound_center;
     const double near = q.part->bound_radius + seam::same_point * size;
     if ((center - point).squaredNorm() > near * near) continue;
-    if (surely_apart(q, point, seam::same_point * size)) continue;
+    if (beyond_planes(q, point) > seam::same_point * size) continue;
     const Nearest here = nearest_of(q, point);
     if (here.distance > seam::same_point * size) continue;
     if (here.distance < -seam::same_point * size) return true;
     const Nearest foot = nearest_of(q, point + seam::probe * size * normal);
     const double over = std::max(here.distance, 0.0);
     const double turn =
-        angle + seam::flush_turn * std::sqrt(over / sharpest_radius(*q.part, 0.5 * size));
+        angle() + seam::flush_turn * std::sqrt(over / sharpest_radius(*q.part, 0.5 * size));
     const double allowed = turn * seam::probe * size + std::abs(here.distance);
     if ((foot.point - here.point).norm() > allowed) return true;
   }
   return false;
+}
+
+bool denied(const Vec3& point, const Vec3& normal, const std::vector<SeamNeighbour>& neighbours,
+            double size, double angle) {
+  return denied_beyond([angle] { return angle; }, point, normal, neighbours, size);
 }
 
 // The number of the face with this normal (part's frame), or -1.
@@ -164,28 +171,45 @@ double height_over(const SeamNeighbour& part, const Vec3& point) {
   return nearest_of(part, point).distance;
 }
 
+bool holds(const SeamNeighbour& part, const Vec3& point, double depth) {
+  // inside a polyhedron the nearest face plane says so, and outside one that it is far beyond
+  if (part.part->kind == PartKind::polyhedron) {
+    const double out = beyond_planes(part, point);
+    if (out > std::max(-depth, 0.0) * (1 + 1e-9)) return false;
+    if (out <= std::min(-depth, 0.0)) return true;
+  }
+  return height_over(part, point) <= -depth;
+}
+
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
                  const std::vector<SeamNeighbour>& neighbours, double size, double angle,
                  double depth) {
+  if (neighbours.empty()) return false;
   if (part.kind != PartKind::polyhedron)
     return denied(point, normal, neighbours, size, angle) &&
            !comes_out_beside(part, frame, point, normal, neighbours, size, angle);
-  const Frame world = frame * part.placement;
+  const Frame world = part.in(frame);
   const Polyhedron& core = *part.core;
   const int number = face_with(core, world.R.transpose() * normal);
   if (number < 0) {
     // a corner that is higher than others of its part has not this normal itself: what denies it no
     // more than the part does, as one whose face lies in the same plane, does not bury it
     const SeamNeighbour self{&part, frame};
-    const Vec3 here = nearest_of(self, point).point;
-    const Vec3 foot = nearest_of(self, point + seam::probe * size * normal).point;
-    angle += (foot - here).norm() / (seam::probe * size);
-    if (!denied(point, normal, neighbours, size, angle)) return false;
+    double more = -1;  // as far as the part itself turns from it
+    const auto own_angle = [&] {
+      if (more < 0) {
+        const Vec3 here = nearest_of(self, point).point;
+        const Vec3 foot = nearest_of(self, point + seam::probe * size * normal).point;
+        more = (foot - here).norm() / (seam::probe * size);
+      }
+      return angle + more;
+    };
+    if (!denied_beyond(own_angle, point, normal, neighbours, size)) return false;
     // along an edge that dives into a neighbour the two make a valley: what presses there is a
     // little way inside both
     for (const Vec3& beside :
          along_edges(core, world.to_local(point), world.R.transpose() * normal, size))
-      if (!denied(world * beside, normal, neighbours, size, angle)) return false;
+      if (!denied_beyond(own_angle, world * beside, normal, neighbours, size)) return false;
     return true;
   }
   // far inside a face: bodies don't sink so deep that it could be an inner wall

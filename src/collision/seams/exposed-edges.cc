@@ -37,7 +37,7 @@ Stretch held_by(const SeamNeighbour& q, const Vec3& tail, const Vec3& head, doub
     return held;
   }
   if (q.part->kind != PartKind::polyhedron) return {1, 0};
-  const Frame place = q.frame * q.part->placement;
+  const Frame place = q.part->in(q.frame);
   const Vec3 from = place.to_local(tail), to = place.to_local(head);
   for (const Polyhedron::Face& face : q.part->core->faces()) {
     cut(held, {face.normal.dot(from) - face.offset, face.normal.dot(to) - face.offset}, margin);

@@ -66,8 +66,8 @@ void round_at_edges(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>&
   // that may bury an edge
   if (side.shape.tree()) return;
   const Polyhedron& core = *part.core;
-  const Frame world = side.frame * part.placement;
-  const SupportCore support(round, (of_a ? seam.b : seam.a).frame * round.placement);
+  const Frame world = part.in(side.frame);
+  const SupportCore support(round, round.in((of_a ? seam.b : seam.a).frame));
   // as deep as bodies may be, and as far beyond the end of an edge as that allows
   const double farthest = support.size() + support.margin +
                           std::max(seam.reach, (1 + seam::beyond_end) * seam::sunk * seam.size);

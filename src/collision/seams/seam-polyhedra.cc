@@ -89,7 +89,7 @@ struct Exposure {
       const SeamNeighbour& q = neighbours[i];
       if (q.part->kind != PartKind::polyhedron) continue;
       const Polyhedron& core = *q.part->core;
-      const Frame place = q.frame * q.part->placement;
+      const Frame place = q.part->in(q.frame);
       const Vec3 local = place.to_local(here);
       for (const Polyhedron::Face& face : core.faces()) {
         const double under = face.offset - face.normal.dot(local);

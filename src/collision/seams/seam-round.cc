@@ -31,7 +31,7 @@ void keep_exposed(const SeamPair& seam, bool on_a, std::size_t from,
 // Whether the part of a (or of b) or a neighbour of it holds a point of the other body.
 bool holds(const SeamPair& seam, bool of_a, const Vec3& point) {
   const auto held_by = [&](const SeamNeighbour& q) {
-    return height_over(q, point) <= seam::same_point * seam.size;
+    return tw::holds(q, point, -seam::same_point * seam.size);
   };
   const std::vector<SeamNeighbour>& others = seam.neighbours(of_a);
   return held_by({of_a ? &seam.first() : &seam.second(), (of_a ? seam.a : seam.b).frame}) ||
@@ -47,8 +47,8 @@ void add_in_valleys(const SeamPair& seam, bool of_a, std::size_t from,
   const ConvexPart& round = of_a ? seam.second() : seam.first();
   if (part.kind != PartKind::polyhedron || !side.has_seams) return;
   const Polyhedron& core = *part.core;
-  const Frame world = side.frame * part.placement;
-  const SupportCore support(round, round_side.frame * round.placement);
+  const Frame world = part.in(side.frame);
+  const SupportCore support(round, round.in(round_side.frame));
   const Vec3 middle = world.to_local(support.center());
   const double same_place = seam::buried_margin * seam.size;
   const auto is_known = [&](const Vec3& point, double gap) {
@@ -111,8 +111,8 @@ void add_shrunk(const SeamPair& seam, bool of_a, std::vector<ManifoldPoint>& out
   const ConvexPart& second = seam.second();
   const std::size_t from = out.size();
   for (double factor : seam::shrinking) {
-    SupportCore core_a(first, seam.a.frame * first.placement);
-    SupportCore core_b(second, seam.b.frame * second.placement);
+    SupportCore core_a(first, first.in(seam.a.frame));
+    SupportCore core_b(second, second.in(seam.b.frame));
     SupportCore& scaled = of_a ? core_b : core_a;
     const Vec3 center = scaled.center();
     std::optional<Polyhedron> smaller;

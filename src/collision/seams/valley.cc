@@ -21,7 +21,7 @@ bool hold(const std::vector<SeamNeighbour>& neighbours, const Vec3& place, doubl
     const double farthest = q.part->bound_radius - depth;
     return (q.frame * q.part->bound_center - place).squaredNorm() <=
                farthest * farthest * (1 + 1e-9) &&
-           height_over(q, place) <= -depth;
+           holds(q, place, depth);
   });
 }
 
