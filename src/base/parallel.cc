@@ -76,7 +76,7 @@ class SignalsBlocked {
 
 // A loop while it is shared.
 struct Shared {
-  const std::size_t items, grain;
+  const std::size_t items, grain, threads;
   const Team::Item item;
   void* const loop;
   const Shared* const outer = at_item_of;  // whose item it is a loop of
@@ -86,8 +86,8 @@ struct Shared {
   WorkCount helped;
   std::exception_ptr error;
 
-  Shared(std::size_t all, std::size_t at_a_time, Team::Item of, void* whose)
-      : items(all), grain(at_a_time), item(of), loop(whose) {}
+  Shared(std::size_t all, std::size_t at_a_time, std::size_t by, Team::Item of, void* whose)
+      : items(all), grain(at_a_time), threads(by), item(of), loop(whose) {}
   bool has_items() const { return next.load(std::memory_order_relaxed) < items; }
   bool is_within(const Shared& other) const {
     const Shared* at = outer;
@@ -101,10 +101,19 @@ struct Shared {
   }
 
  private:
+  // Fewer and fewer towards the end, so that all are done with it together.
+  std::size_t at_a_time() const {
+    constexpr std::size_t turns = 4;
+    const std::size_t left = items - std::min(items, next.load(std::memory_order_relaxed));
+    return std::clamp<std::size_t>(left / (turns * threads), 1, grain);
+  }
   void do_items() {
     try {
-      for (std::size_t i; (i = next.fetch_add(grain, std::memory_order_relaxed)) < items;)
-        for (std::size_t k = i; k < std::min(items, i + grain); ++k) item(loop, k);
+      while (has_items()) {
+        const std::size_t count = at_a_time();
+        const std::size_t first = next.fetch_add(count, std::memory_order_relaxed);
+        for (std::size_t k = first; k < std::min(items, first + count); ++k) item(loop, k);
+      }
     } catch (...) {
       next.store(items, std::memory_order_relaxed);
       const Locked locked(lock);
@@ -235,7 +244,7 @@ Team::Scope::~Scope() { team_of_thread = outer_; }
 
 void Team::run(std::size_t items, std::size_t grain, Item item, void* loop) {
   if (!pool_) pool_ = std::make_unique<Pool>(*this);
-  Shared shared(items, grain, item, loop);
+  Shared shared(items, grain, static_cast<std::size_t>(threads_), item, loop);
   pool_->run(shared);
   work_count.add(shared.helped);
   if (shared.error) std::rethrow_exception(shared.error);

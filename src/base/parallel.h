@@ -45,7 +45,7 @@ class Team {
   static Team* current();
 
   using Item = void (*)(void* loop, std::size_t item);
-  // Items at a time: `grain` at least.
+  // At most `grain` items at a time.
   void run(std::size_t items, std::size_t grain, Item item, void* loop);
 
  private:

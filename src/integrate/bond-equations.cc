@@ -22,7 +22,7 @@ constexpr int theta_at = 3, v_at = 6, L_at = 9;
 void BondEquations::slope(double time, const double* y, const double* chart, double* slope) const {
   for (int i = 0; i < system_.members(); ++i) system_.set_attitude(i, quat(chart + 4 * i));
   GroupScratch& scratch = system_.scratch();
-  system_.set_outside(time, scratch.bodies);
+  system_.set_outside(time, scratch);
   system_.evaluate(time, y, scratch, slope);
 }
 
@@ -121,7 +121,7 @@ bool swings_widely(const GroupStart& start, const GroupSystem& system, GroupScra
   const double h = 1e-3 / fastest;
   std::vector<double> later(system.size());
   for (std::size_t e = 0; e < system.size(); ++e) later[e] = y[e] + h * slope[e];
-  system.set_outside(time, scratch.bodies);
+  system.set_outside(time, scratch);
   system.evaluate(time, later.data(), scratch, other);
   const Stretching now(system, y, slope), then(system, later.data(), other);
   double shortest = never;

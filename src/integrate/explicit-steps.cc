@@ -42,7 +42,7 @@ void GroupStepper::start_alone() {
 bool GroupStepper::swings_here() {
   GroupScratch& s = system_.scratch();
   const double time = record_.reached();
-  system_.set_outside(time, s.bodies);
+  system_.set_outside(time, s);
   record_.load_last(system_, s.state.data());
   system_.linearise(time, s.state.data(), s, s.slope.data());
   counts_.evaluations += 2;

@@ -134,7 +134,7 @@ void GroupArc::Data::set_slot(int slot, double time, BodyKinematics& body) const
 }
 
 void GroupArc::Data::set_bodies(double time, GroupScratch& s) const {
-  system.set_outside(time, s.bodies);
+  system.set_outside(time, s);
   for (int i = 0; i < system.members(); ++i)
     set_slot(i, time, s.bodies[static_cast<std::size_t>(i)]);
 }
@@ -233,6 +233,15 @@ void GroupArc::pose_rates(int member, double time, Vec3& dx, Vec3& w) const {
   const GroupSample sample = evaluate(member, time);
   dx = sample.v;
   w = sample.w;
+}
+
+PoseTwist GroupArc::path_at(int member, double time) const {
+  if (!data_->joints_of(member) && data_->has_steps())
+    return data_->record.path_at(member, data_->at(time));
+  PoseTwist point;
+  pose(member, time, point.x, point.q);
+  pose_rates(member, time, point.v, point.w);
+  return point;
 }
 
 MotionBounds GroupArc::bounds(int member, double from, double to) const {

@@ -213,6 +213,8 @@ class GroupArc : public Counted<GroupArc> {
   // Rates of the pose's interpolant itself, continuous in time (differ from v and w by the
   // integration error, and at the ends of steps by rounding): for bounds.
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
+  // Both, cheaper than one by one.
+  PoseTwist path_at(int member, double time) const;
   MotionBounds bounds(int member, double from, double to) const;
   // As Trajectory's.
   double turn_change_across(const Vec3& n, int member, double from, double to,

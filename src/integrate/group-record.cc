@@ -269,6 +269,21 @@ void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {
   w = angular_velocity(vec(turn.value(r)), vec(lanes(rate) * turn.rate(r)));
 }
 
+PoseTwist GroupRecord::path_at(int member, double t) const {
+  const auto [i, r] = place(t);
+  if (!(r > 0)) {
+    // at a node: the rates are those of the step that ends there
+    const Pose there = pose(member, t);
+    const Twist rates = this->rates(member, t);
+    return {there.p, there.q, rates.v, rates.w};
+  }
+  const Cubic way = path(i, member), turn = rotation(i, member);
+  const Lanes rate = lanes(1 / length(i));
+  const Vec3 theta = vec(turn.value(r));
+  return {vec(way.value(r)), short_rotation(theta) * quat(member_node(i, member) + q_at),
+          vec(rate * way.rate(r)), angular_velocity(theta, vec(rate * turn.rate(r)))};
+}
+
 void GroupRecord::add_step_bounds(int i, int member, double from, double to,
                                   MotionBounds& bounds) const {
   const double r0 = fraction(i, from), r1 = fraction(i, to), rate = 1 / length(i);

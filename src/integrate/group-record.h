@@ -74,6 +74,8 @@ class GroupRecord {
     q = attitude(member, at);
     velocities(member, at, v, L);
   }
+  // Pose and rates by one look-up of the step; the same bits.
+  PoseTwist path_at(int member, double time) const;
   Twist rates(int member, double time) const {
     Twist rates;
     pose_rates(member, time, rates.v, rates.w);

@@ -296,7 +296,7 @@ bool GroupStepper::implicit_step() {
   GroupScratch& s = system_.scratch();
   const double time = record_.reached(), left = start_.end - time;
   // outside bodies that do not move
-  system_.set_outside(time, s.bodies);
+  system_.set_outside(time, s);
   record_.load_last(system_, s.state.data());
   load_joints(s);
   system_.linearise(time, s.state.data(), s, s.slope.data());

@@ -119,9 +119,10 @@ PoseTwist GroupSystem::point_of(int member, const double* y, const BodyKinematic
   return {vec(from), short_rotation(vec(from + 3)) * attitude(member), vec(from + 6), vec(body.w)};
 }
 
-void GroupSystem::set_outside(double time, std::vector<BodyKinematics>& bodies) const {
-  std::copy(outside_at_start_.begin(), outside_at_start_.end(), bodies.begin() + members_);
-  set_moving(time, bodies);
+void GroupSystem::set_outside(double time, GroupScratch& s) const {
+  std::copy(outside_at_start_.begin(), outside_at_start_.end(), s.bodies.begin() + members_);
+  s.moving_at = -never;
+  set_moving(time, s);
 }
 
 void GroupSystem::set_outside_slot(int slot, double time, BodyKinematics& body) const {
@@ -131,26 +132,34 @@ void GroupSystem::set_outside_slot(int slot, double time, BodyKinematics& body) 
     body = outside_at_start_[index(slot - members_)];
 }
 
-void GroupSystem::set_moving(double time, std::vector<BodyKinematics>& bodies) const {
-  for (const int slot : moving_slots_) place_outside(slot, time, bodies[index(slot)]);
+void GroupSystem::set_moving(double time, GroupScratch& s) const {
+  if (s.moving_at == time) return;
+  for (const int slot : moving_slots_) place_outside(slot, time, s.bodies[index(slot)]);
+  s.moving_at = time;
 }
 
 void GroupSystem::place_outside(int slot, double time, BodyKinematics& body) const {
   // the arc ends before a corner at its end: velocities from the left there
   const double inside = time < end_ ? time : std::nextafter(end_, end_ - 1);
   const Trajectory& trajectory = *outside_[index(slot - members_)];
-  const Pose pose = trajectory.pose(time);
-  const Twist rates = trajectory.twist(inside);
-  vec(body.x) = pose.p;
-  vec(body.v) = rates.v;
-  vec(body.w) = rates.w;
-  store_rotation(pose.q.toRotationMatrix(), body.R);
+  PoseTwist there;
+  if (inside == time) {
+    there = trajectory.path_at(time);
+  } else {
+    const Pose pose = trajectory.pose(time);
+    const Twist rates = trajectory.twist(inside);
+    there = {pose.p, pose.q, rates.v, rates.w};
+  }
+  vec(body.x) = there.x;
+  vec(body.v) = there.v;
+  vec(body.w) = there.w;
+  store_rotation(there.q.toRotationMatrix(), body.R);
 }
 
 template <bool with_derivative>
 void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, double* slope) const {
   // bodies
-  set_moving(time, s.bodies);
+  set_moving(time, s);
   for (int i = 0; i < members_; ++i) {
     const double* from = y + 12 * i;
     double* to = slope + 12 * i;

@@ -34,6 +34,7 @@ struct GroupScratch {
   std::vector<PackLinear> linear;      // by pack
   std::vector<double> right_side;      // the unknowns; at least one a member
   std::vector<double> state, slope, time_slope, trial, stage[6];
+  double moving_at = -never;  // s: where the outside bodies that move stand
 };
 
 class GroupSystem {
@@ -103,7 +104,7 @@ class GroupSystem {
   // Kinematics of slots at one instant from poses and momenta.
   void set_member(int member, const Vec3& x, const Quat& q, const Vec3& v, const Vec3& L,
                   BodyKinematics& out) const;
-  void set_outside(double time, std::vector<BodyKinematics>& bodies) const;
+  void set_outside(double time, GroupScratch& scratch) const;
   void set_outside_slot(int slot, double time, BodyKinematics& body) const;
 
  private:
@@ -136,8 +137,9 @@ class GroupSystem {
   void difference_slopes(double time, double step, const double* y, const double* slope,
                          GroupScratch& scratch, double* time_slope) const;
   void place_outside(int slot, double time, BodyKinematics& body) const;
-  // Outside bodies that move; the others are where set_outside put them.
-  void set_moving(double time, std::vector<BodyKinematics>& bodies) const;
+  // Outside bodies that move, where they do not stand there since set_outside, or since an
+  // evaluation after it; the others are where set_outside put them.
+  void set_moving(double time, GroupScratch& scratch) const;
   LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
   // Parts of a stage (group-stage.cc).
   void eliminate_body(const Member& member, const double* right, BodyChange& change) const;

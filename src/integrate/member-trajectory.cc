@@ -3,6 +3,7 @@
 #include "integrate/member-trajectory.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "integrate/group-arc.h"
 #include "integrate/group-record.h"
@@ -28,6 +29,8 @@ PoseTwist MemberTrajectory::at(double time) const {
   const GroupSample s = arc_->evaluate(member_, time);
   return {s.x, s.q, s.v, s.w};
 }
+
+PoseTwist MemberTrajectory::path_at(double time) const { return arc_->path_at(member_, time); }
 
 MotionBounds MemberTrajectory::bounds(double from, double to) const {
   MotionBounds bounds = arc_->bounds(member_, from, to);
@@ -85,6 +88,11 @@ class Excerpt final : public Trajectory {
   Twist twist(double time) const override {
     if (!has_steps()) return {start_.v, start_.w};
     return record_.rates(part_, at_most(time));
+  }
+  PoseTwist path_at(double time) const override {
+    if constexpr (std::is_same_v<Record, GroupRecord>)
+      if (has_steps()) return record_.path_at(part_, at_most(time));
+    return joined(time);
   }
   MotionBounds bounds(double from, double to) const override {
     if (!has_steps()) return standing_bounds(start_.x, start_.v, start_.w);

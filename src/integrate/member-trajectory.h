@@ -18,6 +18,7 @@ class MemberTrajectory final : public Trajectory {
   Vec3 center(double time) const override;
   Twist twist(double time) const override;
   PoseTwist at(double time) const override;
+  PoseTwist path_at(double time) const override;
   MotionBounds bounds(double from, double to) const override;
   double turn_change_across(const Vec3& n, double from, double to,
                             const MotionBounds& known) const override;

@@ -146,9 +146,9 @@ class Trajectory {
     return path ? path->position(time) : pose(time).p;
   }
   // The pose and its own rates: what `bounds` are about.
-  PoseTwist path_at(double time) const { return stepped() ? joined(time) : at(time); }
+  virtual PoseTwist path_at(double time) const { return stepped() ? joined(time) : at(time); }
 
- private:
+ protected:
   PoseTwist joined(double time) const {
     const Pose there = pose(time);
     const Twist rates = twist(time);
