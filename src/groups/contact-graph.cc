@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 #include "base/constants.h"
 #include "base/parallel.h"
@@ -157,10 +158,8 @@ double reach_of(const PairBefore& old) {
   return reach;
 }
 
-// The planes of the ground on which the one of the two that moves stands; none where both move.
-std::vector<StandingPlane> planes_under(const Regrouping& work, const Body& a, const Body& b) {
-  if (a.dynamic() == b.dynamic()) return {};
-  const Body& mover = a.dynamic() ? a : b;
+// The planes of the ground on which it stands.
+std::vector<StandingPlane> planes_under(const Regrouping& work, const Body& mover) {
   const Successor* successor = work.successor_of(mover.id());
   if (!successor || !successor->data.group) return {};
   const Group& group = *successor->data.group;
@@ -199,10 +198,21 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
   return before.dot(fresh) < -0.5;
 }
 
+// What a body is among: the fixed bodies, and the planes of the ground that the one of a pair which
+// moves stands on, once a pair asks for them.
+struct Footing {
+  Ground ground;
+  std::optional<std::vector<StandingPlane>> planes = std::nullopt;
+
+  void find_planes(const Regrouping& work, const Body& a, const Body& b) {
+    if (!planes && a.dynamic() != b.dynamic()) planes = planes_under(work, a.dynamic() ? a : b);
+  }
+};
+
 // Two bodies that are to be looked at, and what was found: a pair with its contacts from 0 on.
 struct Look {
   const PlacedBody *a, *b;
-  const Ground* ground = nullptr;  // the fixed bodies around the one that moves
+  const Footing* footing = nullptr;
   enum class Found : std::uint8_t { nothing, contact, as_before } found = Found::nothing;
   ContactPair pair;
   std::vector<NewContact> contacts;
@@ -220,7 +230,7 @@ enum class Wanted : std::uint8_t {
 void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
   const bool must = wants == Wanted::always;
   const PlacedBody &a = *look.a, &b = *look.b;
-  const Ground& ground = *look.ground;
+  const Ground& ground = look.footing->ground;
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const std::uint64_t id = pair_id(body_a.id(), body_b.id());
@@ -251,7 +261,8 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
       *body_a.shape_P, a.frame, near.seam_neighbours(body_a, ground), *body_b.shape_P, b.frame,
       near.seam_neighbours(body_b, ground), search_distance, size, points, choice);
   const bool buried =
-      drop_low_sides(planes_under(work, body_a, body_b), body_a, a.frame, body_b, b.frame, points);
+      body_a.dynamic() != body_b.dynamic() &&
+      drop_low_sides(*look.footing->planes, body_a, a.frame, body_b, b.frame, points);
   for (ManifoldPoint& p : points) flatten(p, p.reference_is_a ? a : b, body_b);
   // it stays on the side that it came from
   if (before && is_pushed_through(points, *before, a, scales.law, work.now())) {
@@ -351,8 +362,7 @@ Collision fusion_of(const Regrouping& work, const ContactPair& pair) {
 }  // namespace
 
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
-  std::vector<Ground> grounds;  // of each, as long as somebody looks
-  grounds.reserve(looked_at.size());
+  std::deque<Footing> footings;  // of each, as long as somebody looks
   const Partners partners = partners_before(work);
   std::vector<Look> looks;
   std::deque<PlacedBody> places;  // of those looked at together
@@ -362,13 +372,16 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
     const Body& body = *here.body;
     if (!body.shape_P) continue;
     const PlacedBody& mine = together ? places.emplace_back(here) : here;
-    const Ground& ground =
-        grounds.emplace_back(work.surroundings.ground_around(body, {mine.frame}));
+    Footing& footing =
+        footings.emplace_back(Footing{work.surroundings.ground_around(body, {mine.frame})});
     for (const BodyId other : candidates_of(work, body, looked_at, partners)) {
       const PlacedBody there = work.placed(other);
       const PlacedBody& theirs = together ? places.emplace_back(there) : there;
       const bool straight = body.id() < other;
-      Look pair{straight ? &mine : &theirs, straight ? &theirs : &mine, &ground, {}, {}, {}, 0};
+      // (what does not move itself has another one that does in each pair)
+      Footing& among = body.dynamic() ? footing : footings.emplace_back(Footing{footing.ground});
+      among.find_planes(work, body, *theirs.body);
+      Look pair{straight ? &mine : &theirs, straight ? &theirs : &mine, &among, {}, {}, {}, 0};
       if (together) {
         looks.push_back(std::move(pair));
         continue;
@@ -391,8 +404,9 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
 void fuse(Regrouping& work, double interval) {
   const auto meet = [&](const PlacedBody& a, const PlacedBody& b, Wanted wanted) {
     const PlacedBody& mover = a.body->dynamic() ? a : b;
-    const Ground ground = work.surroundings.ground_around(*mover.body, {mover.frame});
-    Look pair{&a, &b, &ground, {}, {}, {}, 0};
+    Footing footing{work.surroundings.ground_around(*mover.body, {mover.frame})};
+    footing.find_planes(work, *a.body, *b.body);
+    Look pair{&a, &b, &footing, {}, {}, {}, 0};
     look(work, pair, interval, wanted);
     if (pair.found == Look::Found::contact) ++work.tally.fusions;
     take(work, pair);
