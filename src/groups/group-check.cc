@@ -9,7 +9,8 @@
 
 namespace tw {
 
-std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>& group) {
+std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>& group,
+                              Groups* parts) {
   const Scene& scene = before.scene();
   const Key& key = before.key();
   Groups groups{group};
@@ -26,7 +27,8 @@ std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>
       const Group* owner = owner_of(a, b).get();
       if (!owner || !owner->find(pair.id)) continue;
       for (const State* state : {&a, &b}) {
-        if (!state->group || state->error || state->group->next_check != group->next_check)
+        if (!state->group || state->group == groups[i] || state->error ||
+            state->group->next_check != group->next_check)
           continue;
         if (group_check_key(*state->group, key.time).microstep != key.microstep) continue;
         add_once(groups, state->group);
@@ -34,6 +36,7 @@ std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>
     }
   }
   std::sort(all.begin(), all.end());
+  if (parts) *parts = std::move(groups);
   return all;
 }
 

@@ -14,8 +14,9 @@
 namespace tw {
 
 // All that hangs together with the group and is checked at the same time: the parts of a group that
-// impacts have divided; ascending.
-std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>& group);
+// impacts have divided; ascending.  `parts`: the groups that these are; null: nobody asks.
+std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>& group,
+                              Groups* parts = nullptr);
 
 // The members whose arcs end at the key's time, before the check of their group; ascending.
 std::vector<ProcessId> early_members(const Before& before, const Group& group);

@@ -3,6 +3,7 @@
 #include "kernel/group-events.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "base/constants.h"
 #include "base/parallel.h"
@@ -171,35 +172,25 @@ std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
   return group;
 }
 
-// What its check at that time (s) comes to, and the arcs of its groups up to their ends, if it can
-// be said now; else null.  Several threads may ask at once.
-std::unique_ptr<Decision> GroupEvents::decide_ahead(const std::shared_ptr<Group>& group,
-                                                    double when) const {
-  auto decision = std::make_unique<Decision>();
-  Key& key = decision->key = group_check_key(*group, when);
-  std::vector<ProcessId>& all = decision->concerned;
-  do {
-    if (!all.empty()) key.id = number(all.front());
-    all = family(sim_.before(key, &decision->log), group);
-    if (all.empty()) return nullptr;
-  } while (key.id != number(all.front()));
+// What the check of those concerned comes to, and the arcs of their groups up to their ends; false:
+// it can't be said now.  Several threads may ask at once.
+bool GroupEvents::decide_ahead(Decision& decision) const {
+  const Key& key = decision.key;
   const Known is_known = [&](ProcessId member) { return may_be_read(member, sim_.before(key)); };
-  // each family once, by the group that its first one is in: others still name it if it left them
-  if (sim_.before(key, &decision->log).state(all.front()).group != group ||
-      !std::all_of(all.begin(), all.end(), is_known))
-    return nullptr;
+  const std::vector<ProcessId>& all = decision.concerned;
+  if (!std::all_of(all.begin(), all.end(), is_known)) return false;
   Decided decided =
-      decide(sim_.before(key, &decision->log), all, Cause::check, is_known, decision->counters);
+      decide(sim_.before(key, &decision.log), all, Cause::check, is_known, decision.counters);
   Regrouped* regrouped = std::get_if<Regrouped>(&decided);
-  if (!regrouped) return nullptr;
-  decision->successors = std::move(regrouped->successors);
+  if (!regrouped) return false;
+  decision.successors = std::move(regrouped->successors);
   // (what is redone is compared as it enters, untested)
-  for (const Successor& successor : decision->successors)
+  for (const Successor& successor : decision.successors)
     if (const auto& made = successor.data.group;
         made && made->key == key && !sim_.options.undo_redo)
-      test_end(sim_.scene, sim_.surroundings, *made, decision->counters);
-  decision->log.close(sim_.graph);
-  return decision;
+      test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
+  decision.log.close(sim_.graph);
+  return true;
 }
 
 // The groups whose checks are due at the queue's first instant, the largest first: who else decides
@@ -219,18 +210,39 @@ Groups GroupEvents::due_groups(double when) const {
   return groups;
 }
 
+// The families whose checks are due then, each with whom it concerns: each once, for what impacts
+// have divided are many groups, and each of them leads to all.
+std::vector<std::unique_ptr<Decision>> GroupEvents::due_families(double when) const {
+  std::vector<std::unique_ptr<Decision>> families;
+  std::unordered_set<const Group*> known;
+  for (const std::shared_ptr<Group>& group : due_groups(when)) {
+    if (known.contains(group.get())) continue;
+    auto decision = std::make_unique<Decision>();
+    Key& key = decision->key = group_check_key(*group, when);
+    std::vector<ProcessId>& all = decision->concerned;
+    Groups parts;
+    do {
+      if (!all.empty()) key.id = number(all.front());
+      all = family(sim_.before(key, &decision->log), group, &parts);
+    } while (!all.empty() && key.id != number(all.front()));
+    for (const std::shared_ptr<Group>& part : parts) known.insert(part.get());
+    if (!all.empty()) families.push_back(std::move(decision));
+  }
+  return families;
+}
+
 // Checks of one instant hardly ever concern each other: they are decided side by side, each as if
 // it were the first; what has to do with another one after all is decided anew by its event.
 void GroupEvents::decide_instant(double when) {
   if (decided_at_ == when || !Team::current()) return;
-  const Groups groups = due_groups(when);
+  std::vector<std::unique_ptr<Decision>> decisions = due_families(when);
   // (a single one in between, an early end, forgets nothing)
-  if (groups.size() < 2) return;
+  if (decisions.size() < 2) return;
   decided_at_ = when;
   ahead_.forget_before(sim_.present.gvt);
-  std::vector<std::unique_ptr<Decision>> decisions(groups.size());
-  each_in_parallel(groups.size(), 1,
-                   [&](std::size_t i) { decisions[i] = decide_ahead(groups[i], when); });
+  each_in_parallel(decisions.size(), 1, [&](std::size_t i) {
+    if (!decide_ahead(*decisions[i])) decisions[i].reset();
+  });
   counters_.checks_decided_ahead += ahead_.add(std::move(decisions));
 }
 

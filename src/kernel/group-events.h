@@ -67,9 +67,10 @@ class GroupEvents {
                  const Known& is_known, GroupCounters& counters) const;
   std::vector<ProcessId> concerned(const Before& before, const std::shared_ptr<Group>& group) const;
   void decide_instant(double when);
+  std::vector<std::unique_ptr<Decision>> due_families(double when) const;
   Groups due_groups(double when) const;
   std::shared_ptr<Group> checked_by(const Event& event) const;
-  std::unique_ptr<Decision> decide_ahead(const std::shared_ptr<Group>& group, double when) const;
+  bool decide_ahead(Decision& decision) const;
   bool may_be_read(ProcessId id, const Before& before) const;
   Progress stop_driven(ProcessId id);
   Region region_struck(std::span<const BodyId> bodies, const Before& before) const;
