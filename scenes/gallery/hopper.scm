@@ -25,16 +25,21 @@
                                        (vector hole 0 lip-height))))))
  (iota 4))
 
+;; a stone that keeps within its cell, however it lies
+(define cell-size 0.26)
+(define (stone)
+  (let ((shape (rock #:size 0.18 #:random-state random-state)))
+    (if (<= (shape-radius shape) (/ cell-size 2)) shape (stone))))
+
 ;; layers of sixteen in the hopper
 (for-each
  (lambda (index)
-   (let ((layer (quotient index 16)) (cell (modulo index 16)) (size 0.18))
+   (let ((layer (quotient index 16)) (cell (modulo index 16)))
      (add-body! #:name (format #f "grain-~a" index)
-                #:shape (case (modulo index 3)
-                          ((0) (box 0.15 0.15 0.15))
-                          (else (rock #:size size #:random-state random-state)))
-                #:position (vector (* 0.26 (- (modulo cell 4) 1.5)) (* 0.26 (- (quotient cell 4) 1.5))
-                                   (+ lip-height 0.9 (* 0.26 layer))))))
+                #:shape (if (zero? (modulo index 3)) (box 0.15 0.15 0.15) (stone))
+                #:position (vector (* cell-size (- (modulo cell 4) 1.5))
+                                   (* cell-size (- (quotient cell 4) 1.5))
+                                   (+ lip-height 0.9 (* cell-size layer))))))
  (iota bodies))
 
 (camera #:eye #(2.1 -6 2.6) #:target #(0 0 1.75) #:fov 0.9)
