@@ -218,7 +218,7 @@ struct Bench {
     scratch.wrenches.resize(slots);
     scratch.linear.resize(static_cast<std::size_t>(system.packs()));
     scratch.right_side.resize(6 * start.members.size());
-    system.set_outside(start.time, scratch.bodies);
+    system.set_outside(start.time, scratch);
     y.resize(static_cast<Eigen::Index>(system.size()));
     y.setZero();
     Eigen::Index at = 0;
