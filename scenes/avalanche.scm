@@ -181,9 +181,9 @@
            (angle (uniform 0 (* 4 (acos 0)) rock-state)))
       (list (+ x (* a r (cos angle))) (+ y (* b r (sin angle)))))))
 
-;; a height of its centre at which a ball above (x, y) clears all triangles near it
-(define bowl-triangles                     ; those within 2 m of the bowl, each after its sides:
-  (match-let (((x y a b) bowl))            ; (least x, greatest x, least y, greatest y . triangle)
+;; the triangles within 2 m of the bowl: (least x, greatest x, least y, greatest y . triangle)
+(define bowl-triangles
+  (match-let (((x y a b) bowl))
     (filter-map
      (lambda (triangle)
        (let* ((xs (map x-of triangle)) (west (apply min xs)) (east (apply max xs))
@@ -191,6 +191,7 @@
          (and (<= (- west a 2) x (+ east a 2)) (<= (- south b 2) y (+ north b 2))
               (cons* west east south north triangle))))
      triangles)))
+;; a height of its centre at which a ball above (x, y) in the bowl clears all triangles near it
 (define (height-over x y radius)
   (fold (lambda (bounded height)
           (match bounded

@@ -86,8 +86,8 @@ struct Shared {
   WorkCount helped;
   std::exception_ptr error;
 
-  Shared(std::size_t all, std::size_t at_a_time, std::size_t by, Team::Item of, void* whose)
-      : items(all), grain(at_a_time), threads(by), item(of), loop(whose) {}
+  Shared(std::size_t all, std::size_t most, std::size_t by, Team::Item of, void* whose)
+      : items(all), grain(most), threads(by), item(of), loop(whose) {}
   bool has_items() const { return next.load(std::memory_order_relaxed) < items; }
   bool is_within(const Shared& other) const {
     const Shared* at = outer;

@@ -198,21 +198,21 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
   return before.dot(fresh) < -0.5;
 }
 
-// What a body is among: the fixed bodies, and the planes of the ground that the one of a pair which
-// moves stands on, once a pair asks for them.
+// What is about a dynamic body: the fixed bodies, and the planes of the ground that it stands on,
+// once one that is not dynamic is met.
 struct Footing {
   Ground ground;
   std::optional<std::vector<StandingPlane>> planes = std::nullopt;
 
-  void find_planes(const Regrouping& work, const Body& a, const Body& b) {
-    if (!planes && a.dynamic() != b.dynamic()) planes = planes_under(work, a.dynamic() ? a : b);
+  void meet(const Regrouping& work, const Body& mover, const Body& other) {
+    if (!planes && !other.dynamic()) planes = planes_under(work, mover);
   }
 };
 
 // Two bodies that are to be looked at, and what was found: a pair with its contacts from 0 on.
 struct Look {
   const PlacedBody *a, *b;
-  const Footing* footing = nullptr;
+  const Footing* footing = nullptr;  // of the one that moves
   enum class Found : std::uint8_t { nothing, contact, as_before } found = Found::nothing;
   ContactPair pair;
   std::vector<NewContact> contacts;
@@ -362,7 +362,8 @@ Collision fusion_of(const Regrouping& work, const ContactPair& pair) {
 }  // namespace
 
 void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double interval) {
-  std::deque<Footing> footings;  // of each, as long as somebody looks
+  std::vector<Footing> footings;  // of each, as long as somebody looks
+  footings.reserve(looked_at.size());
   const Partners partners = partners_before(work);
   std::vector<Look> looks;
   std::deque<PlacedBody> places;  // of those looked at together
@@ -371,6 +372,7 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
     const PlacedBody here = placed(*work.successor_of(process));
     const Body& body = *here.body;
     if (!body.shape_P) continue;
+    TW_ASSERT(body.dynamic(), body.info.name + " has a new arc and is not dynamic");
     const PlacedBody& mine = together ? places.emplace_back(here) : here;
     Footing& footing =
         footings.emplace_back(Footing{work.surroundings.ground_around(body, {mine.frame})});
@@ -378,10 +380,8 @@ void refresh(Regrouping& work, const std::vector<ProcessId>& looked_at, double i
       const PlacedBody there = work.placed(other);
       const PlacedBody& theirs = together ? places.emplace_back(there) : there;
       const bool straight = body.id() < other;
-      // (what does not move itself has another one that does in each pair)
-      Footing& among = body.dynamic() ? footing : footings.emplace_back(Footing{footing.ground});
-      among.find_planes(work, body, *theirs.body);
-      Look pair{straight ? &mine : &theirs, straight ? &theirs : &mine, &among, {}, {}, {}, 0};
+      footing.meet(work, body, *theirs.body);
+      Look pair{straight ? &mine : &theirs, straight ? &theirs : &mine, &footing, {}, {}, {}, 0};
       if (together) {
         looks.push_back(std::move(pair));
         continue;
@@ -405,7 +405,7 @@ void fuse(Regrouping& work, double interval) {
   const auto meet = [&](const PlacedBody& a, const PlacedBody& b, Wanted wanted) {
     const PlacedBody& mover = a.body->dynamic() ? a : b;
     Footing footing{work.surroundings.ground_around(*mover.body, {mover.frame})};
-    footing.find_planes(work, *a.body, *b.body);
+    footing.meet(work, *mover.body, *(&mover == &a ? b : a).body);
     Look pair{&a, &b, &footing, {}, {}, {}, 0};
     look(work, pair, interval, wanted);
     if (pair.found == Look::Found::contact) ++work.tally.fusions;

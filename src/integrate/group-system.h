@@ -18,6 +18,7 @@
 
 #include <span>
 
+#include "base/never.h"
 #include "integrate/body-matrix.h"
 #include "integrate/contact-linear.h"
 #include "integrate/coupled-matrix.h"

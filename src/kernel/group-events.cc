@@ -214,9 +214,9 @@ Groups GroupEvents::due_groups(double when) const {
 // have divided are many groups, and each of them leads to all.
 std::vector<std::unique_ptr<Decision>> GroupEvents::due_families(double when) const {
   std::vector<std::unique_ptr<Decision>> families;
-  std::unordered_set<const Group*> known;
+  std::unordered_set<const Group*> done;
   for (const std::shared_ptr<Group>& group : due_groups(when)) {
-    if (known.contains(group.get())) continue;
+    if (done.contains(group.get())) continue;
     auto decision = std::make_unique<Decision>();
     Key& key = decision->key = group_check_key(*group, when);
     std::vector<ProcessId>& all = decision->concerned;
@@ -225,7 +225,7 @@ std::vector<std::unique_ptr<Decision>> GroupEvents::due_families(double when) co
       if (!all.empty()) key.id = number(all.front());
       all = family(sim_.before(key, &decision->log), group, &parts);
     } while (!all.empty() && key.id != number(all.front()));
-    for (const std::shared_ptr<Group>& part : parts) known.insert(part.get());
+    for (const std::shared_ptr<Group>& part : parts) done.insert(part.get());
     if (!all.empty()) families.push_back(std::move(decision));
   }
   return families;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/random.h"
+#include "collision/manifold-parts.h"
 #include "collision/separation.h"
 #include "convex-oracles.h"
 #include "seam-ground.h"
@@ -53,6 +54,31 @@ TEST(Seams, a_box_sunk_into_a_tiled_floor_feels_one_plane) {
           ASSERT_NEAR(support.size().x(), edges.x(), 1.01 * depth) << x + corner;
           ASSERT_NEAR(support.size().y(), edges.y(), 1e-12);
         }
+}
+
+// What is asked of face planes first is what the distance says.
+TEST(Seams, a_part_holds_what_is_as_deep_in_it_as_its_surface_is_far) {
+  Random random(38);
+  const ShapePtr shapes[] = {
+      make_box({0.4, 0.3, 0.2}), random_rock(random, 14, {0.5, 0.4, 0.3}), make_sphere(0.2),
+      make_cylinder(0.2, 0.3),
+      place_shape(make_box({0.2, 0.2, 0.2}), {Vec3(0.1, 0, 0.05), random_rotation(random)})};
+  int held = 0, beside = 0;
+  for (const ShapePtr& shape : shapes)
+    for (int i = 0; i < 4000; ++i) {
+      const SeamNeighbour part{&shape->part(0),
+                               Frame({random_vector(random, 1), random_rotation(random)})};
+      const Vec3 point = part.frame * random_vector(random, 0.3);
+      const double height = height_over(part, point);
+      for (const double depth : {0.0, 0.01, -0.01, -height, -0.99 * height, -1.01 * height}) {
+        const bool holding = holds(part, point, depth);
+        ASSERT_EQ(holding, height <= -depth) << depth << " " << height;
+        held += holding;
+        beside += holding && height > 0;
+      }
+    }
+  EXPECT_GT(held, 10000);
+  EXPECT_GT(beside, 1000);
 }
 
 TEST(Seams, a_tilted_box_is_carried_at_its_deepest_corner) {

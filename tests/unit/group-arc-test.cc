@@ -149,6 +149,10 @@ TEST(GroupArc, motion_of_a_member_has_the_bits_of_the_arc_and_outlives_it) {
       EXPECT_EQ(motion->pose(time).q.coeffs(), q.coeffs());
       EXPECT_EQ(rates.v, v_arc);
       EXPECT_EQ(rates.w, w_arc);
+      for (const PoseTwist& both : {motion->path_at(time), whole.path_at(1, time)}) {
+        EXPECT_TRUE(same_bits(both.x, x) && same_bits(both.q.coeffs(), q.coeffs()));
+        EXPECT_TRUE(same_bits(both.v, v_arc) && same_bits(both.w, w_arc));
+      }
       const double later = std::min(to, time + 0.1 * (to - seen));
       const MotionBounds bounds = whole.bounds(1, time, later);
       const MotionBounds known = motion->bounds(time, later);
