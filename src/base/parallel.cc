@@ -22,10 +22,9 @@
 namespace tw {
 namespace {
 
-struct Shared;
 thread_local Team* team_of_thread = nullptr;
 // Whose item this thread is at; null: nobody's.
-thread_local const Shared* at_item_of = nullptr;
+thread_local const SharedLoop* at_item_of = nullptr;
 
 void pause_a_little() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -74,28 +73,35 @@ class SignalsBlocked {
   sigset_t before_;
 };
 
+}  // namespace
+
 // A loop while it is shared.
-struct Shared {
+struct SharedLoop {
   const std::size_t items, grain, threads;
   const Team::Item item;
   void* const loop;
-  const Shared* const outer = at_item_of;  // whose item it is a loop of
+  const SharedLoop* const outer = at_item_of;  // whose item it is a loop of
   std::atomic<std::size_t> next{0};
   std::atomic<int> helping{0};
   SpinLock lock;  // of what follows
   WorkCount helped;
   std::exception_ptr error;
 
-  Shared(std::size_t all, std::size_t most, std::size_t by, Team::Item of, void* whose)
+  SharedLoop(std::size_t all, std::size_t most, std::size_t by, Team::Item of, void* whose)
       : items(all), grain(most), threads(by), item(of), loop(whose) {}
   bool has_items() const { return next.load(std::memory_order_relaxed) < items; }
-  bool is_within(const Shared& other) const {
-    const Shared* at = outer;
+  // Whether all items were taken and are done.
+  bool is_over() const {
+    return next.load(std::memory_order_acquire) >= items &&
+           helping.load(std::memory_order_acquire) == 0;
+  }
+  bool is_within(const SharedLoop& other) const {
+    const SharedLoop* at = outer;
     while (at && at != &other) at = at->outer;
     return at;
   }
   void work() {
-    const Shared* const before = std::exchange(at_item_of, this);
+    const SharedLoop* const before = std::exchange(at_item_of, this);
     do_items();
     at_item_of = before;
   }
@@ -111,7 +117,7 @@ struct Shared {
     try {
       while (has_items()) {
         const std::size_t count = at_a_time();
-        const std::size_t first = next.fetch_add(count, std::memory_order_relaxed);
+        const std::size_t first = next.fetch_add(count, std::memory_order_release);
         for (std::size_t k = first; k < std::min(items, first + count); ++k) item(loop, k);
       }
     } catch (...) {
@@ -121,8 +127,6 @@ struct Shared {
     }
   }
 };
-
-}  // namespace
 
 // Helpers look for loops that have items left.  Between two loops of a run there are some hundred
 // microseconds, and to be woken takes a helper half as long: so it looks on for a while before it
@@ -144,20 +148,29 @@ class Team::Pool {
 
   // The caller takes items of this loop alone and of those within it, for it may be in the midst of
   // an item of another.
-  void run(Shared& shared) {
+  void run(SharedLoop& shared) {
+    open(shared);
+    shared.work();
+    close(shared);
+  }
+
+  void open(SharedLoop& shared) {
     {
       const Locked locked(lock_);
       open_.push_back(&shared);
     }
     published_.fetch_add(1);
     if (asleep_.load() > 0) published_.notify_all();
-    shared.work();
+  }
+
+  // Nobody begins with an item from here on, and those that were begun are done.
+  void close(SharedLoop& shared) {
     {
       const Locked locked(lock_);
       std::erase(open_, &shared);
     }
     for (int looks = 0; shared.helping.load(std::memory_order_acquire) > 0; ++looks)
-      if (Shared* inner = looks % looks_between == 0 ? join(&shared) : nullptr)
+      if (SharedLoop* inner = looks % looks_between == 0 ? join(&shared) : nullptr)
         help_with(*inner);
       else
         looks < 4096 ? pause_a_little() : std::this_thread::yield();
@@ -167,9 +180,9 @@ class Team::Pool {
   static constexpr int looks_between = 16;
 
   // One with items left, within `outer` if that is given; null: there is none.
-  Shared* join(const Shared* outer = nullptr) {
+  SharedLoop* join(const SharedLoop* outer = nullptr) {
     const Locked locked(lock_);
-    for (Shared* shared : open_)
+    for (SharedLoop* shared : open_)
       if (shared->has_items() && (!outer || shared->is_within(*outer))) {
         shared->helping.fetch_add(1, std::memory_order_relaxed);
         return shared;
@@ -181,7 +194,7 @@ class Team::Pool {
     const Scope scope(&team);
     while (!stop_) {
       const std::uint32_t seen = published_.load();
-      if (Shared* shared = join())
+      if (SharedLoop* shared = join())
         help_with(*shared, thread_cpu_seconds());
       else
         await_other_than(seen);
@@ -190,7 +203,7 @@ class Team::Pool {
 
   // What is done counts for who called the loop; the time, too, of a helper that has nothing else
   // to do and began then.
-  static void help_with(Shared& shared, double begun = never) {
+  static void help_with(SharedLoop& shared, double begun = never) {
     const WorkCount before = work_count;
     shared.work();
     WorkCount done = work_count.since(before);
@@ -219,7 +232,7 @@ class Team::Pool {
 
   const double patience_;  // s
   SpinLock lock_;          // of open_
-  std::vector<Shared*> open_;
+  std::vector<SharedLoop*> open_;
   std::atomic<std::uint32_t> published_{0};  // loops so far
   std::atomic<int> asleep_{0};
   std::atomic<bool> stop_{false};
@@ -242,12 +255,36 @@ Team::Scope::Scope(Team* team) : outer_(team_of_thread) {
 }
 Team::Scope::~Scope() { team_of_thread = outer_; }
 
-void Team::run(std::size_t items, std::size_t grain, Item item, void* loop) {
+Team::Pool& Team::pool() {
   if (!pool_) pool_ = std::make_unique<Pool>(*this);
-  Shared shared(items, grain, static_cast<std::size_t>(threads_), item, loop);
-  pool_->run(shared);
+  return *pool_;
+}
+
+void Team::run(std::size_t items, std::size_t grain, Item item, void* loop) {
+  SharedLoop shared(items, grain, static_cast<std::size_t>(threads_), item, loop);
+  pool().run(shared);
   work_count.add(shared.helped);
   if (shared.error) std::rethrow_exception(shared.error);
+}
+
+Beside::Beside(Team& team, std::function<void()> work) : team_(team), work_(std::move(work)) {
+  const auto item = [](void* loop, std::size_t) { static_cast<Beside*>(loop)->work_(); };
+  shared_ =
+      std::make_unique<SharedLoop>(1, 1, static_cast<std::size_t>(team.threads()), item, this);
+  team_.pool().open(*shared_);
+}
+
+Beside::~Beside() { finish(); }
+
+bool Beside::is_over() const { return !shared_ || shared_->is_over(); }
+
+bool Beside::finish() {
+  if (!shared_) return was_done_;
+  team_.pool().close(*shared_);
+  work_count.add(shared_->helped);
+  was_done_ = !shared_->has_items() && !shared_->error;
+  shared_.reset();
+  return was_done_;
 }
 
 }  // namespace tw

@@ -1,4 +1,4 @@
-// Loops over independent items, on several threads where that pays.
+// Loops over independent items, on several threads where that pays, and work beside them.
 //
 // An item writes to its own slot alone and reads what no other item writes; whatever else follows
 // is done afterwards by the caller, in the order of the items.  So the result is that of an
@@ -11,10 +11,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <type_traits>
 
 namespace tw {
+
+class Beside;
+struct SharedLoop;  // while it is shared
 
 // Threads that share loops: the caller's and helpers, which come with the first loop and sleep
 // while there is nothing to do.
@@ -49,9 +53,33 @@ class Team {
   void run(std::size_t items, std::size_t grain, Item item, void* loop);
 
  private:
+  friend Beside;
   class Pool;
+  Pool& pool();
   int threads_;
   std::unique_ptr<Pool> pool_;
+};
+
+// Work that is done beside the caller's if a helper has time for it before the caller wants it,
+// else not begun.  What it throws is lost, and then it was not done.
+class Beside {
+ public:
+  // Until finish() nobody changes what `work` reads, or reads what it writes.
+  Beside(Team& team, std::function<void()> work);
+  ~Beside();
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+
+  // Waits for it if it has begun, else takes it back.  Whether it was done.
+  bool finish();
+  // Whether finish() need not wait.
+  bool is_over() const;
+
+ private:
+  Team& team_;
+  std::function<void()> work_;
+  std::unique_ptr<SharedLoop> shared_;
+  bool was_done_ = false;
 };
 
 // Calls item(i) for each i < items, once.  `grain`: so many items are worth a helper, 10 us of work

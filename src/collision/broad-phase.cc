@@ -23,11 +23,8 @@ void BroadPhase::remove(std::uint32_t id) {
   ++version_;
 }
 
-const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
-  Zone& zone = zones_[id];
-  const Aabb& box = moving_.box(id);
-  if (zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi))
-    return zone;
+void BroadPhase::set_zone(Zone& zone, const Aabb& box) const {
+  if (holds(zone, box)) return;
   zone.version = version_;
   zone.box = box;
   zone.box.grow(cost::zone_margin * box.size().maxCoeff());
@@ -35,7 +32,6 @@ const BroadPhase::Zone& BroadPhase::zone_of(std::uint32_t id) const {
   standing_.overlapping(zone.box, [&](std::uint32_t other) {
     zone.neighbours.push_back({standing_.box(other), other});
   });
-  return zone;
 }
 
 }  // namespace tw

@@ -8,7 +8,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "collision/spatial-hash.h"
@@ -27,7 +29,7 @@ class BroadPhase {
   }
 
   // Calls visit(other) once for each other box that overlaps (closed boxes) that of `id`.  The
-  // visit must not place boxes.  Queries may go on at once if no two are for the same `id`.
+  // visit must not place boxes.  Queries may go on at once.
   template <class Visit>
   void overlapping(std::uint32_t id, Visit&& visit) const {
     if (!moving_.contains(id)) {
@@ -36,18 +38,24 @@ class BroadPhase {
       return;
     }
     moving_.overlapping(id, visit);
-    standing_in(moving_.box(id), id, visit);
+    if (standing_.size() == 0) return;
+    const Aabb& box = moving_.box(id);
+    Zone& zone = zones_[id];
+    const ZoneLock lock(zone);
+    if (!lock.is_held()) return standing_.overlapping(box, visit);
+    set_zone(zone, box);
+    visit_zone(zone, box, visit);
   }
-  // The standing ones alone that overlap any box; faster where that lies around the moving box
-  // `id`.
+  // The standing ones alone that overlap any box; faster where that lies around where the moving
+  // box `id` was when it was last asked for.  May go on beside any query, and while moving boxes
+  // are placed.
   template <class Visit>
   void standing_in(const Aabb& box, std::uint32_t id, Visit&& visit) const {
     if (standing_.size() == 0) return;
-    const Zone& zone = zone_of(id);
-    if (!zone.box.contains(box.lo) || !zone.box.contains(box.hi))
-      return standing_.overlapping(box, visit);
-    for (const Neighbour& other : zone.neighbours)
-      if (other.box.overlaps(box)) visit(other.id);
+    Zone& zone = zones_[id];
+    const ZoneLock lock(zone);
+    if (!lock.is_held() || !holds(zone, box)) return standing_.overlapping(box, visit);
+    visit_zone(zone, box, visit);
   }
 
   std::size_t size() const { return moving_.size() + standing_.size(); }
@@ -63,8 +71,36 @@ class BroadPhase {
     Aabb box;
     std::uint64_t version = 0;  // of the standing boxes
     std::vector<Neighbour> neighbours;
+    std::atomic_flag in_use;
+
+    Zone() = default;
+    Zone(Zone&& other) noexcept
+        : box(other.box), version(other.version), neighbours(std::move(other.neighbours)) {}
   };
-  const Zone& zone_of(std::uint32_t id) const;
+  // Whoever finds a zone in use does without.
+  class ZoneLock {
+   public:
+    explicit ZoneLock(Zone& zone)
+        : zone_(zone.in_use.test_and_set(std::memory_order_acquire) ? nullptr : &zone) {}
+    ~ZoneLock() {
+      if (zone_) zone_->in_use.clear(std::memory_order_release);
+    }
+    ZoneLock(const ZoneLock&) = delete;
+    ZoneLock& operator=(const ZoneLock&) = delete;
+    bool is_held() const { return zone_; }
+
+   private:
+    Zone* zone_;
+  };
+  bool holds(const Zone& zone, const Aabb& box) const {
+    return zone.version == version_ && zone.box.contains(box.lo) && zone.box.contains(box.hi);
+  }
+  void set_zone(Zone& zone, const Aabb& box) const;
+  template <class Visit>
+  static void visit_zone(const Zone& zone, const Aabb& box, Visit&& visit) {
+    for (const Neighbour& other : zone.neighbours)
+      if (other.box.overlaps(box)) visit(other.id);
+  }
 
   SpatialHash moving_, standing_;
   std::uint64_t version_ = 1;

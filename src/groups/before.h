@@ -29,16 +29,19 @@ const std::shared_ptr<Group>& owner_of(const Body& body_a, const State& a, const
 
 class Before {
  public:
-  // `log`: notes whose states are read; may be null.
-  Before(const Scene& scene, const StateGraph& graph, const Key& key, ReadLog* log = nullptr)
-      : scene_(scene), graph_(graph), key_(key), log_(log) {}
+  // `log`: notes what states are read; may be null.  Of all states that have entered, or of the
+  // first `entered` ones.
+  Before(const Scene& scene, const StateGraph& graph, const Key& key, ReadLog* log = nullptr,
+         std::uint64_t entered = ~std::uint64_t{0})
+      : scene_(scene), graph_(graph), key_(key), log_(log), entered_(entered) {}
 
   const Scene& scene() const { return scene_; }
   const Key& key() const { return key_; }
   // The last state below the key; one there must be.
   const State& state(ProcessId process) const {
-    if (log_) log_->note(process);
-    return *graph_.last_before(process, key_);
+    const State& state = *graph_.last_before(process, key_, entered_);
+    if (log_) log_->note(state);
+    return state;
   }
   const State& state_of(BodyId body) const { return state(scene_.process_of(body)); }
   // Where the body is, on the arc before the key, at its time.
@@ -70,6 +73,7 @@ class Before {
   const StateGraph& graph_;
   Key key_;
   ReadLog* log_;
+  std::uint64_t entered_;
 };
 
 // Sets of processes are rows, ascending.

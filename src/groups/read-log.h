@@ -1,7 +1,7 @@
-// Which processes' states a decision was made of: it holds for as long as none of their queues has
-// changed.
+// Which states a decision was made of: it holds for as long as they are still the last ones before
+// its key.
 //
-// Source: versions, as in optimistic concurrency control (Kung, Robinson 1981).
+// Source: validation in optimistic concurrency control (Kung, Robinson 1981).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "timeline/state-graph.h"
@@ -17,29 +19,37 @@ namespace tw {
 
 class ReadLog {
  public:
+  // Thrown where a state is read that may not be.
+  struct Unreadable {};
+  using MayRead = std::function<bool(const State&)>;
+
+  // From here on only those may be read of which that is so.
+  void restrict_to(MayRead may_read) { may_read_ = std::move(may_read); }
   // Loops within a decision may read at once.
-  void note(ProcessId process) {
+  void note(const State& state) {
+    if (may_read_ && !may_read_(state)) throw Unreadable();
     while (busy_.test_and_set(std::memory_order_acquire)) {
     }
-    if (read_.empty() || read_.back() != process) read_.push_back(process);
+    if (read_.empty() || read_.back().first != state.process)
+      read_.emplace_back(state.process, state.entered);
     busy_.clear(std::memory_order_release);
   }
-  // The decision is made: as the queues are now.
-  void close(const StateGraph& graph) {
+  // The decision is made.
+  void close() {
     std::sort(read_.begin(), read_.end());
     read_.erase(std::unique(read_.begin(), read_.end()), read_.end());
-    for (const ProcessId process : read_) versions_.push_back(graph.version(process));
   }
-  bool holds(const StateGraph& graph) const {
-    for (std::size_t i = 0; i < read_.size(); ++i)
-      if (graph.version(read_[i]) != versions_[i]) return false;
-    return true;
+  bool holds(const StateGraph& graph, const Key& key) const {
+    return std::all_of(read_.begin(), read_.end(), [&](const auto& read) {
+      const State* now = graph.last_before(read.first, key);
+      return now && now->entered == read.second;
+    });
   }
 
  private:
+  MayRead may_read_;
   std::atomic_flag busy_;
-  std::vector<ProcessId> read_;
-  std::vector<std::uint64_t> versions_;
+  std::vector<std::pair<ProcessId, std::uint64_t>> read_;  // whose, the how manieth state
 };
 
 }  // namespace tw

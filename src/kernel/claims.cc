@@ -57,7 +57,7 @@ bool Claims::reach(const Body& body, const Key& key) const {
 
 void Claims::fall_back(ProcessId id, const Key& key) {
   Process& process = sim_.processes[number(id)];
-  process.claim = std::min(process.claim, key);
+  process.claim_to(std::min(process.claim, key));
   if (sim_.policy->synchronous()) {
     const State& tail = *sim_.graph.tail(id);
     if (tail.driven() && tail.key.time < key.time) tail.trajectory().halt(key.time);
@@ -216,7 +216,7 @@ void Claims::claim_some(std::span<const Body* const> bodies) {
   });
   for (const Window& w : windows) {
     const Body& body = *w.body;
-    sim_.process(body).claim = body.fixed() ? last_key : Key{w.end, 0, KeyKind::birth, 0};
+    sim_.process(body).claim_to(body.fixed() ? last_key : Key{w.end, 0, KeyKind::birth, 0});
     if (!body.shape_P) continue;
     if (!body.unbounded) sim_.grid.place(body.id(), w.box, body.fixed());
     placed_[body.id()] = true;
@@ -229,7 +229,7 @@ void Claims::claim_some(std::span<const Body* const> bodies) {
   } catch (...) {
     // Ctrl-C in a motion's procedure: some may not have been met, so all are claimed anew
     for (const Window& w : windows) {
-      sim_.process(*w.body).claim = w.before;
+      sim_.process(*w.body).claim_to(w.before);
       schedule_advance(*w.body);
     }
     throw;

@@ -43,7 +43,8 @@ struct Counters : GroupCounters, PairCounts {
 
   std::uint64_t group_checks = 0;
   // on several threads: decided before their events, and of these the ones that held
-  std::uint64_t checks_decided_ahead = 0, decisions_used = 0;
+  std::uint64_t checks_decided_ahead = 0, check_decisions_used = 0;
+  std::uint64_t impacts_decided_ahead = 0, impact_decisions_used = 0;
 
   // committed
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;

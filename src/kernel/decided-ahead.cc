@@ -38,7 +38,7 @@ std::unique_ptr<Decision> DecidedAhead::take(const Key& key, const StateGraph& g
   if (at == decisions_.end() || (*at)->key != key) return nullptr;
   std::unique_ptr<Decision> decision = std::move(*at);
   decisions_.erase(at);
-  return decision->log.holds(graph) ? std::move(decision) : nullptr;
+  return decision->log.holds(graph, key) ? std::move(decision) : nullptr;
 }
 
 void DecidedAhead::forget_before(double time) {

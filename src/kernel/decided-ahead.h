@@ -1,5 +1,5 @@
-// What group checks come to, decided ahead of their events: each is used if none of the queues
-// that it was made of has changed by then.
+// What group checks come to, decided ahead of their events: each is used if what it was made of
+// still stands before its key by then.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 

@@ -189,7 +189,7 @@ bool GroupEvents::decide_ahead(Decision& decision) const {
     if (const auto& made = successor.data.group;
         made && made->key == key && !sim_.options.undo_redo)
       test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
-  decision.log.close(sim_.graph);
+  decision.log.close();
   return true;
 }
 
@@ -294,7 +294,7 @@ Progress GroupEvents::check(ProcessId id) {
   decide_instant(when);
   if (const auto decision = ahead_.take(key, sim_.graph); decision && decision->concerned == all) {
     counters_.add(decision->counters);
-    ++counters_.decisions_used;
+    ++counters_.check_decisions_used;
     discontinuities_.enter(key, decision->successors);
     return Progress::done;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/impact-events.h"
 
+#include "groups/end-test.h"
 #include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/active-pairs.h"
@@ -14,14 +15,18 @@
 namespace tw {
 
 ImpactEvents::ImpactEvents(Simulation& simulation, const ActivePairs& pairs,
-                           Discontinuities& discontinuities, GroupEvents& groups,
-                           const Delivery& delivery)
+                           Discontinuities& discontinuities, const PairChecks& checks,
+                           GroupEvents& groups, const Delivery& delivery)
     : sim_(simulation),
       counters_(simulation.present.counters),
       pairs_(pairs),
       discontinuities_(discontinuities),
       groups_(groups),
-      delivery_(delivery) {}
+      delivery_(delivery),
+      ahead_(simulation, pairs, checks,
+             [this](BodyId a, BodyId b, const Before& before, Decision& decision) {
+               decide_ahead(a, b, before, decision);
+             }) {}
 
 bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
   if (delivery_.observed(CollisionKind::collision)) return true;
@@ -49,11 +54,10 @@ void ImpactEvents::run_callbacks(const Collision& collision, const Before& befor
 }
 
 // Successors of all whom it concerns; a function of what stands before its key, but for callbacks.
-GroupEvents::Decided ImpactEvents::decide(std::uint32_t pair, const Before& before,
+GroupEvents::Decided ImpactEvents::decide(BodyId a, BodyId b, const Before& before,
                                           const Known& is_known, GroupCounters& counters) const {
   const Key& key = before.key();
-  const Body& body_a = sim_.body(pairs_[pair].a);
-  const Body& body_b = sim_.body(pairs_[pair].b);
+  const Body &body_a = sim_.body(a), &body_b = sim_.body(b);
   std::vector<Successor> successors;
   successors.reserve(2);
   successors.push_back(make_successor(before, body_a.process, body_a.dynamic()));
@@ -85,14 +89,41 @@ GroupEvents::Decided ImpactEvents::decide(std::uint32_t pair, const Before& befo
   return Regrouped{std::move(successors)};
 }
 
+// With the end tests that the claims after it would make.
+void ImpactEvents::decide_ahead(BodyId a, BodyId b, const Before& before,
+                                Decision& decision) const {
+  // whoever may be read is known
+  const Known is_known = [&](ProcessId id) {
+    before.state(id);
+    return true;
+  };
+  GroupEvents::Decided decided = decide(a, b, before, is_known, decision.counters);
+  decision.successors = std::move(std::get<Regrouped>(decided).successors);
+  for (const Successor& successor : decision.successors)
+    if (const auto& made = successor.data.group; made && made->key == decision.key)
+      test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
+}
+
+void ImpactEvents::look_ahead(const Event& event) {
+  // callbacks are the loop's own; what is redone is compared as it enters, untested
+  if (!callbacks_.empty() || sim_.options.undo_redo) return;
+  ahead_.look(event);
+}
+
 // The pending impact of an active pair.
 Progress ImpactEvents::process(std::uint32_t pair) {
   const Key key = pairs_[pair].impact;
   // only after the claims of the receivers, and of those they touch, have reached its time
   const BodyId struck[] = {pairs_[pair].a, pairs_[pair].b};
+  if (const std::unique_ptr<Decision> known = ahead_.take(key)) {
+    counters_.add(known->counters);
+    discontinuities_.enter(key, known->successors);
+    return Progress::done;
+  }
   if (!groups_.await_struck(struck, key)) return Progress::try_again;
   const Known is_known = [&](ProcessId id) { return groups_.known(id, key); };
-  GroupEvents::Decided decided = decide(pair, sim_.before(key), is_known, counters_);
+  GroupEvents::Decided decided =
+      decide(struck[0], struck[1], sim_.before(key), is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decided)) {
     groups_.await(waits->region, key);
     return Progress::try_again;

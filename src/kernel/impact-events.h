@@ -8,6 +8,7 @@
 #include "kernel/counters.h"
 #include "kernel/definitions.h"
 #include "kernel/group-events.h"
+#include "kernel/impacts-ahead.h"
 #include "kernel/progress.h"
 #include "timeline/successor.h"
 
@@ -21,15 +22,20 @@ struct Simulation;
 class ImpactEvents {
  public:
   ImpactEvents(Simulation& simulation, const ActivePairs& pairs, Discontinuities& discontinuities,
-               GroupEvents& groups, const Delivery& delivery);
+               const PairChecks& checks, GroupEvents& groups, const Delivery& delivery);
 
   void add_callback(const CollisionCallbackDef& def) { callbacks_.push_back(def); }
   // The pending impact of an active pair.
   Progress process(std::uint32_t pair);
+  // Has helpers decide what is due next, beside what the loop does with this event.
+  void look_ahead(const Event& event);
+  // Between runs anything may change: what was decided ahead holds no longer.
+  void forget_decisions() { ahead_.forget(); }
 
  private:
-  GroupEvents::Decided decide(std::uint32_t pair, const Before& before, const Known& is_known,
+  GroupEvents::Decided decide(BodyId a, BodyId b, const Before& before, const Known& is_known,
                               GroupCounters& counters) const;
+  void decide_ahead(BodyId a, BodyId b, const Before& before, Decision& decision) const;
   bool wants_collision(const Body& a, const Body& b) const;
   void run_callbacks(const Collision& collision, const Before& before, Successor& a,
                      Successor& b) const;
@@ -41,6 +47,7 @@ class ImpactEvents {
   GroupEvents& groups_;
   const Delivery& delivery_;
   std::vector<CollisionCallbackDef> callbacks_;
+  ImpactsAhead ahead_;
 };
 
 }  // namespace tw

@@ -63,7 +63,12 @@ void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
 
 Progress Kernel::process(const Event& event) {
   switch (event.kind) {
-    case EventKind::advance: claims.claim_due(event); break;
+    case EventKind::advance:
+      // at those that are known already, and at those that were found
+      impacts.look_ahead(event);
+      claims.claim_due(event);
+      impacts.look_ahead(event);
+      break;
     case EventKind::callback: return callback_events.process(event.subject);
     case EventKind::group_check: return groups.check(ProcessId{event.subject});
     case EventKind::pair:
@@ -114,13 +119,17 @@ namespace {
 // Between runs anything may change: what was decided ahead holds no longer.
 class ForgetAtEnd {
  public:
-  explicit ForgetAtEnd(GroupEvents& groups) : groups_(groups) {}
-  ~ForgetAtEnd() { groups_.forget_decisions(); }
+  ForgetAtEnd(GroupEvents& groups, ImpactEvents& impacts) : groups_(groups), impacts_(impacts) {}
+  ~ForgetAtEnd() {
+    groups_.forget_decisions();
+    impacts_.forget_decisions();
+  }
   ForgetAtEnd(const ForgetAtEnd&) = delete;
   ForgetAtEnd& operator=(const ForgetAtEnd&) = delete;
 
  private:
   GroupEvents& groups_;
+  ImpactEvents& impacts_;
 };
 
 }  // namespace
@@ -132,7 +141,7 @@ RunStatus Kernel::advance(double until, double slice) {
              "a run was started inside a callback or observer; expected to be between runs");
   if (until < simulation.present.time) return RunStatus::finished;
   const RunGuard guard(simulation);
-  const ForgetAtEnd forget(groups);
+  const ForgetAtEnd forget(groups, impacts);
   begin_run();
 
   const double wall_end = slice < never ? wall_seconds() + slice : never;
@@ -155,7 +164,7 @@ bool Kernel::step(double until) {
   TW_REQUIRE(!simulation.running,
              "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(simulation);
-  const ForgetAtEnd forget(groups);
+  const ForgetAtEnd forget(groups, impacts);
   begin_run();
   commit.begin_run(until, never);
   if (commit.finished()) return false;

@@ -70,7 +70,7 @@ class Kernel {
   Claims claims{simulation, pairs, checks, callbacks};
   Discontinuities discontinuities{simulation, pairs, checks, callbacks, claims};
   GroupEvents groups{simulation, claims, discontinuities, delivery};
-  ImpactEvents impacts{simulation, pairs, discontinuities, groups, delivery};
+  ImpactEvents impacts{simulation, pairs, discontinuities, checks, groups, delivery};
   CallbackEvents callback_events{simulation, callbacks, discontinuities, groups};
   Editing editing{simulation, discontinuities, groups};
   Bodies bodies{simulation, pairs, callbacks, claims, discontinuities, editing};

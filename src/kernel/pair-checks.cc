@@ -126,7 +126,10 @@ void PairChecks::apply(std::uint32_t index, const PairOutcome& outcome) {
   switch (outcome.kind) {
     case nothing: break;
     case wait: sim_.queue.withdraw(pairs_[index].event); break;
-    case schedule: this->schedule(index, outcome.key); break;
+    case schedule:
+      impacts_found_ += pairs_[index].pending;
+      this->schedule(index, outcome.key);
+      break;
     case drop: pairs_.drop(index); break;
     case alone: TW_ASSERT(false, "a pair was left to nobody");
   }

@@ -53,6 +53,8 @@ class PairChecks {
   void pursue(std::uint32_t index);
   // After a rollback of one of its bodies to `key`: what was known from there on is forgotten.
   void reset(std::uint32_t index, const Key& key);
+  // How many impacts were found so far, those that were forgotten included.
+  std::uint64_t impacts_found() const { return impacts_found_; }
 
  private:
   const State& tail_of(BodyId body) const;
@@ -79,6 +81,7 @@ class PairChecks {
   Counters& counters_;
   ActivePairs& pairs_;
   Pieces pieces_;
+  std::uint64_t impacts_found_ = 0;
 };
 
 }  // namespace tw

@@ -56,6 +56,10 @@ struct Simulation {
   Before before(const Key& key, ReadLog* log = nullptr) const {
     return Before(scene, graph, key, log);
   }
+  // The same as it was when so many states had entered.
+  Before before(const Key& key, ReadLog* log, std::uint64_t entered) const {
+    return Before(scene, graph, key, log, entered);
+  }
 
   void schedule(EventQueue::Handle& handle, const Key& key, EventKind kind, std::uint32_t subject,
                 double head_start) {

@@ -58,12 +58,6 @@ void EventQueue::withdraw(Handle& handle) {
 
 // Priorities are key times or earlier: below a slot whose priority is later than what is sought
 // there is nothing.  In order that ends at once.
-template <class Visit>
-void EventQueue::visit_down_from(std::size_t at, Visit&& visit) const {
-  if (at >= heap_.size() || !visit(heap_[at])) return;
-  for (std::size_t child = 4 * at + 1; child <= 4 * at + 4; ++child) visit_down_from(child, visit);
-}
-
 void EventQueue::first_ones(std::vector<Event>& events) const {
   visit_down_from(0, [&](const Slot& slot) {
     if (slot.priority > heap_[0].priority) return false;

@@ -35,6 +35,19 @@ class EventQueue {
   const Event& top() const { return events_[heap_[0].handle]; }
   double top_priority() const { return heap_[0].priority; }
   const Event& event(Handle handle) const { return events_[handle]; }
+  // The first in order of the events up to a priority that are wanted; null: there is none.
+  template <class Wanted>
+  const Event* first_of(double latest, Wanted&& wanted) const {
+    const Slot* first = nullptr;
+    visit_down_from(0, [&](const Slot& slot) {
+      if (slot.priority > latest) return false;
+      if (first && !before(slot, *first)) return false;
+      if (!wanted(events_[slot.handle])) return true;
+      first = &slot;
+      return false;
+    });
+    return first ? &events_[first->handle] : nullptr;
+  }
   // Appends all events of that priority, in no order; nothing comes before.
   void first_ones(std::vector<Event>& events) const;
   // The least time of all events' keys; never before the priority of the top.  `never` if empty.
@@ -62,7 +75,11 @@ class EventQueue {
   }
   // Calls visit(slot) from that place down, and below a slot only where it answers true.
   template <class Visit>
-  void visit_down_from(std::size_t at, Visit&& visit) const;
+  void visit_down_from(std::size_t at, Visit&& visit) const {
+    if (at >= heap_.size() || !visit(heap_[at])) return;
+    for (std::size_t child = 4 * at + 1; child <= 4 * at + 4; ++child)
+      visit_down_from(child, visit);
+  }
   // The least time of the keys of all events that are wanted; `never`: there is none.
   template <class Wanted>
   double least_time_of(Wanted&& wanted) const;

@@ -6,6 +6,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "dynamics/ids.h"
@@ -23,6 +24,16 @@ struct Process {
   EventQueue::Handle advance = EventQueue::none;
   EventQueue::Handle group_check = EventQueue::none;  // of the group that it is in
   double head_start = 0;                              // adversary scheduler
+
+  // While the loop claims on, helpers may ask how far a claim reaches: who sees that it does sees
+  // all that was done before.
+  void claim_to(const Key& key) {
+    claim.microstep = key.microstep;
+    claim.kind = key.kind;
+    claim.id = key.id;
+    std::atomic_ref(claim.time).store(key.time, std::memory_order_release);
+  }
+  double claimed_time() { return std::atomic_ref(claim.time).load(std::memory_order_acquire); }
 };
 
 }  // namespace tw

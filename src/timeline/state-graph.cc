@@ -34,17 +34,18 @@ void StateGraph::release(State* state) {
 
 State* StateGraph::append(ProcessId process, const Key& key) {
   Queue& queue = queues_[number(process)];
-  TW_ASSERT(!queue.tail || queue.tail->key < key, "keys in the queue of " + show(process) +
-                                                      " must increase: " + show(key) + " after " +
-                                                      show(queue.tail->key));
+  State* const before = queue.tail.get();
+  TW_ASSERT(!before || before->key < key, "keys in the queue of " + show(process) +
+                                              " must increase: " + show(key) + " after " +
+                                              show(before->key));
   State* state = allocate();
   state->key = key;
   state->process = process;
+  state->entered = ++entered_;
   state->ring = state->ring_before = state;
-  state->prev = queue.tail;
-  (queue.tail ? queue.tail->next : queue.head) = state;
-  queue.tail = state;
-  ++queue.version;
+  state->prev = before;
+  (before ? before->next : queue.head) = state;
+  queue.tail.set(state);
   if (!queue.busy) busy_.push_back(process);
   queue.busy = true;
   return state;
@@ -53,7 +54,8 @@ State* StateGraph::append(ProcessId process, const Key& key) {
 void StateGraph::tidy_busy() {
   std::erase_if(busy_, [&](ProcessId process) {
     Queue& queue = queues_[number(process)];
-    queue.busy = queue.tail && (queue.head != queue.tail || !queue.tail->committed);
+    const State* const tail = queue.tail.get();
+    queue.busy = tail && (queue.head != tail || !tail->committed);
     return !queue.busy;
   });
 }
@@ -67,19 +69,25 @@ void StateGraph::close_ring(std::span<State* const> states) {
 }
 
 State* StateGraph::last_at_or_before(ProcessId process, const Key& key) const {
-  State* state = queues_[number(process)].tail;
+  State* state = tail(process);
   while (state && state->key > key) state = state->prev;
   return state;
 }
 
 State* StateGraph::last_before(ProcessId process, const Key& key) const {
-  State* state = queues_[number(process)].tail;
+  State* state = tail(process);
   while (state && state->key >= key) state = state->prev;
   return state;
 }
 
+State* StateGraph::last_before(ProcessId process, const Key& key, std::uint64_t entered) const {
+  State* state = tail(process);
+  while (state && (state->entered > entered || state->key >= key)) state = state->prev;
+  return state;
+}
+
 State* StateGraph::last_at_or_before_time(ProcessId process, double time) const {
-  State* state = queues_[number(process)].tail;
+  State* state = tail(process);
   while (state && state->key.time > time) state = state->prev;
   return state;
 }
@@ -96,7 +104,8 @@ std::size_t StateGraph::rollback(ProcessId process, const Key& key, std::vector<
     ProcessId process;
     Key key;
   };
-  if (!queues_[number(process)].tail || queues_[number(process)].tail->key < key) return 0;
+  if (const State* last = tail(process); !last || last->key < key) return 0;
+  before_removal_();
   std::vector<Work> work{{process, key}};
   std::size_t removed = 0;
 
@@ -104,12 +113,11 @@ std::size_t StateGraph::rollback(ProcessId process, const Key& key, std::vector<
     const Work item = work.back();
     work.pop_back();
     Queue& queue = queues_[number(item.process)];
-    ++queue.version;
     Key least = last_key;
 
     // newest first
-    while (queue.tail && queue.tail->key >= item.key) {
-      State* state = queue.tail;
+    while (State* const state = queue.tail.get()) {
+      if (state->key < item.key) break;
       TW_ASSERT(!state->committed, "rollback of " + show(item.process) + " to " + show(item.key) +
                                        " reached the committed " + show(state->key));
       // all of its ring go with it
@@ -119,8 +127,8 @@ std::size_t StateGraph::rollback(ProcessId process, const Key& key, std::vector<
         leave_ring(other);
       }
       least = state->key;
-      queue.tail = state->prev;
-      (queue.tail ? queue.tail->next : queue.head) = nullptr;
+      queue.tail.set(state->prev);
+      (state->prev ? state->prev->next : queue.head) = nullptr;
       on_release(*state);
       release(state);
       ++removed;
@@ -139,6 +147,7 @@ std::size_t StateGraph::rollback(ProcessId process, const Key& key, std::vector<
 
 void StateGraph::free_before(State* keep, const OnRelease& on_release) {
   Queue& queue = queues_[number(keep->process)];
+  if (queue.head != keep) before_removal_();
   while (queue.head != keep) {
     State* state = queue.head;
     leave_ring(state);
@@ -150,6 +159,7 @@ void StateGraph::free_before(State* keep, const OnRelease& on_release) {
 }
 
 void StateGraph::clear(ProcessId process) {
+  before_removal_();
   Queue& queue = queues_[number(process)];
   while (queue.head) {
     State* state = queue.head;
@@ -157,7 +167,7 @@ void StateGraph::clear(ProcessId process) {
     queue.head = state->next;
     release(state);
   }
-  queue.tail = nullptr;
+  queue.tail.set(nullptr);
 }
 
 std::string StateGraph::validate() const {
@@ -165,7 +175,8 @@ std::string StateGraph::validate() const {
   for (std::uint32_t p = 0; p < queues_.size(); ++p) {
     const State* before = nullptr;
     const Queue& queue = queues_[p];
-    if (queue.tail && !queue.busy && (queue.head != queue.tail || !queue.tail->committed))
+    const State* const tail = queue.tail.get();
+    if (tail && !queue.busy && (queue.head != tail || !tail->committed))
       return "not listed as busy: " + show(ProcessId{p});
     for (const State* s = queue.head; s; before = s, s = s->next, ++found) {
       const std::string where = show(ProcessId{p}) + ", " + show(s->key);
@@ -183,7 +194,7 @@ std::string StateGraph::validate() const {
         r = r->ring;
       } while (r != s);
     }
-    if (queue.tail != before) return "wrong tail: " + show(ProcessId{p});
+    if (tail != before) return "wrong tail: " + show(ProcessId{p});
   }
   if (found != live_) return "states outside of all queues";
   return "";

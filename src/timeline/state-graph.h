@@ -8,6 +8,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -33,10 +34,13 @@ class StateGraph {
   ProcessId add_process();
   std::size_t process_count() const { return queues_.size(); }
   State* head(ProcessId process) const { return queues_[number(process)].head; }
-  State* tail(ProcessId process) const { return queues_[number(process)].tail; }
+  State* tail(ProcessId process) const { return queues_[number(process)].tail.get(); }
 
-  // Another number whenever a state came to the queue's end or went from there.
-  std::uint64_t version(ProcessId process) const { return queues_[number(process)].version; }
+  // How many states have entered so far, those that are gone again included.
+  std::uint64_t entered() const { return entered_; }
+  // While states enter others may look at those that entered before.  Called before any state goes:
+  // waits until nobody looks.
+  void before_removal(std::function<void()> wait) { before_removal_ = std::move(wait); }
 
   // Appends a fresh state with `key` to the queue.  The key must be later than the tail's.
   State* append(ProcessId process, const Key& key);
@@ -46,6 +50,8 @@ class StateGraph {
   // The last state with key <= `key` (or < it); null if there is none.
   State* last_at_or_before(ProcessId process, const Key& key) const;
   State* last_before(ProcessId process, const Key& key) const;
+  // The last of the first `entered` states with key < `key`.
+  State* last_before(ProcessId process, const Key& key, std::uint64_t entered) const;
   // The last state with time <= `time`; null if there is none.
   State* last_at_or_before_time(ProcessId process, double time) const;
 
@@ -75,10 +81,21 @@ class StateGraph {
   std::string validate() const;
 
  private:
+  // The end of a queue; who sees a state there sees its key and what it follows.
+  class Tail {
+   public:
+    Tail() = default;
+    Tail(const Tail& other) : state_(other.get()) {}
+    Tail& operator=(const Tail&) = delete;
+    State* get() const { return state_.load(std::memory_order_acquire); }
+    void set(State* state) { state_.store(state, std::memory_order_release); }
+
+   private:
+    std::atomic<State*> state_{nullptr};
+  };
   struct Queue {
     State* head = nullptr;
-    State* tail = nullptr;
-    std::uint64_t version = 0;
+    Tail tail;
     bool busy = false;  // stands in busy_
   };
   State* allocate();
@@ -90,6 +107,8 @@ class StateGraph {
   std::deque<State> pool_;  // addresses stay
   std::vector<State*> unused_;
   std::size_t live_ = 0, peak_ = 0;
+  std::uint64_t entered_ = 0;
+  std::function<void()> before_removal_ = [] {};
 };
 
 }  // namespace tw

@@ -97,8 +97,9 @@ struct StateData {
 };
 
 struct State : StateData {
-  Key key;              // of the discontinuity that made this state
-  ProcessId process{};  // that owns the queue
+  Key key;                    // of the discontinuity that made this state
+  ProcessId process{};        // that owns the queue
+  std::uint64_t entered = 0;  // the how manieth state of the graph it was
   State* prev = nullptr;
   State* next = nullptr;
   State* ring = this;         // circular list of the states of one discontinuity,

@@ -5,7 +5,7 @@
 #   threads.sh SOURCE RUNS TIMEWARP...
 #
 # A run to time 0 is timed likewise and taken off.  *helper*: CPU seconds of the helper at work, of
-# the last run; *vain*: group checks decided ahead that did not hold, of all.
+# the last run; *in vain*: checks and impacts decided ahead that did not hold, of all.
 # Means little where anything else is running.
 #
 # SPDX-License-Identifier: LGPL-3.0-or-later
@@ -26,8 +26,8 @@ least() { sort -n "$folder/$1" | head -n 1; }
 statistic() { awk -v name="$2" '$1 == name { print $2 }' "$folder/stats-$1"; }
 
 command=$*
-echo "| scene | until, s | 1 thread, s | 2 threads, s | ratio | helper, s | vain |"
-echo "| --- | --- | --- | --- | --- | --- | --- |"
+echo "| scene | until, s | 1 thread, s | 2 threads, s | ratio | helper, s | checks in vain | impacts in vain |"
+echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
 while read -r scene until; do
   rm -f "$folder"/1 "$folder"/2 "$folder"/load
   run=0
@@ -38,11 +38,12 @@ while read -r scene until; do
     run=$((run + 1))
   done
   echo "$(least load) $(least 1) $(least 2) $(statistic 2 helper_cpu_seconds)" \
-    "$(statistic 2 decided_in_vain) $(statistic 2 checks_decided_ahead)" |
+    "$(statistic 2 checks_decided_in_vain) $(statistic 2 checks_decided_ahead)" \
+    "$(statistic 2 impacts_decided_in_vain) $(statistic 2 impacts_decided_ahead)" |
     awk -v scene="$scene" -v until="$until" '{
       one = $2 - $1; two = $3 - $1
-      printf "| `%s` | %s | %.2f | %.2f | %.2f | %.2f | %d of %d |\n",
-        scene, until, one, two, one / two, $4, $5, $6
+      printf "| `%s` | %s | %.2f | %.2f | %.2f | %.2f | %d of %d | %d of %d |\n",
+        scene, until, one, two, one / two, $4, $5, $6, $7, $8
     }'
 done <<END
 scenes/avalanche.scm 1.3

@@ -206,6 +206,47 @@ TEST(StateGraph, look_up_by_key_and_time_takes_the_last_state) {
   EXPECT_EQ(graph.last_before(ProcessId{0}, {0, 0, KeyKind::birth, 0}), nullptr);
 }
 
+TEST(StateGraph, look_up_among_the_first_states_sees_none_that_entered_later) {
+  StateGraph graph;
+  const ProcessId process = graph.add_process(), other = graph.add_process();
+  State* const first = graph.append(process, {1, 1, KeyKind::impact, 0});
+  graph.append(other, {1, 1, KeyKind::impact, 0});
+  const std::uint64_t then = graph.entered();
+  State* const second = graph.append(process, {2, 1, KeyKind::impact, 0});
+  EXPECT_EQ(graph.entered(), then + 1);
+  const Key later{3, 1, KeyKind::impact, 0};
+  EXPECT_EQ(graph.last_before(process, later), second);
+  EXPECT_EQ(graph.last_before(process, later, then), first);
+  EXPECT_EQ(graph.last_before(process, later, graph.entered()), second);
+  EXPECT_EQ(graph.last_before(process, first->key, then), nullptr);
+}
+
+TEST(StateGraph, who_looks_is_waited_for_before_a_state_goes_and_not_otherwise) {
+  StateGraph graph;
+  int waits = 0;
+  std::size_t states_then = 0;
+  graph.before_removal([&] {
+    ++waits;
+    states_then = graph.state_count();
+  });
+  const ProcessId process = graph.add_process();
+  State* last = nullptr;
+  for (const double time : {1.0, 2.0, 3.0})
+    last = graph.append(process, {time, 1, KeyKind::impact, 0});
+  const StateGraph::OnRelease nothing = [](State&) {};
+  std::vector<Affected> affected;
+  EXPECT_EQ(graph.rollback(process, {4, 1, KeyKind::impact, 0}, affected, nothing), 0u);
+  EXPECT_EQ(waits, 0);
+  EXPECT_EQ(graph.rollback(process, last->key, affected, nothing), 1u);
+  EXPECT_EQ(waits, 1);
+  EXPECT_EQ(states_then, 3u);
+  for (const int expected : {2, 2}) {
+    graph.free_before(graph.tail(process), nothing);
+    EXPECT_EQ(waits, expected);
+  }
+  EXPECT_EQ(graph.state_count(), 1u);
+}
+
 TEST(StateGraph, freeing_the_past_leaves_the_rest_valid) {
   Random random(5);
   StateGraph graph;

@@ -81,5 +81,21 @@ TEST(BroadPhase, finds_exactly_the_overlapping_boxes_while_some_move) {
   EXPECT_EQ(all.phase.size(), count);
 }
 
+TEST(BroadPhase, a_query_within_one_of_the_same_body_does_without_the_zone) {
+  BroadPhase phase;
+  phase.place(0, around(Vec3::Zero(), {1, 1, 1}), false);
+  for (std::uint32_t id = 1; id < 9; ++id)
+    phase.place(id, around(Vec3(0.2 * id, 0, 0), {0.1, 0.1, 0.1}), true);
+  int outer = 0;
+  phase.overlapping(0, [&](std::uint32_t) {
+    ++outer;
+    std::set<std::uint32_t> inner;
+    const Aabb box = around(Vec3(0.4, 0, 0), {0.01, 0.01, 0.01});
+    phase.standing_in(box, 0, [&](std::uint32_t other) { inner.insert(other); });
+    EXPECT_EQ(inner, std::set<std::uint32_t>{2});
+  });
+  EXPECT_EQ(outer, 5);
+}
+
 }  // namespace
 }  // namespace tw::test

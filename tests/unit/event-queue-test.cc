@@ -57,6 +57,22 @@ TEST(EventQueue, top_is_the_least_after_any_sequence_of_operations) {
       return pa != pb ? pa < pb : ka < kb;
     });
     ASSERT_EQ(queue.top().subject, least->first);
+
+    // the first of an odd owner up to some priority
+    const double latest = 0.5 * static_cast<double>(random.below(16));
+    const std::uint32_t* expected = nullptr;
+    Order first;
+    for (const auto& [owner_of, order] : model) {
+      if (owner_of % 2 == 0 || std::get<0>(order) > latest || (expected && !(order < first)))
+        continue;
+      expected = &owner_of;
+      first = order;
+    }
+    const Event* found = queue.first_of(latest, [](const Event& e) { return e.subject % 2 == 1; });
+    ASSERT_EQ(found != nullptr, expected != nullptr);
+    if (found) {
+      ASSERT_EQ(found->subject, *expected);
+    }
   }
 }
 

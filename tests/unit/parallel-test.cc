@@ -152,5 +152,73 @@ TEST(Parallel, what_helpers_did_is_counted_here) {
   EXPECT_EQ(work_count.since(before).distance_queries, 800u);
 }
 
+// Waits for it, up to 20 s, without taking it back.
+bool is_over_in_time(const Beside& beside) {
+  const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!beside.is_over() && std::chrono::steady_clock::now() < late) wait_a_little();
+  return beside.is_over();
+}
+
+TEST(Beside, a_helper_does_it_meanwhile) {
+  Team team(2);
+  std::thread::id who;
+  Beside beside(team, [&] { who = std::this_thread::get_id(); });
+  ASSERT_TRUE(is_over_in_time(beside));
+  EXPECT_TRUE(beside.finish());
+  EXPECT_TRUE(beside.finish());
+  EXPECT_NE(who, std::this_thread::get_id());
+  EXPECT_NE(who, std::thread::id());
+}
+
+TEST(Beside, it_is_done_as_a_whole_or_not_begun) {
+  Team team(2);
+  for (int i = 0; i < 200; ++i) {
+    int steps = 0;
+    Beside beside(team, [&] {
+      ++steps;
+      if (i % 3 == 0) wait_a_little();
+      ++steps;
+    });
+    if (i % 2 == 0) std::this_thread::yield();
+    const bool was_done = beside.finish();
+    EXPECT_EQ(steps, was_done ? 2 : 0);
+    EXPECT_TRUE(beside.is_over());
+  }
+  // nobody helps here
+  Team alone(1);
+  int steps = 0;
+  Beside beside(alone, [&] { ++steps; });
+  EXPECT_FALSE(beside.finish());
+  EXPECT_EQ(steps, 0);
+}
+
+TEST(Beside, what_it_throws_is_lost_and_it_was_not_done) {
+  Team team(2);
+  Beside beside(team, [] { throw std::runtime_error("no"); });
+  ASSERT_TRUE(is_over_in_time(beside));
+  EXPECT_FALSE(beside.finish());
+}
+
+TEST(Beside, loops_go_on_meanwhile_here_and_there) {
+  Team team(3);
+  const Team::Scope scope(&team);
+  std::vector<int> there(1000), here(1000);
+  Beside beside(team,
+                [&] { each_in_parallel(there.size(), 1, [&](std::size_t i) { ++there[i]; }); });
+  each_in_parallel(here.size(), 1, [&](std::size_t i) { ++here[i]; });
+  const int expected = beside.finish() ? 1 : 0;
+  for (const int times : here) EXPECT_EQ(times, 1);
+  for (const int times : there) EXPECT_EQ(times, expected);
+}
+
+TEST(Beside, its_work_counts_for_who_waits_for_it) {
+  Team team(2);
+  const WorkCount before = work_count;
+  Beside beside(team, [] { work_count.distance_queries += 7; });
+  ASSERT_TRUE(is_over_in_time(beside));
+  EXPECT_TRUE(beside.finish());
+  EXPECT_EQ(work_count.since(before).distance_queries, 7u);
+}
+
 }  // namespace
 }  // namespace tw
