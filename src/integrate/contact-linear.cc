@@ -108,10 +108,10 @@ TW_LANES LaneVec stretched(const PackLinear& o, const LaneVec& y) {
   return o.m1 * (y - dot(o.n, y) * o.n) + (o.m2 * dot(o.t, y)) * o.t;
 }
 
-// `grounded`: body a does not change
-template <ContactFeature feature, bool grounded>
+// `grounded`: body a does not change; `sides`: null where neither forces nor torques are wanted
+template <ContactFeature feature, bool grounded, bool forces>
 void change(const ContactPack& pack, const PackLinear& o, const BodyChange* changes,
-            const PackSides& sides, PackChange& out) {
+            const PackSides* sides, PackChange& out) {
   constexpr bool flat = is_flat(feature);
   // relative displacement in a's frame
   const LaneChange b = gather(pack, changes, pack.b);
@@ -167,12 +167,14 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
   const Lanes deeper = -dot(o.n, dp);
   const LaneVec friction = friction_change<flat>(o, dN, dn, dv) + deeper * o.harder;
   out.stretching = friction + deeper * o.relaxing;
-  out.f = dN * o.n + friction + stretched(o, out.stretching - pack.ct * sides.stretch);
-  if constexpr (!flat) out.f = out.f + o.N * dn;
-  if (o.deep) {
-    out.f = out.f + drag_change<flat>(o, dp, dn, dv);
-    out.torque = dot(o.n, dp) * o.more_turn - o.turn_damper * b.w;
-    if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
+  if constexpr (forces) {
+    out.f = dN * o.n + friction + stretched(o, out.stretching - pack.ct * sides->stretch);
+    if constexpr (!flat) out.f = out.f + o.N * dn;
+    if (o.deep) {
+      out.f = out.f + drag_change<flat>(o, dp, dn, dv);
+      out.torque = dot(o.n, dp) * o.more_turn - o.turn_damper * b.w;
+      if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
+    }
   }
   if (pack.bend >= 0) {
     const ResistanceLinear& r = o.resistance;
@@ -181,11 +183,35 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
     LaneVec torque = dN * r.m + deeper * r.harder + change_by_turn(r, dw);
     if constexpr (!flat) torque = torque + change_by_normal(r, dn);
     out.bending = torque + deeper * r.relaxing;
-    torque = torque + bent(r, out.bending - r.c * sides.bend);
-    if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
-    out.torque = o.deep ? out.torque + torque : torque;
+    if constexpr (forces) {
+      torque = torque + bent(r, out.bending - r.c * sides->bend);
+      if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
+      out.torque = o.deep ? out.torque + torque : torque;
+    }
   }
-  if constexpr (!grounded) out.f = out.f + cross(a.th, o.f);
+  if constexpr (forces && !grounded) out.f = out.f + cross(a.th, o.f);
+}
+
+// The one for the kind of the pack's contacts.
+template <bool forces>
+void change_by_kind(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
+                    const PackSides* sides, bool grounded, PackChange& out) {
+  const auto choose = [grounded](auto with_ground, auto without) {
+    return grounded ? with_ground : without;
+  };
+  using F = ContactFeature;
+  // a line and a point differ in turn_normal alone, what runs in how it does
+  const auto chosen =
+      pack.feature == F::plane
+          ? choose(change<F::plane, true, forces>, change<F::plane, false, forces>)
+      : pack.feature == F::tangent_plane
+          ? choose(change<F::tangent_plane, true, forces>, change<F::tangent_plane, false, forces>)
+      : pack.feature == F::curved
+          ? choose(change<F::curved, true, forces>, change<F::curved, false, forces>)
+      : runs(pack.feature)
+          ? choose(change<F::crossing, true, forces>, change<F::crossing, false, forces>)
+          : choose(change<F::point, true, forces>, change<F::point, false, forces>);
+  chosen(pack, linear, changes, sides, out);
 }
 
 }  // namespace
@@ -268,20 +294,12 @@ void set_stage_rate(const ContactPack& pack, double sigma, PackLinear& o) {
 
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
                  const PackSides& sides, bool outside_changes, PackChange& out) {
-  const bool grounded = pack.grounded && !outside_changes;
-  const auto choose = [grounded](auto with_ground, auto without) {
-    return grounded ? with_ground : without;
-  };
-  using F = ContactFeature;
-  // a line and a point differ in turn_normal alone, what runs in how it does
-  const auto chosen =
-      pack.feature == F::plane ? choose(change<F::plane, true>, change<F::plane, false>)
-      : pack.feature == F::tangent_plane
-          ? choose(change<F::tangent_plane, true>, change<F::tangent_plane, false>)
-      : pack.feature == F::curved ? choose(change<F::curved, true>, change<F::curved, false>)
-      : runs(pack.feature)        ? choose(change<F::crossing, true>, change<F::crossing, false>)
-                                  : choose(change<F::point, true>, change<F::point, false>);
-  chosen(pack, linear, changes, sides, out);
+  change_by_kind<true>(pack, linear, changes, &sides, pack.grounded && !outside_changes, out);
+}
+
+void change_stretches(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
+                      PackChange& out) {
+  change_by_kind<false>(pack, linear, changes, nullptr, pack.grounded, out);
 }
 
 LaneVec solve_stretch(const PackLinear& o, const LaneVec& stretch_side, const LaneVec& stretching) {

@@ -98,6 +98,9 @@ struct PackSides {
 // differ from 0.
 void change_pack(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
                  const PackSides& sides, bool outside_changes, PackChange& out);
+// Those of the stretches and the bends alone, with the same bits; outside bodies don't change.
+void change_stretches(const ContactPack& pack, const PackLinear& linear, const BodyChange* changes,
+                      PackChange& out);
 
 // dR alone gives the stretch: H (r_z - dR/ct), world frame.
 LaneVec solve_stretch(const PackLinear& linear, const LaneVec& stretch_side,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <sstream>
 
@@ -255,11 +256,14 @@ MotionBounds GroupArc::bounds(int member, double from, double to) const {
       double from = 0, to = 0;
       MotionBounds bounds;
     };
-    constexpr std::size_t places = 512;
-    thread_local std::vector<Kept> table(places);
+    constexpr std::size_t least_places = 512;
+    thread_local std::vector<Kept> table(least_places);
+    const std::size_t members = data_->trajectories.size();
+    if (table.size() < members) table.resize(std::bit_ceil(2 * members));
     const double end = data_->at(to), begin = std::min(data_->at(from), end);
     const JointRecord* joints = data_->joints_of(member);
-    Kept& kept = table[(data_->serial * 61 + static_cast<std::uint64_t>(member)) % places];
+    Kept& kept =
+        table[(data_->serial * 61 + static_cast<std::uint64_t>(member)) & (table.size() - 1)];
     if (kept.arc != data_->serial || kept.member != member || kept.from != begin || kept.to != end)
       kept = {data_->serial, member, begin, end,
               joints ? joints->bounds(data_->link_of(member), begin, end)

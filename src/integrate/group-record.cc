@@ -109,7 +109,12 @@ GroupRecord GroupRecord::stretch_of(int member, double from) const {
   stretch.node_size_ = node_numbers;
   stretch.step_size_ = step_numbers;
   // at a node the step before it, too: rates are those of the step that ends there
-  for (int i = steps() > 0 ? step_to(from) : 0; i <= steps(); ++i) {
+  const int first = steps() > 0 ? step_to(from) : 0;
+  const auto count = static_cast<std::size_t>(steps() - first);
+  stretch.times_.reserve(count + 1);
+  stretch.nodes_.reserve(node_numbers * (count + 1));
+  stretch.steps_.reserve(step_numbers * count);
+  for (int i = first; i <= steps(); ++i) {
     stretch.times_.push_back(time(i));
     Writer(stretch.nodes_, node_numbers).put(member_node(i, member), node_numbers);
     if (i < steps()) Writer(stretch.steps_, step_numbers).put(member_step(i, member), step_numbers);

@@ -327,12 +327,15 @@ void GroupSystem::scatter_stretches(GroupScratch& s, const double* stage) const 
     const PackLinear& linear = s.linear[index(p)];
     if (linear.idle) continue;
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), sides_of(p, linear, stage), false, change);
+    PackSides& sides = s.sides[index(p)];
+    sides = sides_of(p, linear, stage);
+    change_pack(pack, linear, s.changes.data(), sides, false, change);
     scatter_change(pack, linear, change, s.wrenches.data());
   }
 }
 
-// The stretches of anchored friction and the bends, once all changes of the slots are known.
+// The stretches of anchored friction and the bends, once all changes of the slots are known; the
+// right sides are those that scatter_stretches() found.
 void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
@@ -345,9 +348,9 @@ void GroupSystem::solve_stretches(GroupScratch& s, double* stage) const {
       if (anchored) store(lanes(1) / (lanes(sigma_) + pack.kt / pack.ct) * load(row), row);
       continue;
     }
-    const PackSides sides = sides_of(p, linear, stage);
+    const PackSides& sides = s.sides[index(p)];
     PackChange change;
-    change_pack(pack, linear, s.changes.data(), sides, false, change);
+    change_stretches(pack, linear, s.changes.data(), change);
     if (anchored)
       store(transposed_times(linear.Ra, solve_stretch(linear, sides.stretch, change.stretching)),
             stage + stretch_row(p));

@@ -88,6 +88,7 @@ GroupScratch& GroupSystem::scratch() const {
   fit(shared.changes, slots);
   fit(shared.wrenches, slots);
   fit(shared.linear, index(packs()));
+  fit(shared.sides, index(packs()));
   // a multibody may have more links than freedoms
   fit(shared.right_side, std::max(unknowns(), index(members())));
   for (std::vector<double>* v : {&shared.state, &shared.slope, &shared.time_slope, &shared.trial})

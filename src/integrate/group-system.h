@@ -33,6 +33,7 @@ struct GroupScratch {
   std::vector<BodyChange> changes;     // by slot
   std::vector<BodyWrench> wrenches;    // by slot
   std::vector<PackLinear> linear;      // by pack
+  std::vector<PackSides> sides;        // by pack, of the stage
   std::vector<double> right_side;      // the unknowns; at least one a member
   std::vector<double> state, slope, time_slope, trial, stage[6];
   double moving_at = -never;  // s: where the outside bodies that move stand
