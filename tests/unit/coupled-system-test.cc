@@ -83,6 +83,7 @@ struct Bench {
     scratch.changes.resize(slots);
     scratch.wrenches.resize(slots);
     scratch.linear.resize(static_cast<std::size_t>(system.packs()));
+    scratch.sides.resize(static_cast<std::size_t>(system.packs()));
     scratch.right_side.resize(system.unknowns());
     y = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.size()));
     const GroupMember& body = start.members.back();

@@ -217,6 +217,7 @@ struct Bench {
     scratch.changes.resize(slots);
     scratch.wrenches.resize(slots);
     scratch.linear.resize(static_cast<std::size_t>(system.packs()));
+    scratch.sides.resize(static_cast<std::size_t>(system.packs()));
     scratch.right_side.resize(6 * start.members.size());
     system.set_outside(start.time, scratch);
     y.resize(static_cast<Eigen::Index>(system.size()));
