@@ -42,7 +42,7 @@ class ReadLog {
   bool holds(const StateGraph& graph, const Key& key) const {
     return std::all_of(read_.begin(), read_.end(), [&](const auto& read) {
       const State* now = graph.last_before(read.first, key);
-      return now && now->entered == read.second;
+      return now && now->entered == read.second && (!may_read_ || may_read_(*now));
     });
   }
 

@@ -43,10 +43,13 @@ void ImpactsAhead::forget() {
   seen_ = 0;
 }
 
-// Whether the arc of the state is known beyond the time: whoever claims makes it complete before.
-bool ImpactsAhead::may_be_read(const State& state, double when) const {
-  if (sim_.body_of(state.process).fixed()) return true;
-  return sim_.processes[number(state.process)].claimed_time() > when && !state.driven();
+// Whether the arc of the state is known beyond the key: whoever claims makes it complete before.  A
+// claim is that of the last state: what has been replaced meanwhile need not be complete.
+bool ImpactsAhead::may_be_read(const State& state, const Key& key) const {
+  const ProcessId process = state.process;
+  if (sim_.body_of(process).fixed()) return true;
+  return sim_.processes[number(process)].claimed_time() > key.time && !state.driven() &&
+         sim_.graph.last_before(process, key) == &state;
 }
 
 // Of two that fly all is done at once, and a large group is decided best by all threads together.
@@ -57,7 +60,7 @@ bool ImpactsAhead::is_worth_it(const Event& event) const {
   bool is_in_group = false;
   for (const BodyId body : {pair.a, pair.b}) {
     const State& tail = *sim_.graph.tail(sim_.process_of(body));
-    if (!may_be_read(tail, pair.impact.time)) return false;
+    if (!may_be_read(tail, pair.impact)) return false;
     if (tail.group && tail.group->members.size() > cost::largest_ahead) return false;
     is_in_group = is_in_group || tail.group;
   }
@@ -78,7 +81,7 @@ void ImpactsAhead::begin(const Pair& pair) {
 void ImpactsAhead::decide(Ahead& ahead) const {
   Decision& decision = *ahead.decision;
   const Key& key = decision.key;
-  decision.log.restrict_to([&](const State& state) { return may_be_read(state, key.time); });
+  decision.log.restrict_to([&](const State& state) { return may_be_read(state, key); });
   try {
     decide_(ahead.a, ahead.b, sim_.before(key, &decision.log, ahead.entered), decision);
     decision.log.close();

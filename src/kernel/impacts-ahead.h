@@ -48,7 +48,7 @@ class ImpactsAhead {
 
  private:
   struct Ahead;
-  bool may_be_read(const State& state, double when) const;
+  bool may_be_read(const State& state, const Key& key) const;
   bool is_worth_it(const Event& event) const;
   void begin(const Pair& pair);
   void decide(Ahead& ahead) const;
