@@ -349,12 +349,12 @@ inline constexpr double hardly_turns = 0.5;
 // ---- threads ----
 // A helper that finds nothing to do looks on for so long, s, before it sleeps.
 inline constexpr double helper_patience = 300e-6;
-// Impacts that are decided ahead: so many at most, so many of them not yet, of groups of so many
-// members at most, and so long before they are due, s.
+// Impacts that are decided ahead: how many at once, how many of these are waiting or under way, how
+// long before they are due, s, and of how many members their groups may be.
 inline constexpr std::size_t most_ahead = 4;
 inline constexpr int most_undecided = 2;
-inline constexpr std::size_t largest_ahead = 16;
 inline constexpr double look_ahead = 1e-3;
+inline constexpr std::size_t largest_ahead = 16;
 
 // ---- broad phase ----
 // A zone reaches beyond its box by this share of the longest edge.

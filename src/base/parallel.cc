@@ -121,7 +121,7 @@ struct SharedLoop {
         for (std::size_t k = first; k < std::min(items, first + count); ++k) item(loop, k);
       }
     } catch (...) {
-      next.store(items, std::memory_order_relaxed);
+      next.store(items, std::memory_order_release);
       const Locked locked(lock);
       error = std::current_exception();
     }

@@ -32,7 +32,7 @@ class Before {
   // `log`: notes what states are read; may be null.  Of all states that have entered, or of the
   // first `entered` ones.
   Before(const Scene& scene, const StateGraph& graph, const Key& key, ReadLog* log = nullptr,
-         std::uint64_t entered = ~std::uint64_t{0})
+         std::uint64_t entered = StateGraph::all_states)
       : scene_(scene), graph_(graph), key_(key), log_(log), entered_(entered) {}
 
   const Scene& scene() const { return scene_; }

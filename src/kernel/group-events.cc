@@ -172,6 +172,12 @@ std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
   return group;
 }
 
+void GroupEvents::test_ends(Decision& decision) const {
+  for (const Successor& successor : decision.successors)
+    if (const auto& made = successor.data.group; made && made->key == decision.key)
+      test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
+}
+
 // What the check of those concerned comes to, and the arcs of their groups up to their ends; false:
 // it can't be said now.  Several threads may ask at once.
 bool GroupEvents::decide_ahead(Decision& decision) const {
@@ -185,10 +191,7 @@ bool GroupEvents::decide_ahead(Decision& decision) const {
   if (!regrouped) return false;
   decision.successors = std::move(regrouped->successors);
   // (what is redone is compared as it enters, untested)
-  for (const Successor& successor : decision.successors)
-    if (const auto& made = successor.data.group;
-        made && made->key == key && !sim_.options.undo_redo)
-      test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
+  if (!sim_.options.undo_redo) test_ends(decision);
   decision.log.close();
   return true;
 }

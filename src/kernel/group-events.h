@@ -56,6 +56,8 @@ class GroupEvents {
   Progress check(ProcessId id);
   // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
   bool amid_decisions() const;
+  // The end tests of the groups that a decision made, which the claims after it would make.
+  void test_ends(Decision& decision) const;
   // Between runs anything may change: what was decided ahead holds no longer.
   void forget_decisions() {
     ahead_.forget();

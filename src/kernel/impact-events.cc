@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/impact-events.h"
 
-#include "groups/end-test.h"
 #include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/active-pairs.h"
@@ -89,7 +88,6 @@ GroupEvents::Decided ImpactEvents::decide(BodyId a, BodyId b, const Before& befo
   return Regrouped{std::move(successors)};
 }
 
-// With the end tests that the claims after it would make.
 void ImpactEvents::decide_ahead(BodyId a, BodyId b, const Before& before,
                                 Decision& decision) const {
   // whoever may be read is known
@@ -99,9 +97,7 @@ void ImpactEvents::decide_ahead(BodyId a, BodyId b, const Before& before,
   };
   GroupEvents::Decided decided = decide(a, b, before, is_known, decision.counters);
   decision.successors = std::move(std::get<Regrouped>(decided).successors);
-  for (const Successor& successor : decision.successors)
-    if (const auto& made = successor.data.group; made && made->key == decision.key)
-      test_end(sim_.scene, sim_.surroundings, *made, decision.counters);
+  groups_.test_ends(decision);
 }
 
 void ImpactEvents::look_ahead(const Event& event) {

@@ -44,7 +44,8 @@ void ImpactsAhead::forget() {
 }
 
 // Whether the arc of the state is known beyond the key: whoever claims makes it complete before.  A
-// claim is that of the last state: what has been replaced meanwhile need not be complete.
+// claim is that of the last state: what has been replaced meanwhile need not be complete.  What
+// moves as it is told counts as driven.
 bool ImpactsAhead::may_be_read(const State& state, const Key& key) const {
   const ProcessId process = state.process;
   if (sim_.body_of(process).fixed()) return true;

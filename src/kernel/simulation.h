@@ -52,12 +52,9 @@ struct Simulation {
   const Process& process(const Body& body) const { return processes[number(body.process)]; }
   // As many as a run may take.
   int threads() const { return options.threads > 0 ? options.threads : Team::cores(); }
-  // What stands before a key, and what groups are decided by.
-  Before before(const Key& key, ReadLog* log = nullptr) const {
-    return Before(scene, graph, key, log);
-  }
-  // The same as it was when so many states had entered.
-  Before before(const Key& key, ReadLog* log, std::uint64_t entered) const {
+  // What stands before a key, and what groups are decided by; as it was when so many had entered.
+  Before before(const Key& key, ReadLog* log = nullptr,
+                std::uint64_t entered = StateGraph::all_states) const {
     return Before(scene, graph, key, log, entered);
   }
 

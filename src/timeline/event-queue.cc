@@ -56,8 +56,6 @@ void EventQueue::withdraw(Handle& handle) {
   if (at < heap_.size()) settle(at, last);
 }
 
-// Priorities are key times or earlier: below a slot whose priority is later than what is sought
-// there is nothing.  In order that ends at once.
 void EventQueue::first_ones(std::vector<Event>& events) const {
   visit_down_from(0, [&](const Slot& slot) {
     if (slot.priority > heap_[0].priority) return false;

@@ -74,6 +74,8 @@ class EventQueue {
     return events_[a.handle].key < events_[b.handle].key;
   }
   // Calls visit(slot) from that place down, and below a slot only where it answers true.
+  // Priorities are key times or earlier: below a slot whose priority is later than what is sought
+  // there is nothing.  In order that ends at once.
   template <class Visit>
   void visit_down_from(std::size_t at, Visit&& visit) const {
     if (at >= heap_.size() || !visit(heap_[at])) return;

@@ -74,12 +74,6 @@ State* StateGraph::last_at_or_before(ProcessId process, const Key& key) const {
   return state;
 }
 
-State* StateGraph::last_before(ProcessId process, const Key& key) const {
-  State* state = tail(process);
-  while (state && state->key >= key) state = state->prev;
-  return state;
-}
-
 State* StateGraph::last_before(ProcessId process, const Key& key, std::uint64_t entered) const {
   State* state = tail(process);
   while (state && (state->entered > entered || state->key >= key)) state = state->prev;

@@ -36,6 +36,7 @@ class StateGraph {
   State* head(ProcessId process) const { return queues_[number(process)].head; }
   State* tail(ProcessId process) const { return queues_[number(process)].tail.get(); }
 
+  static constexpr std::uint64_t all_states = ~std::uint64_t{0};
   // How many states have entered so far, those that are gone again included.
   std::uint64_t entered() const { return entered_; }
   // While states enter others may look at those that entered before.  Called before any state goes:
@@ -49,9 +50,8 @@ class StateGraph {
 
   // The last state with key <= `key` (or < it); null if there is none.
   State* last_at_or_before(ProcessId process, const Key& key) const;
-  State* last_before(ProcessId process, const Key& key) const;
-  // The last of the first `entered` states with key < `key`.
-  State* last_before(ProcessId process, const Key& key, std::uint64_t entered) const;
+  // Of the first `entered` states alone.
+  State* last_before(ProcessId process, const Key& key, std::uint64_t entered = all_states) const;
   // The last state with time <= `time`; null if there is none.
   State* last_at_or_before_time(ProcessId process, double time) const;
 

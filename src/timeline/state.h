@@ -99,7 +99,7 @@ struct StateData {
 struct State : StateData {
   Key key;                    // of the discontinuity that made this state
   ProcessId process{};        // that owns the queue
-  std::uint64_t entered = 0;  // the how manieth state of the graph it was
+  std::uint64_t entered = 0;  // its number, in the order in which all entered
   State* prev = nullptr;
   State* next = nullptr;
   State* ring = this;         // circular list of the states of one discontinuity,
