@@ -44,12 +44,11 @@ void ImpactsAhead::forget() {
 }
 
 // Whether the arc of the state is known beyond the key: whoever claims makes it complete before.  A
-// claim is that of the last state: what has been replaced meanwhile need not be complete.  What
-// moves as it is told counts as driven.
+// claim is that of the last state: what has been replaced meanwhile need not be complete.
 bool ImpactsAhead::may_be_read(const State& state, const Key& key) const {
   const ProcessId process = state.process;
   if (sim_.body_of(process).fixed()) return true;
-  return sim_.processes[number(process)].claimed_time() > key.time && !state.driven() &&
+  return sim_.processes[number(process)].claimed_time() > key.time && !state.may_grow() &&
          sim_.graph.last_before(process, key) == &state;
 }
 

@@ -72,7 +72,8 @@ bool moves_in_group(const State& state) {
 
 // Whether to look at it may complete it.
 bool is_open(const State& state) {
-  return state.driven() || (state.group && !state.group->at_rest && !state.group->arc->complete());
+  return state.may_grow() ||
+         (state.group && !state.group->at_rest && !state.group->arc->complete());
 }
 
 // ---- outcomes ----

@@ -94,6 +94,8 @@ struct StateData {
   const Parabola* ballistic() const { return follows ? follows->ballistic() : &flight.path(); }
   // Of a dynamic body: it is isolated and does not fly; what acts on it is integrated.
   bool driven() const { return follows && !group; }
+  // Whether to look at it beyond what was claimed may compute more of it.
+  bool may_grow() const { return driven() && (follows->stepped() || follows->calls_out()); }
 };
 
 struct State : StateData {

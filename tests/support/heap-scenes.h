@@ -82,6 +82,31 @@ inline Scene platform_scene(double duration) {
   return {"platform", duration, fill_world};
 }
 
+// Balls in a box that turns about a level axis, 2 rad/s.
+inline Scene tumbler_scene(int count, double duration) {
+  const auto fill_world = [=](World& world) {
+    set_contact_for_all(world, 0.2, 0.5);
+    std::vector<ShapePtr> sides;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-0.55, 0.55})
+        sides.push_back(place_shape(make_box(Vec3::Constant(1.2) - 1.1 * Vec3::Unit(axis)),
+                                    {side * Vec3::Unit(axis), Quat::Identity()}));
+    BodyDef box;
+    box.shape = make_union(sides);
+    std::vector<Keyframe> turns;
+    for (int k = 0; k <= 4 * duration; ++k)
+      turns.push_back({0.5 * k, Vec3::Zero(), rotation_by(Vec3(0, k, 0))});
+    box.motion = make_keyframes(turns, false);
+    world.add_body(box);
+    Random random(41);
+    for (int k = 0; k < count; ++k)
+      add_ball(world, 0.07,
+               0.2 * Vec3(k % 4 - 1.5, k / 4 % 4 - 1.5, k / 16 - 1) + random_vector(random, 0.02),
+               Vec3::Zero());
+  };
+  return {"tumbler-" + std::to_string(count), duration, fill_world};
+}
+
 // Boxes and rocks that fall and slide over tiles: every step of theirs crosses a seam.
 inline Scene tiles_scene(double duration) {
   const auto fill_world = [](World& world) {
