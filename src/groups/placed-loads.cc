@@ -217,7 +217,7 @@ class Balance {
   }
 
   bool step() {
-    matrix_.clear();
+    matrix_.clear(numbers_);
     for (int i = 0; i < members(); ++i) add_block(i, i, mass_[at(i)]);
     for (const Spring& s : springs_) {
       const Mat36* J[2] = {&s.Ja, &s.Jb};
@@ -275,6 +275,7 @@ class Balance {
   std::vector<Spring> springs_;
   double depth_, gravity_, rate_ = 0;  // 1/tau^2
   BodyMatrix matrix_;
+  BodyMatrix::Numbers numbers_;
   std::vector<Mat6> mass_;
   std::vector<Vec6> weight_, u_, from_, rest_;
   std::vector<double> right_;

@@ -63,14 +63,17 @@ BodyMatrix::BodyMatrix(int bodies, const std::vector<std::pair<int, int>>& pairs
 
 BodyMatrix::~BodyMatrix() = default;
 
-void BodyMatrix::clear() { values_.assign(blocks_.size(), 0.0); }
+void BodyMatrix::clear(Numbers& numbers) {
+  numbers_ = &numbers;
+  numbers.values.assign(blocks_.size(), 0.0);
+}
 
 bool BodyMatrix::factor() {
   ++factorizations_;
-  factors_ = values_;
+  numbers_->factors = numbers_->values;
   // the pivoting within one block is all that one body needs
   unchecked_ = bodies_ > 1;
-  by_pivoted_ = !blocks_.factor(factors_.data());
+  by_pivoted_ = !blocks_.factor(numbers_->factors.data());
   return !by_pivoted_ || (bodies_ > 1 && factor_pivoted());
 }
 
@@ -97,15 +100,15 @@ bool BodyMatrix::factor_pivoted() {
 
 bool BodyMatrix::solve(double* right_side) {
   if (!by_pivoted_ && !unchecked_) {
-    blocks_.solve(factors_.data(), right_side);
+    blocks_.solve(numbers_->factors.data(), right_side);
     return true;
   }
   if (!by_pivoted_) {
     thread_local std::vector<double> given;
     given.assign(right_side, right_side + B * bodies_);
-    blocks_.solve(factors_.data(), right_side);
+    blocks_.solve(numbers_->factors.data(), right_side);
     unchecked_ = false;
-    if (blocks_.backward_error(values_.data(), right_side, given.data()) < trusted_error)
+    if (blocks_.backward_error(numbers_->values.data(), right_side, given.data()) < trusted_error)
       return true;
     std::copy(given.begin(), given.end(), right_side);
     if (!factor_pivoted()) return false;

@@ -29,11 +29,17 @@ class BodyMatrix {
   BodyMatrix(const BodyMatrix&) = delete;
   BodyMatrix& operator=(const BodyMatrix&) = delete;
 
-  // All zeros; first of all, too.
-  void clear();
+  // What it is made of while it is factored and solved: for all matrices of a thread in turn, or
+  // each of many large ones would have its own.
+  struct Numbers {
+    std::vector<double> values, factors;
+  };
+
+  // All zeros, in `numbers` from now on; first of all, too.
+  void clear(Numbers& numbers);
   // A block of the pattern, by columns; to be added to.
   std::size_t offset(int row, int column) const { return blocks_.offset(row, column); }
-  double* at(std::size_t offset) { return values_.data() + offset; }
+  double* at(std::size_t offset) { return numbers_->values.data() + offset; }
   // False: singular, or not finite.
   bool factor();
   // False: singular after all (then the right side is spoilt).
@@ -48,7 +54,7 @@ class BodyMatrix {
 
   int bodies_;
   std::vector<std::pair<int, int>> pairs_;
-  std::vector<double> values_, factors_;
+  Numbers* numbers_ = nullptr;
   BlockLu blocks_;
   bool unchecked_ = false;  // no solution since the factorisation
   std::unique_ptr<Pivoted> pivoted_factors_;

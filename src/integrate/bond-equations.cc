@@ -113,7 +113,7 @@ class Stretching {
 // large at any phase.
 bool swings_widely(const GroupStart& start, const GroupSystem& system, GroupScratch& scratch,
                    double time, const double* y, const double* slope, double* other) {
-  const GroupSystem::SpringRates rates = system.spring_rates();
+  const GroupSystem::SpringRates rates = system.spring_rates(scratch);
   const double fastest = std::sqrt(rates.squared_frequency);
   if (!(fastest > 0) || rates.damping > answer::most_explicit_damping * fastest) return false;
 

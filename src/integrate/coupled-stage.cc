@@ -122,9 +122,8 @@ void GroupSystem::change_couplings(const Couplings& couplings, GroupScratch& s) 
 
 // What else acts on a member, by the changes in the scratch.
 void GroupSystem::change_forced(int member, GroupScratch& s) const {
-  const Member& m = member_[index(member)];
-  if (!m.forces) return;
-  const Vec6 wrench = forced_change(m, s.changes[index(member)]);
+  if (!member_[index(member)].forces) return;
+  const Vec6 wrench = change_of(s.members[index(member)].forced, s.changes[index(member)]);
   vec(s.wrenches[index(member)].f) += wrench.head<3>();
   vec(s.wrenches[index(member)].t) += wrench.tail<3>();
 }
@@ -162,8 +161,8 @@ void GroupSystem::gather_column(const Couplings& couplings, GroupScratch& s,
 }
 
 bool GroupSystem::factor_coupled(GroupScratch& s) {
-  for (Member& m : member_)
-    if (!m.is_link) set_body_stage(m, sigma_);
+  for (int i = 0; i < members_; ++i)
+    if (!member_[index(i)].is_link) s.members[index(i)].set_stage_rate(sigma_);
   for (const auto& tree : trees_) tree->set_stage_rate(sigma_);
   for (int p = 0; p < packs(); ++p)
     set_stage_rate(packs_.packs[index(p)], sigma_, s.linear[index(p)]);
@@ -189,8 +188,8 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
         change.x[c] = 1 / sigma_;
         change.v[c] = 1;
       } else {
-        vec(change.th) = m.P.col(c - 3);
-        vec(change.w) = m.V.col(c - 3);
+        vec(change.th) = s.members[index(i)].P.col(c - 3);
+        vec(change.w) = s.members[index(i)].V.col(c - 3);
       }
       column[index(m.unknown + c)] = (c < 3 ? m.mass : 1.0) * sigma_;
       gather_column(couplings_of_slot_[index(i)], s, {&i, 1}, column.data());
@@ -227,9 +226,8 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
 
   // positions of the eliminated part
   for (int i = 0; i < members_; ++i) {
-    const Member& m = member_[index(i)];
-    if (m.is_link) continue;
-    eliminate_body(m, stage + 12 * i, s.changes[index(i)]);
+    if (!member_[index(i)].is_link)
+      s.members[index(i)].eliminate(stage + 12 * i, s.changes[index(i)]);
   }
   thread_local std::vector<double> work;
   for (std::size_t t = 0; t < trees_.size(); ++t) {
@@ -263,7 +261,7 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
   for (int i = 0; i < members_; ++i) {
     const Member& m = member_[index(i)];
     if (m.is_link) continue;
-    take_body(m, right + m.unknown, s.changes[index(i)], stage + 12 * i);
+    s.members[index(i)].take(right + m.unknown, s.changes[index(i)], stage + 12 * i);
   }
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     TreeInGroup& tree = *trees_[t];

@@ -16,14 +16,6 @@ namespace {
 // moves.
 constexpr double forward_weights[] = {-25.0 / 12, 4, -3, 4.0 / 3, -0.25};
 
-// Of a wrench by the change of a body.
-Vec6 change_of(const WrenchDerivative& by, const BodyChange& change) {
-  Vec6 pose, twist;
-  pose << vec(change.x), vec(change.th);
-  twist << vec(change.v), vec(change.w);
-  return by.by_pose * pose + by.by_twist * twist;
-}
-
 }  // namespace
 
 void GroupSystem::linearise(double time, const double* y, GroupScratch& s, double* slope) {
@@ -32,16 +24,17 @@ void GroupSystem::linearise(double time, const double* y, GroupScratch& s, doubl
     if (packs_.packs[index(p)].feature != ContactFeature::plane)
       sides_[index(p)] = s.linear[index(p)].n;
   for (int i = 0; i < members_; ++i) {
-    Member& m = member_[index(i)];
-    if (m.forces) {
+    const Member& member = member_[index(i)];
+    MemberLinear& m = s.members[index(i)];
+    if (member.forces) {
       m.point = point_of(i, y, s.bodies[index(i)]);
-      m.forced = m.forces->derivative(time, m.point);
+      m.forced = member.forces->derivative(time, m.point);
     }
-    if (m.is_link) continue;
+    if (member.is_link) continue;
     const Mat3 R =
         Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.bodies[index(i)].R);
     m.w = vec(s.bodies[index(i)].w);
-    m.J = R * m.inverse_moments.asDiagonal() * R.transpose();
+    m.J = R * member.inverse_moments.asDiagonal() * R.transpose();
     m.W = m.J * cross_matrix(vec(y + 12 * i + 9)) - cross_matrix(m.w);
   }
   for (HeldPair& pair : bonds_) {
@@ -100,7 +93,7 @@ void GroupSystem::set_time_slope(double time, double step, const double* y, cons
     if (!m.forces || !(m.forces->longest_unlooked() < never)) continue;
     BodyWrench& wrench = s.wrenches[index(i)];
     for (int j = 0; j < 5; ++j) {
-      const Wrench f = m.forces->wrench(time + j * d, m.point);
+      const Wrench f = m.forces->wrench(time + j * d, s.members[index(i)].point);
       vec(wrench.f) += forward_weights[j] / d * f.force;
       vec(wrench.t) += forward_weights[j] / d * f.torque;
     }
@@ -117,11 +110,12 @@ void GroupSystem::set_time_slope(double time, double step, const double* y, cons
   }
 }
 
-LaneBody GroupSystem::gather(const ContactPack& pack, const int (&slot)[lane_count]) const {
+LaneBody GroupSystem::gather(const ContactPack& pack, const int (&slot)[lane_count],
+                             const GroupScratch& s) const {
   LaneBody out = {};
   if (pack.uniform) {
     if (slot[0] >= members_) return out;
-    const Member& m = member_[index(slot[0])];
+    const MemberLinear& m = s.members[index(slot[0])];
     for (int r = 0; r < 3; ++r) {
       out.P.row[r] = {lanes(m.P(r, 0)), lanes(m.P(r, 1)), lanes(m.P(r, 2))};
       out.V.row[r] = {lanes(m.V(r, 0)), lanes(m.V(r, 1)), lanes(m.V(r, 2))};
@@ -130,7 +124,7 @@ LaneBody GroupSystem::gather(const ContactPack& pack, const int (&slot)[lane_cou
   }
   for (int lane = 0; lane < lane_count; ++lane) {
     if (slot[lane] >= members_) continue;
-    const Member& m = member_[index(slot[lane])];
+    const MemberLinear& m = s.members[index(slot[lane])];
     for (int r = 0; r < 3; ++r) {
       set_lane(out.P.row[r], lane, m.P.row(r));
       set_lane(out.V.row[r], lane, m.V.row(r));
@@ -192,7 +186,7 @@ double GroupSystem::squared_frequency_of(int bond) const {
          rate_of(pair.given.b, pair.derivative.of[1][1].by_pose);
 }
 
-GroupSystem::SpringRates GroupSystem::spring_rates() const {
+GroupSystem::SpringRates GroupSystem::spring_rates(const GroupScratch& s) const {
   std::vector<SpringRates> total(index(members_));
   const auto add = [&](int member, const WrenchDerivative& by) {
     total[index(member)].squared_frequency += rate_of(member, by.by_pose);
@@ -204,7 +198,7 @@ GroupSystem::SpringRates GroupSystem::spring_rates() const {
   }
   SpringRates largest;
   for (int i = 0; i < members_; ++i) {
-    if (member_[index(i)].forces) add(i, member_[index(i)].forced);
+    if (member_[index(i)].forces) add(i, s.members[index(i)].forced);
     const SpringRates& of = total[index(i)];
     largest.squared_frequency = std::max(largest.squared_frequency, of.squared_frequency);
     largest.damping = std::max(largest.damping, of.damping);
@@ -212,30 +206,23 @@ GroupSystem::SpringRates GroupSystem::spring_rates() const {
   return largest;
 }
 
-void GroupSystem::set_body_stage(Member& m, double sigma) const {
-  Mat3 stage = -m.W - 0.5 * cross_matrix(m.w);
-  stage.diagonal().array() += sigma;
-  m.A = stage.inverse();
-  m.P = m.A * m.J;
-  m.V = m.J + m.W * m.P;
-}
-
 bool GroupSystem::factor(double sigma, GroupScratch& s) {
   sigma_ = sigma;
   if (coupled_) return factor_coupled(s);
-  matrix_.clear();
+  matrix_.clear(s.matrix);
   for (int i = 0; i < members_; ++i) {
-    Member& m = member_[index(i)];
-    set_body_stage(m, sigma);
+    const Member& m = member_[index(i)];
+    MemberLinear& linear = s.members[index(i)];
+    linear.set_stage_rate(sigma);
     double* block = matrix_.at(matrix_.offset(i, i));
     for (int r = 0; r < 6; ++r) block[r * BodyMatrix::block + r] = (r < 3 ? m.mass : 1.0) * sigma;
-    if (m.forces) subtract_from_block(m.forced, sigma, i, i);
+    if (m.forces) subtract_from_block(linear.forced, linear, i, i);
   }
   for (const HeldPair& pair : bonds_) {
     const int body[2] = {pair.given.a, pair.given.b};
     for (const int Y : {0, 1})
       for (const int X : {0, 1})
-        subtract_from_block(pair.derivative.of[Y][X], sigma, body[Y], body[X]);
+        subtract_from_block(pair.derivative.of[Y][X], s.members[index(body[X])], body[Y], body[X]);
   }
   PackBlocks blocks;
   for (int p = 0; p < packs(); ++p) {
@@ -243,7 +230,7 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
     PackLinear& linear = s.linear[index(p)];
     if (linear.idle) continue;
     set_stage_rate(pack, sigma, linear);
-    pack_blocks(pack, linear, sigma, gather(pack, pack.a), gather(pack, pack.b), blocks);
+    pack_blocks(pack, linear, sigma, gather(pack, pack.a, s), gather(pack, pack.b, s), blocks);
     const auto add_lane = [&](int lane, auto number) {
       const int body[2] = {pack.a[lane], pack.b[lane]};
       for (int Y = 0; Y < 2; ++Y)
@@ -263,10 +250,10 @@ bool GroupSystem::factor(double sigma, GroupScratch& s) {
 }
 
 // What the wrench on Y changes by with the stage of X: d(x) = kv/s, d(theta) = P kL, dw = V kL.
-void GroupSystem::subtract_from_block(const WrenchDerivative& by, double sigma, int Y, int X) {
-  const Member& m = member_[index(X)];
+void GroupSystem::subtract_from_block(const WrenchDerivative& by, const MemberLinear& m, int Y,
+                                      int X) {
   Eigen::Map<Mat6> block(matrix_.at(matrix_.offset(Y, X)));
-  block.leftCols<3>() -= by.by_pose.leftCols<3>() / sigma + by.by_twist.leftCols<3>();
+  block.leftCols<3>() -= by.by_pose.leftCols<3>() / sigma_ + by.by_twist.leftCols<3>();
   block.rightCols<3>() -= by.by_pose.rightCols<3>() * m.P + by.by_twist.rightCols<3>() * m.V;
 }
 
@@ -282,33 +269,6 @@ void GroupSystem::change_bond(int number, GroupScratch& s) const {
     vec(wrench.f) += sum.head<3>();
     vec(wrench.t) += sum.tail<3>();
   }
-}
-
-// What the right side of a body's positions says of its changes.
-void GroupSystem::eliminate_body(const Member& m, const double* r, BodyChange& change) const {
-  vec(change.x) = (1 / sigma_) * vec(r);
-  vec(change.th) = m.A * vec(r + 3);
-  vec(change.v).setZero();
-  vec(change.w) = m.W * vec(change.th);
-}
-
-// What velocity and momentum were solved for, into the changes and the stage.
-void GroupSystem::take_body(const Member& m, const double* solved, BodyChange& change,
-                            double* k) const {
-  const Vec3 kv = vec(solved), kL = vec(solved + 3);
-  vec(change.x) += (1 / sigma_) * kv;
-  vec(change.th) += m.P * kL;
-  vec(change.v) = kv;
-  vec(change.w) += m.V * kL;
-  vec(k) = vec(change.x);
-  vec(k + 3) = vec(change.th);
-  vec(k + 6) = kv;
-  vec(k + 9) = kL;
-}
-
-// Of the force and the torque of what else acts on it.
-Vec6 GroupSystem::forced_change(const Member& m, const BodyChange& change) const {
-  return change_of(m.forced, change);
 }
 
 // The right sides of the stretches and the bends of a pack.
@@ -367,7 +327,7 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
 
   // positions of the eliminated part
   for (int i = 0; i < members_; ++i)
-    eliminate_body(member_[index(i)], stage + 12 * i, s.changes[index(i)]);
+    s.members[index(i)].eliminate(stage + 12 * i, s.changes[index(i)]);
 
   // right side
   scatter_stretches(s, stage);
@@ -378,13 +338,14 @@ bool GroupSystem::solve(GroupScratch& s, double* stage) {
     const double* r = stage + 12 * i;
     vec(right + 6 * i) = m.mass * vec(r + 6) + vec(s.wrenches[index(i)].f);
     vec(right + 6 * i + 3) = vec(r + 9) + vec(s.wrenches[index(i)].t);
-    if (m.forces) Eigen::Map<Vec6>(right + 6 * i) += forced_change(m, s.changes[index(i)]);
+    if (m.forces)
+      Eigen::Map<Vec6>(right + 6 * i) += change_of(s.members[index(i)].forced, s.changes[index(i)]);
   }
   if (!matrix_.solve(right)) return false;
 
   // all unknowns
   for (int i = 0; i < members_; ++i)
-    take_body(member_[index(i)], right + 6 * i, s.changes[index(i)], stage + 12 * i);
+    s.members[index(i)].take(right + 6 * i, s.changes[index(i)], stage + 12 * i);
   solve_stretches(s, stage);
   return true;
 }

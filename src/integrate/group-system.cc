@@ -84,6 +84,7 @@ GroupScratch& GroupSystem::scratch() const {
   };
   const std::size_t row = in_fours(size_);
   const std::size_t slots = index(packs_.slots);
+  fit(shared.members, index(members()));
   fit(shared.bodies, slots);
   fit(shared.changes, slots);
   fit(shared.wrenches, slots);

@@ -22,6 +22,7 @@
 #include "integrate/body-matrix.h"
 #include "integrate/contact-linear.h"
 #include "integrate/coupled-matrix.h"
+#include "integrate/member-linear.h"
 #include "integrate/tree-in-group.h"
 
 namespace tw {
@@ -29,12 +30,14 @@ namespace tw {
 // Work space of a step, shared by all arcs of a thread.  Nothing in it is read that the step did
 // not write.
 struct GroupScratch {
+  std::vector<MemberLinear> members;
   std::vector<BodyKinematics> bodies;  // by slot
   std::vector<BodyChange> changes;     // by slot
   std::vector<BodyWrench> wrenches;    // by slot
   std::vector<PackLinear> linear;      // by pack
   std::vector<PackSides> sides;        // by pack, of the stage
-  std::vector<double> right_side;      // the unknowns; at least one a member
+  BodyMatrix::Numbers matrix;
+  std::vector<double> right_side;  // the unknowns; at least one a member
   std::vector<double> state, slope, time_slope, trial, stage[6];
   double moving_at = -never;  // s: where the outside bodies that move stand
 };
@@ -90,7 +93,7 @@ class GroupSystem {
   struct SpringRates {
     double squared_frequency = 0, damping = 0;
   };
-  SpringRates spring_rates() const;
+  SpringRates spring_rates(const GroupScratch& scratch) const;
   // The same frequency of one bond, of both its bodies.
   double squared_frequency_of(int bond) const;
   // For a step h, sigma = 1/(gamma h).  False: singular.
@@ -114,15 +117,9 @@ class GroupSystem {
     double mass = 1, inverse_mass = 1;
     Vec3 inverse_moments = Vec3::Ones(), force = Vec3::Zero(), torque = Vec3::Zero();
     Quat q0 = Quat::Identity();
-    // at the step's start; A, P = A J and V = J + W P by the step
-    Mat3 J = Mat3::Zero(), W = Mat3::Zero(), A = Mat3::Zero(), P = Mat3::Zero(), V = Mat3::Zero();
-    Vec3 w = Vec3::Zero();
     bool is_link = false;
-    int unknown = 0;  // its first one, where there are multibodies
-    // what else acts on it, its derivative at the step's start, and what it did there
-    ForcesPtr forces;
-    WrenchDerivative forced;
-    PoseTwist point;
+    int unknown = 0;   // its first one, where there are multibodies
+    ForcesPtr forces;  // what else acts on it
   };
 
   struct HeldPair {
@@ -142,14 +139,11 @@ class GroupSystem {
   // Outside bodies that move, where they do not stand there since set_outside, or since an
   // evaluation after it; the others are where set_outside put them.
   void set_moving(double time, GroupScratch& scratch) const;
-  LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count]) const;
+  LaneBody gather(const ContactPack& pack, const int (&slot)[lane_count],
+                  const GroupScratch& scratch) const;
   // Parts of a stage (group-stage.cc).
-  void eliminate_body(const Member& member, const double* right, BodyChange& change) const;
-  void take_body(const Member& member, const double* solved, BodyChange& change,
-                 double* stage) const;
-  Vec6 forced_change(const Member& member, const BodyChange& change) const;
   void change_bond(int bond, GroupScratch& scratch) const;
-  void subtract_from_block(const WrenchDerivative& by, double sigma, int Y, int X);
+  void subtract_from_block(const WrenchDerivative& by, const MemberLinear& of_X, int Y, int X);
   PackSides sides_of(int pack, const PackLinear& linear, const double* stage) const;
   void scatter_stretches(GroupScratch& scratch, const double* stage) const;
   void solve_stretches(GroupScratch& scratch, double* stage) const;
@@ -163,7 +157,6 @@ class GroupSystem {
   };
   void make_coupled();
   double rate_of(int member, const Mat6& derivative) const;
-  void set_body_stage(Member& member, double sigma) const;
   bool factor_coupled(GroupScratch& scratch);
   bool solve_coupled(GroupScratch& scratch, double* stage);
   // Calls visit(slot) for each body of these, perhaps more than once.

@@ -15,8 +15,15 @@ namespace {
 constexpr int B = BodyMatrix::block;
 using Pairs = std::vector<std::pair<int, int>>;
 
+// With numbers of its own.
+struct Matrix : BodyMatrix {
+  using BodyMatrix::BodyMatrix;
+  void clear() { BodyMatrix::clear(numbers); }
+  Numbers numbers;
+};
+
 // Fills matrix and its dense twin with numbers in [-1, 1], `diagonal` added to the diagonal.
-Eigen::MatrixXd fill(BodyMatrix& matrix, int bodies, const Pairs& pairs, double diagonal,
+Eigen::MatrixXd fill(Matrix& matrix, int bodies, const Pairs& pairs, double diagonal,
                      unsigned seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -50,7 +57,7 @@ Pairs random_pairs(int bodies, int count, unsigned seed) {
   return pairs;
 }
 
-double solution_error(BodyMatrix& matrix, const Eigen::MatrixXd& twin) {
+double solution_error(Matrix& matrix, const Eigen::MatrixXd& twin) {
   const Eigen::VectorXd expected = Eigen::VectorXd::LinSpaced(twin.rows(), -1, 2);
   Eigen::VectorXd x = twin * expected;
   if (!matrix.solve(x.data())) return std::numeric_limits<double>::infinity();
@@ -60,7 +67,7 @@ double solution_error(BodyMatrix& matrix, const Eigen::MatrixXd& twin) {
 TEST(BodyMatrix, solves_random_graphs_of_bodies_to_1e_12) {
   for (const int bodies : {1, 2, 3, 9, 40}) {
     const Pairs pairs = bodies > 1 ? random_pairs(bodies, 2 * bodies, 5) : Pairs();
-    BodyMatrix matrix(bodies, pairs);
+    Matrix matrix(bodies, pairs);
     for (unsigned seed = 0; seed < 5; ++seed) {
       const Eigen::MatrixXd twin = fill(matrix, bodies, pairs, 20, seed);
       ASSERT_TRUE(matrix.factor());
@@ -77,7 +84,7 @@ TEST(BodyMatrix, solves_random_graphs_of_bodies_to_1e_12) {
 // it finds large.
 TEST(BodyMatrix, units_of_angular_momentum_do_not_matter) {
   for (const double unit : {0x1p-100, 0x1p-40, 0x1p40}) {
-    BodyMatrix matrix(1, {});
+    Matrix matrix(1, {});
     Eigen::MatrixXd twin = fill(matrix, 1, {}, 20, 7);
     twin.rightCols(3) /= unit;
     twin.bottomRows(3) *= unit;
@@ -96,7 +103,7 @@ TEST(BodyMatrix, units_of_angular_momentum_do_not_matter) {
 }
 
 TEST(BodyMatrix, one_body_is_pivoted_within_its_block) {
-  BodyMatrix matrix(1, {});
+  Matrix matrix(1, {});
   const Eigen::MatrixXd twin = fill(matrix, 1, {}, 0, 3);
   // a zero diagonal all over
   Eigen::MatrixXd hollow = twin;
@@ -108,7 +115,7 @@ TEST(BodyMatrix, one_body_is_pivoted_within_its_block) {
 
 TEST(BodyMatrix, pivoting_among_all_rows_takes_over_where_diagonal_blocks_are_singular) {
   const Pairs pairs = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-  BodyMatrix matrix(4, pairs);
+  Matrix matrix(4, pairs);
   for (const double tiny : {0.0, 1e-15}) {
     // diagonal blocks vanish or nearly so, the rest decides
     Eigen::MatrixXd twin = fill(matrix, 4, {{0, 1}, {2, 3}}, 0, 9);
@@ -131,7 +138,7 @@ TEST(BodyMatrix, pivoting_among_all_rows_takes_over_where_diagonal_blocks_are_si
 
 TEST(BodyMatrix, singular_matrices_are_told_and_numbers_that_are_none_come_through) {
   for (const int bodies : {1, 3}) {
-    BodyMatrix matrix(bodies, {});
+    Matrix matrix(bodies, {});
     matrix.clear();
     EXPECT_FALSE(matrix.factor());
     fill(matrix, bodies, {}, 20, 1);
@@ -144,9 +151,9 @@ TEST(BodyMatrix, singular_matrices_are_told_and_numbers_that_are_none_come_throu
 
 TEST(BodyMatrix, order_of_pairs_does_not_matter) {
   Pairs pairs = random_pairs(12, 30, 4), reversed(pairs.rbegin(), pairs.rend());
-  BodyMatrix a(12, pairs), b(12, reversed);
+  Matrix a(12, pairs), b(12, reversed);
   // one value per block, whatever the order
-  const auto set = [&](BodyMatrix& m) {
+  const auto set = [&](Matrix& m) {
     m.clear();
     for (const auto& [i, j] : pairs)
       for (const auto& [row, column] : {std::pair(i, j), std::pair(j, i)})

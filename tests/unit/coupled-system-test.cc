@@ -79,6 +79,7 @@ GroupStart random_group(Random& random) {
 struct Bench {
   explicit Bench(const GroupStart& start) : system(start) {
     const std::size_t slots = static_cast<std::size_t>(system.contact_packs().slots);
+    scratch.members.resize(static_cast<std::size_t>(system.members()));
     scratch.bodies.resize(slots);
     scratch.changes.resize(slots);
     scratch.wrenches.resize(slots);
