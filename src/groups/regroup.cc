@@ -3,6 +3,7 @@
 #include "groups/regroup.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "groups/changes.h"
 #include "groups/check-times.h"
@@ -46,10 +47,14 @@ std::vector<Successor> successors_of(const Region& region, const Before& before,
                                      const std::vector<Successor>& given) {
   std::vector<Successor> all = given;
   all.reserve(given.size() + region.inside.size() + region.border.size());
+  // of a heap all are given
+  std::vector<std::pair<ProcessId, std::size_t>> places;
+  for (std::size_t i = 0; i < given.size(); ++i) places.emplace_back(given[i].process(), i);
+  std::sort(places.begin(), places.end());
   const auto known = [&](ProcessId process) {
-    for (Successor& successor : all)
-      if (successor.process() == process) return &successor;
-    return static_cast<Successor*>(nullptr);
+    const auto at =
+        std::lower_bound(places.begin(), places.end(), std::pair(process, std::size_t{0}));
+    return at != places.end() && at->first == process ? &all[at->second] : nullptr;
   };
   const auto add_record = [&](ProcessId process, Role role) {
     all.push_back(make_successor(before, process, false));

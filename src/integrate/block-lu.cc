@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 #ifdef __FMA__
 #include <immintrin.h>
 #endif
@@ -171,6 +172,40 @@ void visit_set(const Word* set, int words, Visit visit) {
 
 std::size_t u(int i) { return static_cast<std::size_t>(i); }
 
+// Degrees of rows, and the least of every so many.
+class Degrees {
+ public:
+  explicit Degrees(std::vector<int> of) : of_(std::move(of)) {
+    for (std::size_t first = 0; first < of_.size(); first += together)
+      least_.push_back(least_from(first));
+  }
+  int operator[](int row) const { return of_[u(row)]; }
+  void set(int row, int degree) {
+    const int old = std::exchange(of_[u(row)], degree);
+    int& least = least_[u(row) / together];
+    if (degree <= least)
+      least = degree;
+    else if (old == least)
+      least = least_from(u(row) / together * together);
+  }
+  // The first row of the least degree.
+  int first_least() const {
+    const auto block = std::min_element(least_.begin(), least_.end());
+    const auto from = of_.begin() + (block - least_.begin()) * std::ptrdiff_t{together};
+    return static_cast<int>(std::find(from, of_.end(), *block) - of_.begin());
+  }
+
+ private:
+  static constexpr std::size_t together = 64;
+  int least_from(std::size_t first) const {
+    const auto from = of_.begin() + static_cast<std::ptrdiff_t>(first);
+    return *std::min_element(
+        from, from + static_cast<std::ptrdiff_t>(std::min(together, of_.size() - first)));
+  }
+
+  std::vector<int> of_, least_;
+};
+
 }  // namespace
 
 BlockLu::BlockLu(int rows, const std::vector<std::pair<int, int>>& pairs) : rows_(rows) {
@@ -183,7 +218,6 @@ BlockLu::BlockLu(int rows, const std::vector<std::pair<int, int>>& pairs) : rows
 void BlockLu::order(const std::vector<std::pair<int, int>>& pairs) {
   const int words = (rows_ + word_bits - 1) / word_bits;
   std::vector<Word> graph(u(rows_) * u(words));
-  std::vector<int> degree(u(rows_));
   const auto set_of = [&](int i) { return graph.data() + u(words) * u(i); };
   const auto bit = [](int i) { return Word{1} << (i % word_bits); };
   const auto count = [&](int i) {
@@ -195,7 +229,10 @@ void BlockLu::order(const std::vector<std::pair<int, int>>& pairs) {
     set_of(i)[j / word_bits] |= bit(j);
     set_of(j)[i / word_bits] |= bit(i);
   }
-  for (int i = 0; i < rows_; ++i) degree[u(i)] = count(i);
+  std::vector<int> counts(u(rows_));
+  for (int i = 0; i < rows_; ++i) counts[u(i)] = count(i);
+  Degrees degree(std::move(counts));
+  std::vector<int> filled;  // the words of the pivot's set that are not empty
 
   // bodies in the place of positions at first
   positions_.resize(u(rows_));
@@ -204,17 +241,25 @@ void BlockLu::order(const std::vector<std::pair<int, int>>& pairs) {
   later_.reserve(2 * pairs.size());
   starts_.push_back(0);
   for (int position = 0; position < rows_; ++position) {
-    const int pivot =
-        static_cast<int>(std::min_element(degree.begin(), degree.end()) - degree.begin());
-    degree[u(pivot)] = rows_;
+    const int pivot = degree.first_least();
+    degree.set(pivot, rows_);
     pivots_.push_back(pivot);
     positions_[u(pivot)] = position;
-    visit_set(set_of(pivot), words, [&](int i) {
+    const Word* theirs = set_of(pivot);
+    filled.clear();
+    for (int w = 0; w < words; ++w)
+      if (theirs[w] != 0) filled.push_back(w);
+    visit_set(theirs, words, [&](int i) {
       later_.push_back(i);
-      for (int w = 0; w < words; ++w) set_of(i)[w] |= set_of(pivot)[w];
-      set_of(i)[i / word_bits] &= ~bit(i);
-      set_of(i)[pivot / word_bits] &= ~bit(pivot);
-      degree[u(i)] = count(i);
+      Word* own = set_of(i);
+      int more = -2;  // the pivot goes; the row itself, which is among theirs
+      for (const int w : filled) {
+        more += std::popcount(theirs[w] & ~own[w]);
+        own[w] |= theirs[w];
+      }
+      own[i / word_bits] &= ~bit(i);
+      own[pivot / word_bits] &= ~bit(pivot);
+      degree.set(i, degree[i] + more);
     });
     starts_.push_back(later_.size());
   }

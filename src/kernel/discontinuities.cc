@@ -122,12 +122,13 @@ void Discontinuities::enter(const Key& key, std::vector<Successor>& successors) 
   append(key, successors);
 
   // receivers are treated from `key` where their arc changed, others from the least key lost
+  const std::size_t rolled_back = affected.size();
   for (const Successor& successor : successors) {
     const bool arc_changed = successor.role == Role::new_arc;
-    const auto known = std::find_if(affected.begin(), affected.end(), [&](const Affected& t) {
-      return t.process == successor.process();
-    });
-    if (known != affected.end())
+    const auto end = affected.begin() + static_cast<std::ptrdiff_t>(rolled_back);
+    const auto known = std::find_if(
+        affected.begin(), end, [&](const Affected& t) { return t.process == successor.process(); });
+    if (known != end)
       known->least_removed = std::min(known->least_removed, key);
     else if (arc_changed)
       affected.push_back({successor.process(), key});
