@@ -9,7 +9,7 @@
 (define-scene-parameter boxes 4 "boxes of each arm")
 (define-scene-parameter rate 50 "Hz of the controllers")
 
-(scene #:title "Robots" #:duration 120 #:accuracy 1e-4)
+(scene #:title "Robots" #:duration 120 #:accuracy 1e-3)
 
 (define pi (acos -1))
 (define side 0.14)                         ; m, of a box

@@ -18,7 +18,8 @@
       ((timewarp multibodies)
        add-multibody! multibody? multibody-name multibody-links body-multibody link-body
        load-urdf find-multibody world-multibodies link link? joint? revolute prismatic universal spherical weld
-       joint-names joint-limits joint-position joint-velocity joint-torque joint-servo
+       joint-names joint-limits joint-max-torque joint-max-velocity
+       joint-position joint-velocity joint-torque joint-servo
        joint-positions joint-velocities joint-torques
        servo servo? servo-target servo-target-velocity servo-stiffness servo-damping
        servo-max-torque

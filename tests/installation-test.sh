@@ -110,8 +110,9 @@ claim "and does with GUILE_LOAD_PATH" \
 # ---- beside the program ----
 
 pc=$(find "$moved" -name timewarp.pc)
-claim "pkg-config knows the folders" \
-  [ -n "$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --variable=guilesitedir timewarp)" ]
+claim "pkg-config knows the folders, in the place where they are" \
+  [ "$(eval "realpath -m $(PKG_CONFIG_PATH="$(dirname "$pc")" pkg-config --variable=guilesitedir timewarp)")" = \
+    "$(dirname "$(find "$moved" -name timewarp.scm)")" ]
 claim "its file is valid" env PKG_CONFIG_PATH="$(dirname "$pc")" pkg-config --validate timewarp
 
 if [ -e "$TW_BUILDDIR/doc/timewarp.info" ]; then

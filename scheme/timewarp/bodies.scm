@@ -14,11 +14,11 @@
 
 (define body-keywords
   '(#:name #:shape #:density #:mass #:inertia #:center-of-mass #:position #:orientation #:velocity
-    #:angular-velocity #:fixed? #:motion #:max-speed #:material #:color #:slots #:visible?))
+    #:angular-velocity #:fixed? #:motion #:max-speed #:material #:color #:slots #:visible? #:visual))
 
 (define* (add-body! #:key name shape density mass inertia center-of-mass position orientation
                     velocity angular-velocity fixed? motion max-speed material color slots visible?
-                    #:allow-other-keys #:rest given)
+                    visual #:allow-other-keys #:rest given)
   "Add a body to the current world and return it.  Without a mass or an inertia, its mass properties
 come from the shape and the density.
 
@@ -44,7 +44,9 @@ come from the shape and the density.
 #:material    a symbol that set-contact-parameters! can name; none
 #:color       #(r g b), sRGB, 0 to 1; chosen for each body
 #:slots       an alist of names (symbols) and values, which callbacks can change; ()
-#:visible?    #f: it is not drawn; #t"
+#:visible?    #f: it is not drawn; #t
+#:visual      what is drawn of it, and touches nothing: what load-visual returns, a shape, or a list of
+              such; #:shape"
   (check-keywords 'add-body! given body-keywords)
   (let ((shape? (memq #:shape given)))
     (unless shape?

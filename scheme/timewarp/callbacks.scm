@@ -7,11 +7,12 @@
   #:use-module (timewarp arity)
   #:use-module (timewarp worlds)
   #:use-module (timewarp bodies)
-  #:use-module ((timewarp multibodies) #:select (multibody? call-with-sides))
+  #:use-module ((timewarp multibodies) #:select (multibody?))
+  #:use-module (timewarp parts)
   #:use-module (timewarp purity)
   #:use-module (ice-9 match)
   #:use-module ((srfi srfi-1) #:select (first second third fourth fifth))
-  #:export (add-callback! on-collision! observe!
+  #:export (add-callback! on-collision! remove-callback! observe! remove-observer!
             collision? collision-time collision-point collision-normal collision-speed
             collision-impulse collision-bodies
             frame-time frame-index frame-views
@@ -20,6 +21,7 @@
 (define-keyword-procedure (add-callback! targets procedure #:key start period)
   "Call PROCEDURE with the time and a view of each of TARGETS, a body or a list of bodies, at start
 + k period; of a multibody a view of its first link.  It may run again after a rollback: it must change only what it is handed, by set!.
+Return a handle for remove-callback!.
 
 #:start   s, not before the world's time; at once
 #:period  s, positive; #f: PROCEDURE returns its next time, or #f for never again; #f"
@@ -27,35 +29,58 @@
     (when (list? targets)
       (check-takes "add-callback!" procedure (1+ (length targets))
                    "the time and a view of each target"))
-    (%add-callback! (current-world) targets (watched procedure) start period (caller-place))))
+    (let ((added (%add-callback! (current-world) targets (watched procedure) start period
+                                 (caller-place))))
+      (make-handle 'callback
+                   (format #f "callback ~a of ~a~a" (car added) (names-text targets)
+                           (if period (format #f " every ~a s" (short-text period)) ""))
+                   (cdr added)))))
 
 (define (on-collision! a b procedure)
   "Call PROCEDURE with the collision and two views, in the order A, B, after each impact between A and
 B; each is a body, a multibody (for each of its links), a material, or #t for all.  It may run again
-after a rollback."
+after a rollback.  Return a handle for remove-callback!."
   (check-takes "on-collision!" procedure 3 "the collision and two views")
-  (let ((watched (watched procedure)) (place (caller-place)))
-    (call-with-sides (lambda (a b) (%on-collision! (current-world) a b watched place)) a b)))
+  (let ((part (%on-collision! (current-world) a b (watched procedure) (caller-place))))
+    (make-handle 'callback
+                 (format #f "callback on collisions of ~a and ~a" (names-text (list a))
+                         (names-text (list b)))
+                 part)))
+
+(define (remove-callback! callback)
+  "Call the procedure of CALLBACK, what add-callback! or on-collision! returned, no more, between runs.
+After an error of a callback the run goes on from there without it, or with another one in its place."
+  (remove-by-handle! "remove-callback!" 'callback "add-callback! or on-collision!" callback))
 
 (define (observe! kind procedure)
   "Call PROCEDURE once, in time order, with everything of KIND that is final: 'collision, 'fusion,
 'fission (with the collision), 'frame (with the frame) or 'squeezed (with the squeezing: a body
 that has nowhere to go, once each time that it begins).  A body is squeezed when two contacts push
 it against each other, by their normal forces or by friction, one of them deeper than 2 % of its
-least width, and what does not give way stands behind both; until no two push it so at 1 %."
+least width, and what does not give way stands behind both; until no two push it so at 1 %.  So it
+is, too, when a force of more than some million times its weight presses it deeper than 1 % into one
+other, which is then both of those between which it is.
+Return a handle for remove-observer!."
   (%require-outside-callbacks "observe!")
   (let ((world (current-world))
         (place (caller-place)))
     (unless (procedure? procedure) (bad-value "the observer" procedure "a procedure"))
     (check-takes "observe!" procedure 1 "what it is to see")
+    (define (observer-of kinds part)
+      (make-handle 'observer (string-append "observer of " kinds) part))
     (match kind
       ((or 'collision 'fusion 'fission 'squeezed)
-       (%observe-collisions! world kind procedure place))
+       (observer-of (if (eq? kind 'squeezed) "squeezings" (format #f "~as" kind))
+                    (%observe-collisions! world kind procedure place)))
       ('frame
-       (at-first-run! world (lambda ()
-                              (%observe-frames! world procedure (world-fps world) place))))
-      (_ (bad-value "what to observe" kind "'collision, 'fusion, 'fission, 'frame or 'squeezed")))
-    (if #f #f)))
+       (let ((part (%frame-observer world procedure place)))
+         (add-frame-observer! world part)
+         (observer-of "frames" part)))
+      (_ (bad-value "what to observe" kind "'collision, 'fusion, 'fission, 'frame or 'squeezed")))))
+
+(define (remove-observer! observer)
+  "Let OBSERVER, what observe! returned, look no more, between runs."
+  (remove-by-handle! "remove-observer!" 'observer "observe!" observer))
 
 ;; ---- collisions ----
 

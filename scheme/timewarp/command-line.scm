@@ -178,10 +178,7 @@
 (define (scene-operand options)
   (match (option-values options 'operand)
     (() #f)
-    ((scene)
-     (when (string-suffix? ".twr" scene)
-       (usage-error "~a is a recording, which is not there yet; expected a scene" scene))
-     scene)
+    ((scene) scene)
     (_ (usage-error "there is more than one scene; expected one"))))
 
 (define (check-usage options scene)

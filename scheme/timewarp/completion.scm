@@ -128,10 +128,10 @@
          (or (scandir (if (string-null? folder) "." folder) wanted?) '()))))
 
 (define file-takers
-  '(load-scene load primitive-load include load-urdf load-shape render! open-input-file
+  '(load-scene load primitive-load include load-urdf load-shape load-visual render! open-input-file
     open-output-file call-with-input-file call-with-output-file with-output-to-file file-exists?
     chdir))
-(define file-keywords '("#:frames" "#:movie" "#:record" "#:poses" "#:events"))
+(define file-keywords '("#:frames" "#:movie" "#:poses" "#:events"))
 (define name-takers '(find-body find-multibody))
 ;; whose strings after the first argument are names of links or joints
 (define joint-takers

@@ -4,7 +4,6 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp worlds)
-  #:use-module ((timewarp multibodies) #:select (call-with-sides))
   #:use-module (srfi srfi-9)
   #:use-module (srfi srfi-9 gnu)
   #:use-module (ice-9 format)
@@ -47,12 +46,14 @@ the earlier.
     (set-contact! a b settings)))
 
 (define (set-contact! a b settings)
-  (call-with-sides (lambda (a b) (%set-contact! (current-world) a b settings)) a b)
+  (%set-contact! (current-world) a b settings)
   (if #f #f))
 
 (define (contact-parameters a b)
   "Return the restitution, the friction, whether they collide, and the lengths of rolling and spinning
-friction, m, for the bodies A and B, as a list of five."
+friction, m, for the bodies A and B, as a list of five.  Bodies collide where both have shapes, one of
+them is dynamic, disable-collisions! does not say otherwise, and no joint joins them, unless
+enable-collisions! names both."
   (%contact-parameters (current-world) a b))
 
 (define (disable-collisions! a b)
@@ -62,7 +63,8 @@ same: its links pass through each other), a material, or #t for all."
 
 (define (enable-collisions! a b)
   "Let A and B collide again; each is a body, a multibody (for each of its links), a material, or #t
-for all.  Between runs it is an error if two that passed through each other until now overlap."
+for all.  Bodies that a joint joins collide only where both are named here as bodies: a clapper in its
+bell, a lid on its box.  It is an error if two that passed through each other until now overlap."
   (set-contact! a b '((collide? . #t))))
 
 ;; ---- contacts at present ----

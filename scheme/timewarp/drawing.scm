@@ -15,6 +15,7 @@
             await-frames
             close-frames!
             frames-written
+            frames-awaited?
             check-shot
             keep-first-view!
             draw-world!
@@ -79,6 +80,7 @@ at once what cannot be written."
   "Let WORLD feed DRAWER with FPS frames per second, or with what --part says of them, its contacts
 drawn if CONTACTS? is true."
   (world-set! world 'drawer drawer)
+  (world-set! world 'drawn-from (cons (%world-time world) fps))
   (%attach-frames! world drawer fps (override 'part) (looks world) (world-ref world 'title #f)
                    (draw-contacts? contacts?)))
 
@@ -90,29 +92,55 @@ drawn if CONTACTS? is true."
 ;; s of wall time: Ctrl-C has its say between two waits
 (define patience 0.05)
 
-(define (await-frames drawer most)
-  "Wait until at most MOST frames of DRAWER are not on disk."
+(define (await-frames drawer most idle)
+  "Wait until at most MOST frames of DRAWER are not on disk; call IDLE again and again until then."
   (unless (%await-frames drawer most patience)
-    (await-frames drawer most)))
+    (idle)
+    (await-frames drawer most idle)))
 
-(define (close-frames! world drawer interrupted?)
-  "Let WORLD no longer feed DRAWER, when all its frames are on disk; if INTERRUPTED?, or when Ctrl-C
-interrupts the waiting, only the one that is being drawn."
+(define (close-frames! world drawer interrupted? idle)
+  "Let WORLD no longer feed DRAWER, and wait until all its frames are on disk, calling IDLE again and
+again; if INTERRUPTED?, or when Ctrl-C interrupts the waiting, for the one only that is being drawn."
   (let ((all? #f))
     (dynamic-wind
       (const #t)
       (lambda ()
         (unless interrupted?
-          (await-frames drawer 0)
+          (let loop ()
+            (unless (%finish-frames! world drawer patience)
+              (idle)
+              (loop)))
           (set! all? #t)))
       (lambda ()
         (world-set! world 'drawer #f)
         (%close-frames! world drawer all?)))))
 
-(define (frames-written world)
-  "Return how many frames of WORLD are on disk in this run, or #f where none are drawn."
-  (let ((drawer (world-ref world 'drawer #f)))
-    (and drawer (%frames-written drawer))))
+(define (frames-written world until)
+  "Return how many frames of WORLD are on disk in this run, and how many it has up to the time UNTIL;
+#f and #f where none are drawn."
+  (match (world-ref world 'drawer #f)
+    (#f (values #f #f))
+    (drawer
+     (match (world-ref world 'drawn-from)
+       ((start . fps) (values (%frames-written drawer) (frames-between start until fps)))))))
+
+(define (frames-awaited? world)
+  "Return #t if the run of WORLD waits for its frames to be drawn."
+  (call-with-values (lambda () (frames-written world (%world-time world)))
+    (lambda (written due) (and written (> (- due written) 2)))))
+
+;; Frame k is at k/fps; of every PARTS one is drawn, the PART-th.
+(define (frames-between start end fps)
+  (define (at k) (/ (exact->inexact k) fps))
+  (define (first-at-least time)
+    (let loop ((k (inexact->exact (floor (* time fps)))))
+      (if (< (at k) time) (loop (1+ k)) k)))
+  (define (first-beyond time)
+    (let ((k (first-at-least time))) (if (= (at k) time) (1+ k) k)))
+  (match (or (override 'part) '(1 1))
+    ((part parts)
+     (let ((drawn-before (lambda (k) (quotient (+ k (- parts part)) parts))))
+       (max 0 (- (drawn-before (first-beyond end)) (drawn-before (first-at-least start))))))))
 
 (define (check-shot file size quality)
   "Refuse at once what draw-world! could not draw into FILE; make its folder."

@@ -25,11 +25,11 @@
             describe-error
             error-places
             print-user-frames
+            last-error-frames
             call-with-bounded-stack
             call-with-run-stack
             error-text
-            writing-briefly?
-            not-there-yet))
+            writing-briefly?))
 
 ;; ---- places ----
 
@@ -51,7 +51,7 @@
                  "queries" "sensors" "forces" "multibodies" "purity" "callbacks" "vectors"
                  "running" "looking" "files" "drawing" "recorders" "simulate" "loader" "options"
                  "option-table" "time-left" "progress" "interrupts" "help" "repl" "command-line"
-                 "describing" "exit-status" "completion" "effects" "history" "line-editing" "server"
+                 "parts" "describing" "exit-status" "completion" "effects" "history" "line-editing" "server"
                  "watch"
                  "sweep" "sweep-files" "sweep-local" "sweep-options" "sweep-plan"
                  "sweep-plot" "sweep-process" "sweep-request" "sweep-results" "sweep-slurm" "sweep-task"
@@ -189,10 +189,6 @@
   "Raise the error `NAME is VALUE; expected EXPECTED'."
   (raise-error (format #f "~a is ~a; expected ~a" name (short-text value) expected)))
 
-(define (not-there-yet what needs)
-  "Raise the error that WHAT comes later, since it NEEDS something."
-  (raise-error (format #f "~a is not there yet: it needs ~a, in a later version" what needs)))
-
 ;; what a message shows of a value
 (define most-characters 200)
 
@@ -279,7 +275,12 @@
 (define-syntax define-keyword-procedure
   (lambda (x)
     "(define-keyword-procedure (NAME ARG ... #:key KEY ...) DOC BODY ...): a procedure with optional
-keywords.  A keyword given #f counts as absent; an unknown one is an error that names the others."
+keywords.  A keyword given #f counts as absent, but for one with a default, (KEY DEFAULT); an unknown
+one is an error that names the others."
+    (define (keyword-of key)
+      (syntax-case key ()
+        ((key default) (keyword-of #'key))
+        (key (datum->syntax x (symbol->keyword (syntax->datum #'key))))))
     (define (split formals)
       (let loop ((formals formals) (positional '()))
         (syntax-case formals ()
@@ -291,10 +292,7 @@ keywords.  A keyword given #f counts as absent; an unknown one is an error that 
          (lambda (positional keys)
            (with-syntax (((arg ...) positional)
                          ((key ...) keys)
-                         ((keyword ...)
-                          (map (lambda (key)
-                                 (datum->syntax x (symbol->keyword (syntax->datum key))))
-                               (syntax->list* keys))))
+                         ((keyword ...) (map keyword-of (syntax->list* keys))))
              #'(define* (name arg ... #:key key ... #:allow-other-keys #:rest given)
                  doc
                  (check-keywords 'name given '(keyword ...))
@@ -409,12 +407,25 @@ alone would go on until the memory is full.)"
                           (display "interrupted; the world is usable at its last committed time"
                                    port)))
 
+;; A callback's stack is unwound before its error is raised at the prompt: what was noted of it is
+;; all that `,bt' can show.
+(define frames-of-last-error "")
+(define (last-error-frames)
+  "Return the frames of the user's files in the error that was shown last, one a line, innermost first."
+  frames-of-last-error)
+(define (frames-of key args)
+  (match (cons key args)
+    (('timewarp-error _ _ _ (_ (? string? (and text (not ""))))) text)
+    (('timewarp-error _ _ _ ((? pair? place) _)) (backtrace-text (list (list place))))
+    (_ (backtrace-text (user-frames 12)))))
+
 ;; Guile's REPL and its printer of uncaught errors hand over the FRAME that raised an error, in
 ;; which they say it was before its printer is asked.  Of ours that is no news; the user's frames
 ;; are.
 (let ((print print-exception))
   (module-set! the-root-module 'print-exception
                (lambda (port frame key args)
+                 (set! frames-of-last-error (frames-of key args))
                  (match key
                    ((or 'timewarp-error 'timewarp-interrupted)
                     (print port #f key args)

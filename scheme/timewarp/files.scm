@@ -2,7 +2,9 @@
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp files)
   #:use-module (timewarp errors)
-  #:export (current-scene-directory scene-file beside-caller current-file-reader note-file-read))
+  #:use-module (ice-9 format)
+  #:export (current-scene-directory scene-file beside-caller current-file-reader note-file-read
+            tell-mended))
 
 ;; The folder of the scene that is being loaded, or #f: the current folder.
 (define current-scene-directory (make-parameter #f))
@@ -31,3 +33,7 @@ scene that is being loaded, or in the current one."
 (define (note-file-read file)
   "Tell that FILE is read for the scene."
   ((current-file-reader) file))
+
+(define (tell-mended notes)
+  "Warn of what was wrong in a file, and of what is taken instead: NOTES, strings."
+  (for-each (lambda (note) (format (current-warning-port) "timewarp: warning: ~a~%" note)) notes))

@@ -6,7 +6,7 @@
   #:use-module (timewarp near-names)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
-  #:use-module ((srfi srfi-1) #:select (find))
+  #:use-module ((srfi srfi-1) #:select (append-map filter-map find))
   #:use-module ((system syntax) #:select (syntax-local-binding))
   #:export (help-groups)
   ;; beside (ice-9 session), which has another one
@@ -18,7 +18,7 @@
      load-scene make-world current-world)
     ("Shapes" "what bodies are made of"
      sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
-     rock load-shape rotation shape-volume shape-inertia shape-centroid shape-radius shape?)
+     rock load-shape load-visual rotation shape-volume shape-inertia shape-centroid shape-radius shape?)
     ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
      add-body! remove-body! keyframes position orientation velocity angular-velocity applied-force
      applied-torque kinetic-energy slot slot? random-real! body-name body-mass body-kind view-body
@@ -34,19 +34,20 @@
      accelerometer gyro net-contact-force rangefinder joint-force joint-moment spring-force
      hold-force hold-torque)
     ("Forces" "what acts on bodies, from now on"
-     add-drag! add-spring! attach! detach! attached? add-force!)
+     add-drag! remove-drag! add-spring! remove-spring! attach! detach! attached? add-force!
+     remove-force!)
     ("Multibodies" "links that hang on one another by joints"
-     add-multibody! load-urdf link revolute prismatic universal spherical weld link-body joint-names
+     add-multibody! load-urdf link revolute prismatic universal spherical weld link-body joint-names joint-max-torque joint-max-velocity
      joint-limits joint-position joint-velocity joint-torque joint-servo servo joint-positions
      joint-velocities joint-torques jacobian forward-kinematics inverse-kinematics inverse-dynamics
      multibody-name multibody-links body-multibody find-multibody world-multibodies servo-target
      servo-target-velocity servo-stiffness servo-damping servo-max-torque multibody? link? joint?
      servo?)
     ("Callbacks" "procedures that change what happens (may run again after a rollback)"
-     add-callback! on-collision! collision-time collision-point collision-normal
+     add-callback! on-collision! remove-callback! collision-time collision-point collision-normal
      collision-speed collision-impulse collision-bodies collision?)
     ("Observers" "procedures that look at what is final, once and in order"
-     observe! frame-time frame-index frame-views squeezed-time squeezed-body squeezed-between
+     observe! remove-observer! frame-time frame-index frame-views squeezed-time squeezed-body squeezed-between
      squeezed-depth squeezed-share)
     ("Running" "Ctrl-C interrupts; the world stays usable"
      run! run-for! step! simulate! checkpoint restore! statistics show-statistics state-queue
@@ -69,7 +70,7 @@ A scene of yours: (load-scene \"scene.scm\"), then (run!).  From the start again
 (define last-lines
   "
 (help add-body!) or ,describe add-body! shows all of a procedure; (help sensors) lists a group
-of the above, (help friction) the names with that in them.
+of the above, (help friction) all that has this in its name, keywords or description.
 Vectors are #(x y z), units SI, angles radians, z is up; what is optional is a keyword,
 whose description ends with its default.
 Tab completes names, keywords, bodies and files; Ctrl-C interrupts.
@@ -100,7 +101,45 @@ After an error the prompt is as before; ,option on-error 'debug enters Guile's d
        (#f (format #t "~a~%" text))
        (words (format #t "(~a)~%~%~a~%" (string-join words) text))))))
 
-;; NAME is a name in MODULE, a subject, or a part of names.
+;; "  name    line ..." of each description in which TEXT occurs: the first line that has it.
+(define (lines-with text)
+  (define (line-with description)
+    (find (lambda (line) (string-contains-ci line text)) (string-split description #\newline)))
+  (filter-map (match-lambda
+                ((name . description)
+                 (let ((line (line-with description)))
+                   (and line
+                        (format #f "  ~a  ~a"
+                                (string-pad-right (symbol->string name)
+                                                  (max 22 (string-length (symbol->string name))))
+                                (string-trim-both line))))))
+              (all-descriptions)))
+
+;; (NAME . DESCRIPTION) of everything, in the order of (help).
+(define (all-descriptions)
+  (append-map (match-lambda
+                ((module . names)
+                 (let ((interface (resolve-interface module)))
+                   (filter-map (lambda (name)
+                                 (let ((text (description (module-ref interface name))))
+                                   (and text (cons name text))))
+                               names))))
+              `(((timewarp) . ,(append-map cddr help-groups))
+                ((timewarp vectors)
+                 . ,(sort (module-map (lambda (name variable) name)
+                                      (resolve-interface '(timewarp vectors)))
+                          (lambda (a b) (string<? (symbol->string a) (symbol->string b))))))))
+
+;; What has TEXT in its name, keywords or description.
+(define (show-what-has what text)
+  (let ((names (names-with text)) (lines (lines-with text)))
+    (when (and (null? names) (null? lines))
+      (bad-value "help's argument" what
+                 "a name, a subject of (help), or what occurs in a name or in a description"))
+    (unless (null? names) (format #t "names with ~a:~%~a~%" text (names->lines names)))
+    (unless (null? lines) (format #t "descriptions with ~a:~%~a~%" text (string-join lines "\n")))))
+
+;; NAME is a name in MODULE, a subject, or a part of names or descriptions.
 (define* (help-on name #:optional (module (current-module)))
   (define text (symbol->string name))
   (define (subject? group) (string-ci=? (car group) text))
@@ -110,11 +149,7 @@ After an error the prompt is as before; ,option on-error 'debug enters Guile's d
         ((find subject? help-groups) => show-group)
         (variable (show-help name (variable-ref variable)))
         ((home name) => (lambda (module) (show-with-home name module)))
-        (else
-         (match (names-with text)
-           (() (bad-value "help's argument" name
-                          "a name, a subject of (help), or a part of a name"))
-           (names (format #t "names with ~a:~%~a~%" text (names->lines names)))))))
+        (else (show-what-has name text))))
 
 ;; What MODULE has and is not imported here.
 (define (show-with-home name module)
@@ -137,6 +172,8 @@ After an error the prompt is as before; ,option on-error 'debug enters Guile's d
     (#f (show-page))
     ((? string? text) (help-on (string->symbol text)))
     ((? symbol? name) (help-on name))
+    ((? keyword? name)
+     (show-what-has name (string-append "#:" (symbol->string (keyword->symbol name)))))
     (value (show-help (or (name-of value) value) value)))
   (if #f #f))
 
@@ -152,8 +189,8 @@ After an error the prompt is as before; ,option on-error 'debug enters Guile's d
 (define-syntax help
   (lambda (form)
     "(help) shows what to type first and the procedures by group; (help NAME) shows the description of a
-procedure, (help SUBJECT) lists a group of (help), and (help PART) the names in which PART occurs.
-Each may be quoted or a string, too."
+procedure, (help SUBJECT) lists a group of (help), and (help WORD) the names, keywords and descriptions
+in which WORD occurs.  Each may be quoted or a string, too."
     (syntax-case form ()
       ((_ name)
        (identifier? #'name)

@@ -84,8 +84,9 @@ Colours are #(r g b), sRGB, 0 to 1.
 #:ground   colour below the horizon where there is no body; #(0.48 0.51 0.55)
 #:fog      1/m, the share of the light that is lost in a metre, 0 to 1; 0.04 over the distance of
            the camera from its target
-#:grain    how rough ground and rocks look, fixed bodies of convex hulls, 0 to 1, not at quality
-           'draft; 1 where there are a hundred of them, else 0"
+#:grain    how rough ground and rocks look: height fields, and fixed bodies that are convex hulls or
+           have some among their parts; 0 to 1, not at quality 'draft; 1 where there are a hundred
+           such parts, else 0"
   (when fog
     (unless (and (real? fog) (<= 0 fog) (< fog 1)) (bad-value "fog" fog "a share per metre, 0..1")))
   (when grain

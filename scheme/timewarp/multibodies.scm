@@ -4,7 +4,7 @@
   #:use-module (timewarp primitives)
   #:use-module (timewarp errors)
   #:use-module (timewarp near-names)
-  #:use-module ((timewarp files) #:select (beside-caller note-file-read))
+  #:use-module ((timewarp files) #:select (beside-caller note-file-read scene-file tell-mended))
   #:use-module (timewarp worlds)
   #:use-module (ice-9 format)
   #:use-module (ice-9 match)
@@ -15,13 +15,13 @@
   #:export (add-multibody! load-urdf multibody? multibody-name multibody-links body-multibody link-body
             find-multibody world-multibodies
             link? joint? revolute prismatic universal spherical weld
-            joint-names joint-limits joint-position joint-velocity joint-torque joint-servo
+            joint-names joint-limits joint-max-torque joint-max-velocity
+            joint-position joint-velocity joint-torque joint-servo
             joint-positions joint-velocities joint-torques
             servo servo? servo-target servo-target-velocity servo-stiffness servo-damping
             servo-max-torque
             jacobian forward-kinematics inverse-kinematics inverse-dynamics)
   ;; for the other modules
-  #:export (call-with-sides)
   ;; beside the system call
   #:replace (link))
 
@@ -141,7 +141,7 @@ angular velocity #(x y z), rad/s, in the link's frame.
 
 (define link-keywords
   '(#:joint #:shape #:density #:mass #:inertia #:center-of-mass #:color #:material #:slots
-    #:visible?))
+    #:visible? #:visual))
 
 ;; The keywords with their values at the beginning of ARGUMENTS, and the links after them, of which
 ;; some may be in lists.
@@ -163,7 +163,7 @@ angular velocity #(x y z), rad/s, in the link's frame.
 (define (name? object) (or (symbol? object) (string? object)))
 
 (define* (link name #:key joint shape density mass inertia center-of-mass color material slots
-               visible? #:allow-other-keys #:rest given)
+               visible? visual #:allow-other-keys #:rest given)
   "Return a link for add-multibody!, and whatever hangs on it: after the keywords come further links,
 or lists of them.  Its frame is that of its joint: where the joint is at 0, the link's frame is the
 joint's, in the parent's.  Shapes are put into it by `placed'.  It becomes a body called
@@ -181,7 +181,8 @@ MULTIBODY/NAME.  NAME, a symbol or a string, is also the name of its joint.
 #:color     #(r g b), sRGB, 0 to 1; chosen for each link
 #:material  a symbol that set-contact-parameters! can name; none
 #:slots     an alist of names (symbols) and values, which callbacks can change; ()
-#:visible?  #f: it is not drawn; #t"
+#:visible?  #f: it is not drawn; #t
+#:visual    what is drawn of it, and touches nothing, as of add-body!; #:shape"
   (call-with-values (lambda () (split-arguments 'link given))
     (lambda (keywords children)
       (check-keywords 'link keywords link-keywords)
@@ -246,31 +247,53 @@ touch the base's body.  A multibody stands for its first link where a body is ex
         (set! (given-names multibody) (map car flat))
         multibody))))
 
-(define-keyword-procedure (load-urdf file #:key name base position orientation)
-  "Add the robot that the URDF file FILE describes to the current world, and return it, a multibody.
-FILE is looked for beside the file that the call stands in, then beside the scene that is being loaded,
-then in the current folder.
+(define-keyword-procedure
+  (load-urdf file #:key name base position orientation strict? package-path (self-collisions? #t))
+  "Add the robot that the URDF file FILE describes to the current world, and return it, a multibody,
+or, where nothing of it can move, a fixed body.  FILE is looked for beside the file that the call
+stands in, then beside the scene that is being loaded, then in the current folder.
 
-Its links are called as in the file, by symbols, and so are their joints.  A link without a mass that
-is fixed to another becomes a part of that, one that is fixed to a base that stands a fixed body.  What
-<collision> says touches and is drawn, a mesh as its convex hull; a link that has <visual> alone is
-drawn and touches nothing.  Damping, friction and limits of joints are taken; <limit>'s effort and
-velocity are not (see servo's #:max-torque).  What cannot be expressed is an error with file and line:
-floating and planar joints, <mimic>, moving links without mass.
+Links are called as in the file, by symbols, and so are joints; a joint may be named by the link that
+it moves as well.  A link without a mass that is fixed to another becomes a part of that, one that is
+fixed to a base that stands a fixed body.  What <collision> says touches, a mesh as its convex hull; what
+<visual> says is drawn, meshes with the colours of their materials.  Damping, friction and limits
+of joints are taken; <limit>'s effort is the #:max-torque of servos that are given none.  A joint with
+<mimic> follows the one that it names, exactly: torques and servos of both drive them together.
 
-#:name      of the multibody; that of the robot
+What is wrong in the file but clear is mended, and told by a warning with file and line each: <inertia>
+that no body has, or that is missing; what moves and has no mass; limits in the wrong order; a <visual>
+that cannot be read.  What cannot be read else, or not be expressed, is an error.
+
+#:name      of the multibody; that of the robot, with a number where it is taken
 #:base      what the first link stands on: 'fixed, the world; a body that is fixed or, where nothing
-            is fixed to the base, kinematic; 'free, nothing; 'fixed
+            is fixed to the base, kinematic; 'free, nothing; 'free for a robot without joints that
+            move, 'fixed for others
 #:position  m, of the first link's frame, in that of the base's body if there is one; #(0 0 0)
-#:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)"
+#:orientation  of the same, a quaternion #(w x y z); #(1 0 0 0)
+#:strict?   #t: what is wrong is an error, and nothing is mended; #f
+#:package-path  a folder, or a list of folders, in which package://NAME/... lies, in a folder NAME, or
+            which are that folder themselves; then the folders above FILE are tried, then the
+            environment's ROS_PACKAGE_PATH
+#:self-collisions?  whether links may touch each other, but for those that a joint joins and those
+            that overlap where the joints begin; #t"
   (let* ((place (caller-place))
          (found (beside-caller file place))
-         (made (%load-urdf (current-world) found name (or base 'fixed) position orientation place)))
-    (set! (given-names (car made)) (cdr made))
+         (made (%load-urdf (current-world) found name base position orientation place strict?
+                           (map scene-file (folders package-path)) self-collisions?)))
     (note-file-read found)
-    (car made)))
+    (match made
+      ((robot names notes)
+       (tell-mended notes)
+       (when (multibody? robot) (set! (given-names robot) names))
+       robot))))
 
-;; Of each multibody, the names of its links as they were given.
+(define (folders path)
+  (cond ((not path) '())
+        ((string? path) (list path))
+        ((and (list? path) (every string? path)) path)
+        (else (bad-value "package-path" path "a folder, or a list of folders"))))
+
+;; Of each multibody, the names of its joints, by link, as they were given.
 (define given-names (make-object-property))
 
 (define (multibody? object)
@@ -304,16 +327,6 @@ floating and planar joints, <mimic>, moving links without mass.
   "Return the list of all multibodies of the current world, in the order in which they were added."
   (%world-multibodies (current-world)))
 
-(define (call-with-sides procedure a b)
-  "Call PROCEDURE with A and B, and where one is a multibody, with each of its links in its place."
-  (define (bodies side) (if (multibody? side) (multibody-links side) (list side)))
-  (for-each (lambda (a*)
-              (for-each (lambda (b*)
-                          (unless (and (eq? a* b*) (or (multibody? a) (multibody? b)))
-                            (procedure a* b*)))
-                        (bodies b)))
-            (bodies a)))
-
 ;; ---- joints of a multibody ----
 
 ;; ((NAME KIND LIMITS) ...) of the joints that move, the names as they were given.
@@ -335,6 +348,22 @@ of their positions in (joint-positions MULTIBODY).  A free multibody's first is 
 there are none; of a universal joint a list of two such; of a spherical one the greatest angle, rad;
 #f of other joints."
   (caddr (list-ref (%multibody-joints multibody) (%joint-index multibody name))))
+
+(define (drive-of multibody name which)
+  (let ((found (which (list-ref (%multibody-joints multibody) (%joint-index multibody name)))))
+    (and (number? found) found)))
+
+(define (joint-max-torque multibody name)
+  "Return the most that drives the joint NAME of MULTIBODY, N m or N, as the effort of a URDF file's
+<limit> says, infinite where nothing does; #f of joints that nothing can drive.  Servos that are given
+no #:max-torque have it."
+  (drive-of multibody name cadddr))
+
+(define (joint-max-velocity multibody name)
+  "Return how fast the joint NAME of MULTIBODY is meant to go, rad/s or m/s, as the velocity of a URDF
+file's <limit> says, infinite where nothing does; #f of joints that nothing can drive.  Nothing
+enforces it."
+  (drive-of multibody name fifth))
 
 (define-syntax-rule (define-joint-accessor (accessor argument ...) doc getter setter)
   (define accessor
@@ -488,7 +517,8 @@ sixth of the reach).
 (define (inverse-dynamics multibody positions velocities accelerations)
   "Return the torques, as joint-torques has them, that give the joints of MULTIBODY at POSITIONS and
 VELOCITIES the ACCELERATIONS (rad/s^2, m/s^2) against gravity, damping, friction and springs of the
-joints.  Servos, stops, contacts and forces on links are left out."
+joints.  Servos, stops, contacts and forces on links are left out.  Joints that follow others do so,
+whatever is given for them, and their torques are counted at those they follow."
   (%inverse-dynamics multibody positions velocities accelerations))
 
 ;; ---- how they are written ----
@@ -518,13 +548,18 @@ joints.  Servos, stops, contacts and forces on links are left out."
 
 (define (joint->text multibody joint)
   (match joint
-    ((name kind limits)
+    ((name kind limits . _)
      (if (%inside-callback?)
          (format #f "~a" name)
          (format #f "~a ~a~a" name (value->text (joint-position multibody name))
                  (limits->text limits))))))
 
 (define-method (write (multibody <multibody>) port)
+  (if (%removed? multibody)
+      (format port "#<multibody ~a (removed)>" (multibody-name multibody))
+      (write-multibody multibody port)))
+
+(define (write-multibody multibody port)
   (let* ((joints (moving-joints multibody))
          (shown (if (> (length joints) most-written) (list-head joints most-written) joints)))
     (format port "#<multibody ~a~a~a~a>" (multibody-name multibody) (if (null? joints) "" ": ")

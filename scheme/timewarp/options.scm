@@ -69,10 +69,6 @@
     ((seed head-start "every") (list (natural name seed) (seconds name head-start) #t))
     (_ (usage-error "--adversary is ~s; expected SEED[,HEAD-START[,every]]" text))))
 
-(define (later needs)
-  (lambda (name text)
-    (usage-error "--~a is not there yet: it needs ~a, in a later version" name needs)))
-
 ;; ---- the table ----
 
 ;; rows as (timewarp option-table) has them; without help: test modes
@@ -87,7 +83,6 @@
     (movie (#\m "movie") "FILE" ,movie "a movie of the frames by ffmpeg: .mp4, .mov, .mkv, .webm or .gif")
     (at ("at") "T" ,seconds "draw one frame only, at time T, to the file that --frames names")
     (no-overlay ("no-overlay") #f #f "pictures without title, time and scale")
-    (record (#\o "record") "FILE" ,(later "the recording format") "not there yet")
     (poses ("poses") "FILE.csv" ,text "write the poses of moving bodies at every frame time")
     (events ("events") "FILE.csv" ,text "write every committed collision, fusion and fission")
     (stats ("stats") ("FILE.json") ,optional-text "statistics after the run, printed or as a JSON file")

@@ -30,9 +30,12 @@
 (define slow-rate 1/5)
 (define slow-rate-of-bodies 2)
 
-(define (slow? world simulated wall)
+(define (slow? world simulated seconds)
   (let ((moving (assq-ref (%statistics world) 'bodies_moving)))
-    (< simulated (* wall (min slow-rate (/ slow-rate-of-bodies (max 1 moving)))))))
+    (< simulated (* seconds (min slow-rate (/ slow-rate-of-bodies (max 1 moving)))))))
+
+;; s that the simulation itself took, without drawing, writing and observers
+(define (seconds-of-simulation world) (assq-ref (%statistics world) 'cpu_seconds))
 
 ;; The work of the groups and of the pair that took most so far: #(BODIES AMOUNT TEXT) each.  BODIES
 ;; and since when tell one from another, so that two such lists give what was done in between.
@@ -68,14 +71,21 @@
   (let ((digits (if (> until 0) (- 4 (inexact->exact (floor (log10 until)))) 2)))
     (format #f "~,vf" (min 12 (max 2 digits)) time)))
 
+;; A film is not whole yet when its last frame has been handed over.
+(define (frames-text world until)
+  (call-with-values (lambda () (frames-written world until))
+    (lambda (written all)
+      (cond ((not written) "")
+            ((< written all) (format #f ", ~a of ~a frames written" written all))
+            (else (format #f ", all ~a frames written, closing the files" all))))))
+
 (define (report world until course)
   (let ((time (%world-time world))
-        (left (time-left course until))
-        (frames (frames-written world)))
+        (left (time-left course until)))
     (format #f "~a of ~a s simulated~a~a, ~a rollbacks" (time-text time until)
             (time-text until until)
             (if left (string-append ", " (duration-text left) " left") "")
-            (if frames (format #f ", ~a frames written" frames) "")
+            (frames-text world until)
             (assq-ref (%statistics world) 'rollbacks))))
 
 (define* (make-progress #:key (port (current-error-port)))
@@ -83,15 +93,20 @@
 one to be called when the run is over."
   (let* ((terminal? (isatty? port))
          (interval (if terminal? 0.2 3.0))
-         (before '()) (simulated 0)
+         (before '()) (simulated 0) (spent 0)
          (world #f) (until #f) (course '()) (last-sample 0) (last-shown 0) (shown? #f))
     ;; what was dear since the last report, where time goes slowly
     (define (cause! now)
-      (let* ((slow? (slow? world (- (%world-time world) simulated) (- now last-shown)))
+      (let* ((seconds (seconds-of-simulation world))
+             (advanced (- (%world-time world) simulated))
              (entries (dearest world))
-             (text (and slow? (dearest-between before entries))))
+             (text (cond ((slow? world advanced (- seconds spent)) (dearest-between before entries))
+                         ((and (slow? world advanced (- now last-shown)) (frames-awaited? world))
+                          "slow: drawing")
+                         (else #f))))
         (set! before entries)
         (set! simulated (%world-time world))
+        (set! spent seconds)
         (if text (string-append "; " text) "")))
     (define (show! now)
       (let ((text (string-append (report world until course) (cause! now))))
@@ -104,7 +119,9 @@ one to be called when the run is over."
     ;; a scene may run itself in many small runs: they are reported as often as one long one
     (define (start! next-world next-until now)
       (unless world (set! last-shown now))
-      (unless (eq? world next-world) (set! before '()))
+      (unless (eq? world next-world)
+        (set! before '())
+        (set! spent (seconds-of-simulation next-world)))
       (set! world next-world)
       (set! until next-until)
       (set! simulated (min simulated (%world-time world)))

@@ -13,7 +13,8 @@
   #:export (call-with-recorders))
 
 ;; A recorder: FOLLOW lets a world feed it from that world's next run on, PACE is called between
-;; slices and FLUSH once a second, CLOSE with whether the run was interrupted.
+;; slices and FLUSH once a second, CLOSE with whether the run was interrupted.  PACE and CLOSE get what
+;; is to be done again and again while they wait, too.
 (define-record-type <recorder>
   (make-recorder follow pace flush close)
   recorder?
@@ -23,7 +24,7 @@
   (close recorder-close))
 
 ;; A recorder that ATTACH feeds from one world only, the first to run of those it is told to follow.
-;; CLOSE is given that world, or #f, and whether the run was interrupted.
+;; CLOSE is given that world, or #f, and what it gets.
 (define (record-one-world what attach pace flush close)
   (let ((attached #f))
     (make-recorder
@@ -39,10 +40,10 @@
      pace
      flush
      ;; what is closed before a world ran must not be fed by it later
-     (lambda (interrupted?)
+     (lambda (interrupted? idle)
        (let ((world (and (not (eq? attached 'closed)) attached)))
          (set! attached 'closed)
-         (close world interrupted?))))))
+         (close world interrupted? idle))))))
 
 (define (csv-recorder what open file)
   (let ((recorder (open file)))
@@ -50,7 +51,7 @@
                       (lambda (world) (%attach-recorder! world recorder (world-fps world)))
                       (const #f)
                       (lambda () (%flush-recorder! recorder))
-                      (lambda (world interrupted?)
+                      (lambda (world interrupted? idle)
                         (%close-recorder! (or world (current-world)) recorder)))))
 
 (define (frames-recorder frames movie size quality contacts? bare?)
@@ -58,10 +59,10 @@
     (record-one-world (if frames "frames" "a movie")
                       (lambda (world) (attach-frames! world drawer (world-fps world) contacts?))
                       ;; one is being written, one drawn, one is waiting: more would only fill memory
-                      (lambda () (await-frames drawer 3))
+                      (lambda (idle) (await-frames drawer 3 idle))
                       (const #f)
-                      (lambda (world interrupted?)
-                        (when world (close-frames! world drawer interrupted?))))))
+                      (lambda (world interrupted? idle)
+                        (when world (close-frames! world drawer interrupted? idle))))))
 
 ;; One picture, of the moment TIME.
 (define (shot-recorder file time size quality contacts? bare?)
@@ -76,17 +77,18 @@
                             (set! drawn? #t))))
                       (const #f)
                       (const #f)
-                      (lambda (world interrupted?)
+                      (lambda (world interrupted? idle)
                         (unless (or drawn? interrupted?)
                           (raise-error (format #f "no run! reached ~a s, of which ~a was to be drawn"
                                                time file)))))))
 
 ;; A slice hook: the run waits for the slowest recorder, what is recorded reaches the files once a
-;; second, and a full disk shows as soon.
-(define (make-pacer recorders)
+;; second, and a full disk shows as soon.  While it waits the OTHERS have their say.
+(define (make-pacer recorders others)
   (let ((last (current-time)))
     (lambda (world until)
-      (for-each (lambda (recorder) ((recorder-pace recorder))) recorders)
+      (define (idle) (for-each (lambda (hook) (hook world until)) others))
+      (for-each (lambda (recorder) ((recorder-pace recorder) idle)) recorders)
       (unless (= (current-time) last)
         (set! last (current-time))
         (for-each (lambda (recorder) ((recorder-flush recorder))) recorders)))))
@@ -96,12 +98,15 @@
 
 ;; Every recorder is closed, also where closing another fails; the first failure is raised.
 (define (close-all recorders interrupted?)
+  (define (idle)
+    (let ((world (current-world)))
+      (for-each (lambda (hook) (hook world (%world-time world))) (current-slice-hooks))))
   (let loop ((recorders recorders) (interrupted? interrupted?) (failure #f))
     (match recorders
       (() (when failure (apply throw failure)))
       ((recorder . rest)
        (match (catch #t
-                (lambda () ((recorder-close recorder) interrupted?) #f)
+                (lambda () ((recorder-close recorder) interrupted? idle) #f)
                 list)
          (#f (loop rest interrupted? failure))
          (raised (loop rest
@@ -158,7 +163,8 @@ left, by SIGTERM and SIGHUP too."
           (catch #t
             (lambda ()
               (parameterize ((current-slice-hooks
-                              (cons (make-pacer recorders) (current-slice-hooks)))
+                              (cons (make-pacer recorders (current-slice-hooks))
+                                    (current-slice-hooks)))
                              (current-world-followers
                               (append follows (current-world-followers))))
                 (thunk)))

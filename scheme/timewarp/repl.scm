@@ -14,6 +14,7 @@
   #:use-module (timewarp line-editing)
   #:use-module (system repl repl)
   #:use-module (system repl common)
+  #:use-module ((system repl command) #:select (define-meta-command))
   #:use-module ((system base compile) #:select (compile))
   #:use-module (ice-9 match)
   #:export (start-timewarp-repl prepare-repl!))
@@ -44,6 +45,23 @@
 (define (leave-if-ending)
   (when (ending?) (throw 'quit)))
 
+;; Guile's ,bt has no frames where an error is shown and the prompt is as before, and of a callback not
+;; the user's: these come first.
+(define (show-users-frames-in-backtrace!)
+  (define commands (resolve-module '(system repl command)))
+  (define guiles (car (hashq-ref (module-ref commands '*command-infos*) 'backtrace)))
+  (define-meta-command (backtrace repl . arguments)
+    "backtrace [COUNT] [#:width W] [#:full? F]
+Print a backtrace.
+
+Print the frames of your own files in the last error, innermost first, and in a debugger all stack
+frames, or innermost COUNT frames. If COUNT is negative, the last COUNT frames will be shown."
+    (let ((frames (last-error-frames)))
+      (unless (string-null? frames)
+        (format #t "In your files, innermost first:~%~a~%" frames))
+      (when (or (repl-debug repl) (string-null? frames))
+        (apply guiles repl arguments)))))
+
 (define prepare-repl!
   (let ((prepared? #f))
     (lambda ()
@@ -53,6 +71,7 @@
         (module-use! (resolve-module '(guile-user)) (resolve-interface '(timewarp help)))
         (module-set! (resolve-module '(system repl common)) '*version* (banner))
         (repl-default-option-set! 'on-error 'report)
+        (show-users-frames-in-backtrace!)
         ;; the compiler's parts are loaded when they are first needed, and what Ctrl-C keeps from
         ;; being loaded is missing from then on
         (compile '(if #f #f) #:env (resolve-module '(guile-user)))

@@ -5,16 +5,21 @@
   #:use-module (timewarp errors)
   #:use-module (timewarp interrupts)
   #:use-module (timewarp worlds)
+  #:use-module (timewarp parts)
   #:use-module (ice-9 match)
   #:use-module (ice-9 format)
   #:export (run! run-for! step! statistics show-statistics state-queue checkpoint restore! total-energy total-momentum)
   ;; for the other modules
   #:export (run-world!
             stop-at!
+            runs-going-on
             current-slice-hooks))
 
 ;; s of wall time: between slices no C++ frame is on the stack
 (define slice 0.02)
+
+;; How many runs are going on, each within a hook of the one before.
+(define runs-going-on (make-parameter 0))
 
 ;; Procedures that are called between slices with the world and the time to run to.
 (define current-slice-hooks (make-parameter '()))
@@ -43,11 +48,12 @@
   (call-with-interrupts
    (lambda ()
      (%forget-interrupt!)
-     (let loop ()
-       (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
-         (%check-interrupt!)
-         (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
-         (unless finished? (loop)))))))
+     (parameterize ((runs-going-on (1+ (runs-going-on))))
+       (let loop ()
+         (let ((finished? (call-with-run-stack (lambda () (%advance! world until slice)))))
+           (%check-interrupt!)
+           (for-each (lambda (hook) (hook world until)) (current-slice-hooks))
+           (unless finished? (loop))))))))
 
 (define-keyword-procedure (run! #:key until)
   "Run the current world; return when everything up to and including the time to run to is committed
@@ -66,13 +72,15 @@ and observed.  Ctrl-C interrupts; the world stays usable.
   (run-world! (current-world) (+ (world-time) seconds)))
 
 (define (step!)
-  "Process one event of the current world."
+  "Process one event of the current world and return (KIND TIME BODY ...), which was done, when in
+simulated time, and to whom: 'advance (a body goes on by a window of its path), 'check (how far two
+are apart), 'impact, 'callback, or 'group-check (of what lies together, one member); #f where nothing
+is left to do.  Many events pass before world-time goes on: what is done may still be taken back."
   (%require-outside-callbacks "step!")
   (let ((world (current-world)))
     (start-first-run! world)
     (call-with-interrupts
-     (lambda () (call-with-run-stack (lambda () (%step! world)))))
-    (if #f #f)))
+     (lambda () (call-with-run-stack (lambda () (%step! world)))))))
 
 (define (statistics)
   "Return the statistics of the current world as an association list of symbols and values;
@@ -98,14 +106,21 @@ doc/statistics.md in the sources."
   (%state-queue (current-world) body))
 
 (define (checkpoint)
-  "Return the present of the current world, for restore!.  Slots and random generators are part of it."
-  (%checkpoint (current-world)))
+  "Return the present of the current world, for restore!: bodies, forces, contact parameters,
+callbacks and observers, slots and random generators are part of it."
+  (let ((world (current-world)))
+    (%checkpoint world (waiting-observers world))))
 
 (define (restore! checkpoint)
   "Bring the current world back to the time at which it made CHECKPOINT.  What was added since then
-is an error; contact parameters and observers stay as they are.  Going on gives the same history, bit for
-bit, as if the world had never run further."
-  (%restore! (current-world) checkpoint))
+is gone, and its handle an error; what was removed is back, and its handle works again: bodies,
+multibodies, forces, contact parameters, callbacks and observers.  What records the run and how it looks
+stay.  Going on gives the same history, bit for bit, as if nothing had happened since.  Any checkpoint
+of a world may be restored after any other, as often as one likes."
+  (let* ((world (current-world))
+         (waiting (%restore! world checkpoint)))
+    (set-waiting-observers! world waiting)
+    (if #f #f)))
 
 (define (total-energy)
   "Return the kinetic energy of the dynamic bodies plus their energy in the field of gravity and in

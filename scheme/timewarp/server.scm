@@ -4,12 +4,14 @@
 ;; the terminal's prompt waits.  So what they read is the committed world, and what they change is as
 ;; if it were typed between two runs.  A client's REPL is a delimited continuation that is left where
 ;; its socket has nothing to read and entered again where it has; what it prints is kept until the
-;; socket takes it, so that no client can hold the run up by not reading.  An error of a client is told
-;; to that client alone.
+;; socket takes it, so that no client can hold the run up by not reading.  Nor can it by computing: after
+;; a while of that it is left, too, and goes on at the next safe point, after the others.  An error of a
+;; client is told to that client alone.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (define-module (timewarp server)
   #:use-module (timewarp errors)
   #:use-module (timewarp interrupts)
+  #:use-module ((timewarp running) #:select (runs-going-on))
   #:use-module ((timewarp exit-status) #:select (complain))
   #:use-module (timewarp repl)
   #:use-module (timewarp history)
@@ -126,14 +128,16 @@
 ;; ---- clients ----
 
 ;; OUTBOX: bytevectors that the socket has not taken yet, the newest first.  RESUME goes on with its
-;; REPL; #f while that runs.  NEW?: nothing was read of it yet.
+;; REPL; #f while that runs.  COMPUTING: what interrupt-count was when it was left while it computed, #f
+;; where it waits for input.  NEW?: nothing was read of it yet.
 (define-record-type <client>
-  (make-client socket output outbox resume new?)
+  (make-client socket output outbox resume computing new?)
   client?
   (socket client-socket)
   (output client-output set-client-output!)
   (outbox client-outbox set-client-outbox!)
   (resume client-resume set-client-resume!)
+  (computing client-computing set-client-computing!)
   (new? client-new? set-client-new!))
 
 (define listener #f)
@@ -193,12 +197,39 @@
   (false-if-exception (send-outbox! client))
   (false-if-exception (close-port (client-socket client))))
 
-;; Calls THUNK, the client's REPL, until it waits for input.
+;; microseconds of CPU time for which a client computes at a time: as long as a slice of the run
+(define turn 20000)
+
+;; What SIGVTALRM does at the end of a turn: #f where no client computes.
+(define end-of-turn #f)
+
+(define (start-turn!) (setitimer ITIMER_VIRTUAL 0 0 0 turn))
+(define (stop-turn!) (setitimer ITIMER_VIRTUAL 0 0 0 0))
+
+;; Calls THUNK, the client's REPL, until it waits for input or its turn is over.  Within a run of its
+;; own, which serves the others, or where a C frame is on the stack it goes on, and is asked again.
 (define (run-client! client thunk)
+  (define outer end-of-turn)
+  (define runs (runs-going-on))
+  (define (leave!)
+    (cond ((and (= runs (runs-going-on)) (suspendable-continuation? client-tag))
+           (set-client-computing! client (interrupt-count))
+           (let ((before (abort-to-prompt client-tag)))
+             (unless (= before (interrupt-count)) (throw 'timewarp-interrupted))))
+          (else (start-turn!))))
   (set-client-resume! client #f)
-  (call-with-prompt client-tag
-    thunk
-    (lambda (resume) (set-client-resume! client resume))))
+  (dynamic-wind
+    (lambda ()
+      (set! end-of-turn leave!)
+      (start-turn!))
+    (lambda ()
+      (call-with-prompt client-tag
+        thunk
+        (lambda (resume) (set-client-resume! client resume))))
+    (lambda ()
+      (stop-turn!)
+      (set! end-of-turn outer)
+      (when outer (start-turn!)))))
 
 ;; A prompt within an error handler, as Guile's debugger has it, cannot wait for its input while
 ;; others go on: then the client is back at its first one.
@@ -239,7 +270,7 @@
      (unblock! socket)
      (set-port-encoding! socket "UTF-8")
      (set-port-conversion-strategy! socket 'substitute)
-     (let ((client (make-client socket #f '() #f #t)))
+     (let ((client (make-client socket #f '() #f #f #t)))
        (set-client-output! client (make-output client))
        (set! clients (append clients (list client)))
        (serving client (lambda () (run-client! client (lambda () (serve client)))))))
@@ -275,12 +306,28 @@
         (else (complain "timewarp: warning: a client of --listen was left: ~a"
                         (error-text key args)))))))
 
+;; Who computes reads nothing, not even that its client has gone.
+(define (check-presence! client)
+  (when (zero? (recv! (client-socket client) (make-bytevector 1) MSG_PEEK))
+    (throw 'system-error "recv" "~A" (list "the client has gone") (list EPIPE))))
+
+(define (go-on! client ready?)
+  (match (client-computing client)
+    (#f
+     (when ready?
+       (check-first-words! client)
+       (run-client! client (client-resume client))))
+    (interrupts
+     (when ready? (check-presence! client))
+     (set-client-computing! client #f)
+     (let ((resume (client-resume client)))
+       (run-client! client (lambda () (resume interrupts)))))))
+
 (define (poll-client! client ready)
   (serving client
     (lambda ()
-      (when (and (client-resume client) (memq (client-socket client) ready))
-        (check-first-words! client)
-        (run-client! client (client-resume client)))
+      (when (client-resume client)
+        (go-on! client (memq (client-socket client) ready)))
       (when (memq client clients) (send-outbox! client)))))
 
 (define (poll-server!)
@@ -308,6 +355,14 @@
     (('unix file) (false-if-exception (delete-file file)))
     (_ #t)))
 
+(define (call-with-turns thunk)
+  (let ((outer #f))
+    (dynamic-wind
+      (lambda ()
+        (set! outer (sigaction SIGVTALRM (lambda (signal) (when end-of-turn (end-of-turn))))))
+      thunk
+      (lambda () (sigaction SIGVTALRM (car outer) (cdr outer))))))
+
 (define (call-with-server address announce thunk)
   "Call THUNK while clients are served on ADDRESS; ANNOUNCE is called with its text.  Connections and
 the socket are closed however THUNK is left."
@@ -319,5 +374,5 @@ the socket are closed however THUNK is left."
        (lambda () (set! listener (open-listener address)))
        (lambda ()
          (announce (address->text address))
-         (thunk))
+         (call-with-turns thunk))
        (lambda () (close-server! address))))))

@@ -10,7 +10,7 @@
   #:use-module (srfi srfi-4)
   #:use-module (ice-9 match)
   #:export (sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
-            rock load-shape rotation
+            rock load-shape load-visual rotation
             shape-volume shape-inertia shape-centroid shape-radius shape?))
 
 (define (sphere radius)
@@ -153,21 +153,41 @@ count the overlap twice."
 #:orientation  a quaternion #(w x y z), as rotation returns; #(1 0 0 0)"
   (%placed shape position orientation))
 
-(define-keyword-procedure (load-shape file #:key scale convex-hull?)
+(define-keyword-procedure (load-shape file #:key scale convex-hull? up strict?)
   "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for
 beside the file that the call stands in, then beside the scene that is being loaded, then in the current
 folder.
 
 What hangs together in it by common vertices is a convex part, several make a union; the frame is
 that of the file.  A part that isn't convex is an error that names its object: split it in a
-modelling program, or take the hull.
+modelling program, or take the hull.  A part that is flat is left out, with a warning.
 
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
-#:convex-hull?  whether the hull is taken of parts that are not convex; #f"
+#:convex-hull?  whether the hull is taken of parts that are not convex; #f
+#:up            'y: the file's y is up, and becomes z here, its z becomes -y; 'z
+#:strict?       #t: a flat part is an error; #f"
+  (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
   (let* ((found (beside-caller file (caller-place)))
-         (shape (%load-shape found (or scale 1) convex-hull?)))
+         (made (%load-shape found (or scale 1) convex-hull? (eq? up 'y) strict?)))
     (note-file-read found)
-    shape))
+    (tell-mended (cdr made))
+    (car made)))
+
+(define-keyword-procedure (load-visual file #:key scale up color position orientation)
+  "Return what is seen of the mesh FILE, for #:visual of add-body! and link: OBJ with the colours of its
+mtl, STL, Collada, or what else of meshes Assimp reads.  It touches nothing, and need not be convex or
+closed.  FILE is looked for as by load-shape.  Textures are left out.
+
+#:scale        metres in a unit of the file, or #(x y z) of them, not 0; 1
+#:up           'y: the file's y is up, and becomes z here, its z becomes -y; 'z
+#:color        #(r g b), sRGB, 0 to 1, of all of it; those of its materials, or the body's
+#:position     m, in the body's frame; #(0 0 0)
+#:orientation  there, a quaternion #(w x y z); #(1 0 0 0)"
+  (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
+  (let* ((found (beside-caller file (caller-place)))
+         (visual (%load-visual found (or scale 1) (eq? up 'y) color position orientation)))
+    (note-file-read found)
+    visual))
 
 ;; ---- rocks ----
 

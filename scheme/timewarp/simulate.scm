@@ -9,7 +9,7 @@
   #:use-module (timewarp recorders)
   #:export (simulate!))
 
-(define-keyword-procedure (simulate! #:key until frames movie record poses events size quality
+(define-keyword-procedure (simulate! #:key until frames movie poses events size quality
                                     contacts? bare?)
   "Run the current world and write what happens to files, as the command line does.  File names are
 relative to the scene's file.
@@ -23,10 +23,8 @@ relative to the scene's file.
 #:contacts?  #t: the frames show the contacts as render! does; #f, or #t with --contacts
 #:bare?      #t: no title, time and scale in the frames; #f, or #t with --no-overlay
 #:poses      a CSV file of the poses and velocities of moving bodies at every frame time; none
-#:events     a CSV file of every collision, fusion and fission; none
-#:record     not there yet"
+#:events     a CSV file of every collision, fusion and fission; none"
   (%require-outside-callbacks "simulate!")
-  (when record (not-there-yet "#:record" "the recording format"))
   (let ((world (current-world)))
     (call-with-recorders
       (lambda () (run-world! world (or until (world-duration world))))

@@ -102,6 +102,15 @@ stays; so do the names defined so far, but bodies of the old world are no bodies
 (define (check-number name value valid? expected)
   (unless (and (real? value) (valid? value)) (bad-value name value expected)))
 
+;; Frames are numbered, and a film has one rate: who takes them goes on as it began.
+(define (check-frame-rates world fps)
+  (match (delete (exact->inexact fps) (if (override 'fps) '() (%frame-rates world)))
+    (() #t)
+    ((rate . _)
+     (bad-value "fps" fps
+                (format #f "~a, at which frames are taken since the first run, or another value before it"
+                        (number-text rate))))))
+
 (define (finite-positive? x) (and (positive? x) (not (inf? x))))
 
 (define (policy->string policy)
@@ -111,7 +120,7 @@ stays; so do the names defined so far, but bodies of the old world are no bodies
     (_ (bad-value "policy" policy "'timewarp, 'conservative or '(retroactive 0.01)"))))
 
 (define-keyword-procedure
-  (scene #:key title duration gravity accuracy fps seed policy group-check-rate)
+  (scene #:key title duration gravity accuracy fps seed policy group-check-rate on-overlap)
   "Set defaults of the current world; what a call leaves out stays.  Options of the command line go
 first.
 
@@ -120,33 +129,43 @@ first.
 #:gravity   m/s^2, the acceleration #(x y z); #(0 0 -9.81)
 #:accuracy  relative, 1e-12 to 0.1, before the first run; 1e-6 (--accuracy).  Heaps
             take about half the time at 1e-4; looser makes nothing faster
-#:fps       frames per second of pictures, poses and frame observers, positive; 30 (--fps)
+#:fps       frames per second of pictures, poses and frame observers, positive, before the run in
+            which these begin; 30 (--fps)
 #:seed      of random numbers, an integer, 0 or more, before bodies are added; 0 (--seed)
 #:policy    'timewarp, 'conservative or '(retroactive STEP), STEP in seconds: how the main loop
             goes forward, before the first run; the answer is the same, the work is not
             (doc/policies.md); 'timewarp (--policy)
 #:group-check-rate  Hz, the finest rate at which lasting contacts are checked, positive, before
             the first run; otherwise it follows from the sizes of the bodies in contact:
-            480 for 0.14 to 0.55 m (--group-check-rate)"
+            480 for 0.14 to 0.55 m (--group-check-rate)
+#:on-overlap  what becomes of bodies that are put deeper into each other than by 0.5 % of the
+            thinner one's thickness: 'refuse, an error, or 'push: they begin without a load and
+            are pushed apart, each two no faster than 0.15 sqrt(g size); 'refuse"
   (%require-outside-callbacks "scene")
   (let ((world (current-world)))
+    ;; all is looked at before anything is set
     (when title
-      (unless (string? title) (bad-value "title" title "a string"))
-      (world-set! world 'title title))
+      (unless (string? title) (bad-value "title" title "a string")))
     (when duration
       (check-number "duration" duration (lambda (d) (and (>= d 0) (not (inf? d))))
-                    "a number of seconds, not negative")
-      (world-set! world 'duration duration))
+                    "a number of seconds, not negative"))
     (when fps
       (check-number "fps" fps finite-positive? "a positive number of frames per second")
-      (world-set! world 'fps fps))
-    (when gravity (%set-world! world 'gravity gravity))
-    (when (and accuracy (not (override 'accuracy))) (%set-world! world 'accuracy accuracy))
-    (when (and seed (not (override 'seed))) (%set-world! world 'seed seed))
-    (when (and policy (not (override 'policy)))
-      (%set-world! world 'policy (policy->string policy)))
-    (when (and group-check-rate (not (override 'group-check-rate)))
-      (%set-world! world 'group-check-rate group-check-rate))))
+      (check-frame-rates world fps))
+    (when on-overlap
+      (unless (memq on-overlap '(refuse push))
+        (bad-value "on-overlap" on-overlap "'refuse or 'push")))
+    (%set-all! world
+               (filter cdr
+                       `((gravity . ,gravity)
+                         (push-overlaps . ,on-overlap)
+                         (accuracy . ,(and (not (override 'accuracy)) accuracy))
+                         (seed . ,(and (not (override 'seed)) seed))
+                         (policy . ,(and policy (not (override 'policy)) (policy->string policy)))
+                         (group-check-rate
+                          . ,(and (not (override 'group-check-rate)) group-check-rate)))))
+    (for-each (match-lambda ((name . value) (when value (world-set! world name value))))
+              `((title . ,title) (duration . ,duration) (fps . ,fps)))))
 
 (define (world-duration world)
   "Return the duration of the scene in WORLD, s."

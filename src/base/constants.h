@@ -37,6 +37,10 @@ inline constexpr double most_unequal = 1000;
 inline constexpr double damping_ratio = 0.5;
 // Depth beyond which a contact hardens no more, over its hardening depth; its square.
 inline constexpr double hardest_ratio = 10, hardening_cap = hardest_ratio * hardest_ratio;
+// What is far above the weight is borne by a second hardening (dynamics/second-hardening.h): so
+// many weights at its limit; it begins at this share of that, where no weight and few blows come
+// to.  The limit of contacts and holds by default, share of the size.
+inline constexpr double firm_weights = 4e6, firm_from = 0.6, firm_share = 0.01;
 // A gap of this share of the hardening depth is none to the derivatives: whether what just touches
 // presses already is rounding.
 inline constexpr double just_touching = 1e-9;
@@ -58,6 +62,8 @@ inline constexpr double preload_beyond = 1.5;
 // ---- multibodies ----
 // A stop at a joint's limit yields so far under the weight beyond it, rad or share of its reach.
 inline constexpr double stop_depth = 1e-4;
+// The limit of its second hardening.
+inline constexpr double stop_limit = 1e-3;
 // Speed at which a joint strikes its stop no more but leans on it, of sqrt(g/reach) rad/s or
 // sqrt(g reach) m/s with the reach of what it moves; it bounds what the stop damps.  1 cm/s at 1 m.
 inline constexpr double stop_speed = 3e-3;
@@ -85,6 +91,9 @@ inline constexpr double loose_steps = 1e-5;
 inline constexpr double joint_friction_speed = 3e-6;
 // What a step is cut by in which it lets go, and does more than its derivative and tolerance allow.
 inline constexpr double break_away_cut = 0.25;
+// Tolerances by which velocities may change in a step in which a contact that is pressed into its
+// second hardening lets go.
+inline constexpr double let_go_change = 100;
 
 // ---- where bodies meet ----
 // Pairs that are not predicted exactly are looked at at multiples of this, s; an overlap that no
@@ -106,8 +115,17 @@ inline constexpr double end_resolution = 1e-6;
 inline constexpr double depth_slack = 1e-12;
 // The same where both are integrated: steps err by far more (groups/step-tolerances.h).
 inline constexpr double stepped_slack = 1e-10;
-// Bodies may overlap by this share of the smaller size when they come into the world: touching.
+// Bodies that come into the world touch if they overlap by no more than this share of the smaller
+// size.
 inline constexpr double start_depth = 1e-6;
+// What came to rest can be a start: they may overlap by this share of the thinner one's thickness,
+// as deep as where springs are hardest.  And what is so little apart beside others that touch, a
+// fifth of what weight presses in, touches as well: files have six decimals, a right angle 1.5708.
+inline constexpr double start_overlap = hardest_ratio * hardening_depths * depth_share;
+inline constexpr double start_gap = 0.2 * depth_share;
+// What overlaps and is to be pushed apart goes by this share of sqrt(g size), and at a check by no
+// more than so many static depths.
+inline constexpr double push_share = fusion_share, most_pushed = 3;
 // What is placed touching starts loaded in groups of at most so many members: to find the forces
 // takes about as long as a hundred steps of theirs.
 inline constexpr std::size_t most_placed = 4096;
@@ -293,6 +311,18 @@ inline constexpr std::uint32_t pinned_strikes = 32;
 inline constexpr double undiminished = 0.99;
 // What many impulses leave over is settled at once, to this share of it.
 inline constexpr double settled_share = 1e-6;
+// A contact carries that presses with this share of the lighter one's weight before the blow: what
+// touches without a load, up to rounding and to what swings in a spring, takes a blow of its own.
+inline constexpr double carrying_share = 1e-2;
+// Ground whose normals are as near as this, by their cosine, carries as one: what lies on many
+// pieces lies on all of them.
+inline constexpr double one_ground = 0.99;
+// What carries takes up a blow where it would be approached by this share of the blow's speed, or
+// by what its spring does not bear.
+inline constexpr double taken_up_share = 1e-3;
+// A pair that takes more blows at one instant has something else to and fro on its other side: that
+// carries then.  A cradle's balls strike each other once or twice.
+inline constexpr int most_to_and_fro = 8;
 
 }  // namespace tw::answer
 
@@ -300,11 +330,16 @@ namespace tw::guard {
 // Impulses at the stops of one multibody at one instant.
 inline constexpr int most_stop_impulses = 200;
 
-// Impulses of one impact between two bodies, and of one that is passed on through a group; where
-// the two may strike each other again meanwhile, a body that is a thousand times as heavy as what
-// it comes down on needs thousands.  What approaches still in a group then is settled at once, or,
-// where it cannot be, counted (impulses_given_up).
-inline constexpr int most_impulses = 200, most_passed_on = 700, most_struck_again = 20000;
+// Impulses of one impact between two bodies, and of those that a check of a group finds.  What
+// approaches still in a group then is settled at once, or, where it cannot be, counted
+// (impulses_given_up).
+inline constexpr int most_impulses = 200, most_passed_on = 700;
+// Contacts that take up a blow together (the work goes with the third power), blows that follow
+// from one, and the steps that friction in them may take by Newton's method, sweeps where that
+// fails, and how often both begin.
+inline constexpr std::size_t most_together = 64;
+inline constexpr int most_blows = 1000, most_friction_rounds = 24, most_friction_sweeps = 200;
+inline constexpr int most_friction_starts = 3;
 // Contacts that are settled at once: the work goes with the fourth power.
 inline constexpr std::size_t most_settled = 128;
 // Impacts of a pair at one instant, slower than this share of the fusion speed: rounding, they
@@ -322,6 +357,10 @@ inline constexpr double balance_softness = 1e6, balance_residual = 1e-9;
 inline constexpr double least_balance_step = 0x1p-10;
 // A contact slides if it gets faster by more than this share of gravity.
 inline constexpr double balance_slide = 1e-6;
+// What gets faster by less than this share of gravity is in balance.
+inline constexpr double balance_stands = 1e-3;
+// So many times the load of its spring a contact may bear that was placed as deep as that.
+inline constexpr double balance_most_pressed = 8;
 inline constexpr int balance_steps = 60, balance_rounds = 4;
 
 // Numbers in the record of one arc (half a gigabyte); more are an error that stops the group.

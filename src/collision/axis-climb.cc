@@ -8,17 +8,11 @@ namespace tw {
 
 namespace {
 
-// from any face of small polyhedra a few steps lead to the nearest; big ones begin near it too
-constexpr int most_steps = 64;
-
-// a foot this near a side, relative to the size, is on it
-constexpr double on_side = 1e-12;
-
 // below this squared sine of their angle two edges count as parallel
-constexpr double parallel = 1e-8;
+constexpr double edges_parallel = 1e-8;
 
 // neighbours whose height falls by less than this, relative to their distance, do not take over
-constexpr double level = 1e-13;
+constexpr double height_slack = 1e-13;
 
 // A face of the Minkowski difference with the foot of the origin.
 struct Place {
@@ -96,7 +90,7 @@ bool Climber::edges(int edge_a, int edge_b, Place& place) const {
   const double vv = v.squaredNorm();
   const double uv = u.dot(v);
   const double det = uu * vv - uv * uv;
-  if (!(det > parallel * uu * vv)) return false;
+  if (!(det > edges_parallel * uu * vv)) return false;
   Vec3 n = u.cross(v) / std::sqrt(det);
   n -= u * (n.dot(u) / uu);
   n -= v * (n.dot(v) / vv);
@@ -128,14 +122,14 @@ const Polyhedron::Link* first_to_take_over(const Polyhedron& p, int vertex, cons
     const Vec3 d = sign * (p.vertex(link.vertex) - p.vertex(vertex));
     const double after = d.dot(m);
     const double square = d.squaredNorm();
-    if (!(after < 0 && after * after > level * level * square)) continue;
+    if (!(after < 0 && after * after > height_slack * height_slack * square)) continue;
     // the height (1 - tau) before + tau after is 0
     const double before = std::max(d.dot(n), 0.0);
     const double tau = before / (before - after);
-    if (tau > least + level) continue;
+    if (tau > least + height_slack) continue;
     // at ties the steepest
     const double slope = after * after / square;
-    if (tau > least - level && slope < steepest) continue;
+    if (tau > least - height_slack && slope < steepest) continue;
     least = tau;
     steepest = slope;
     first = &link;
@@ -230,6 +224,10 @@ bool Climber::proven(const Place& place) const {
 }  // namespace
 
 Climb climb_to_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a) {
+  // from any face of small polyhedra a few steps lead to the nearest; big ones begin near it too
+  constexpr int most_steps = 64;
+  // a foot this near a side, relative to the size, is on it
+  constexpr double on_side = 1e-12;
   const Climber climber(a, b, b_in_a);
   const double slack = on_side * (a.radius() + b.radius());
   Place place = climber.start();

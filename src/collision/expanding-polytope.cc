@@ -9,8 +9,6 @@ namespace tw {
 
 namespace {
 
-constexpr int most_steps = 200;
-
 // A triangle of the polytope, counter-clockwise from outside.
 struct Facet {
   std::array<int, 3> corner{};
@@ -112,6 +110,7 @@ class Polytope {
 
 PolytopeDepth polytope_depth(const SupportCore& a, const SupportCore& b, const Vec3& shift,
                              const std::array<DifferencePoint, 4>& enclosing, double tolerance) {
+  constexpr int most_steps = 200;
   Polytope polytope(enclosing, 1e-15 * (a.size() + b.size()));
   PolytopeDepth best;
   best.depth = 1e300;

@@ -12,10 +12,6 @@ namespace tw {
 
 namespace {
 
-// corners this near a side, relative to the size, lie on it: faces of equal outline would otherwise
-// be cut at every corner by rounding
-constexpr double on_side = 1e-12;
-
 // A vertex by its number; a crossing by the ends of the incident edge and the side; a corner of the
 // reference face by its two sides.
 std::uint64_t vertex_key(int vertex) { return static_cast<std::uint64_t>(vertex); }
@@ -212,7 +208,9 @@ void face_contact(const Polyhedron& reference, int face_number, const Polyhedron
   thread_local std::vector<FacePair> pairs;
   thread_local std::vector<FacePoint> corners;
   const double size = reference.radius() + incident.radius();
-  const double slack = on_side * size;
+  // corners this near a side lie on it: faces of equal outline would otherwise be cut at every
+  // corner by rounding
+  const double slack = 1e-12 * size;
   const double near = coincident_ratio * size;
   out.clear();
   higher.clear();

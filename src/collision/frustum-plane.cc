@@ -12,7 +12,7 @@ namespace tw {
 namespace {
 
 // sides this near, relative to the radius, are met
-constexpr double slack = 1e-12;
+constexpr double met = 1e-12;
 
 // Of a point on a circle about the axis: how it rolls.  When the circle is level what is lowest of
 // it is anywhere.
@@ -59,7 +59,7 @@ void lie(const PlacedFrustum& c, const Ground& ground, const Tilt& tilt, double 
     } else if (rise < 0 && edge < to) {
       to = edge;
       name_to = number;
-    } else if (rise == 0 && start < -slack * c.widest()) {
+    } else if (rise == 0 && start < -met * c.widest()) {
       return;
     }
     ++number;
@@ -100,7 +100,7 @@ void stand(const PlacedFrustum& c, bool on_top, const Ground& ground, const Tilt
     polygon.push_back({point, ground.normal.dot(point - ground.point), k});
   }
   for (std::size_t i = 0; i < ground.sides.size() && !polygon.empty(); ++i)
-    clip_by_side(polygon, ground.sides[i], static_cast<int>(i), slack * radius);
+    clip_by_side(polygon, ground.sides[i], static_cast<int>(i), met * radius);
   // names: a point of the rim by its number; a cut by the two edges or sides that meet
   points.clear();
   thread_local std::vector<FacePoint> higher;

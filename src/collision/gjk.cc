@@ -10,15 +10,6 @@ namespace tw {
 
 namespace {
 
-// of exact arithmetic GJK needs a handful of steps; rounding ends it much before this
-constexpr int most_steps = 100;
-
-// steps in all that may fail to shorten v
-constexpr int most_stalls = 6;
-
-// what support values can err by, relative to the size of the Minkowski difference
-constexpr double rounding = 4e-16;
-
 // B as a polyhedron seen from A's frame.
 struct PlacedCore {
   const Polyhedron& core;
@@ -78,6 +69,11 @@ Simplex start_simplex(const Polyhedron& a, const CoreB& b, const SimplexCache* c
 // Improves the simplex until nothing can be gained; true where it encloses the origin.
 template <class CoreB>
 bool descend(const Polyhedron& a, const CoreB& b, Simplex& best) {
+  // of exact arithmetic GJK needs a handful of steps, and rounding ends it much before; steps in
+  // all that may fail to shorten v
+  constexpr int most_steps = 100, most_stalls = 6;
+  // what support values can err by, relative to the size of the Minkowski difference
+  constexpr double rounding = 4e-16;
   double scale = 0;  // squared size of the Minkowski difference
   for (std::size_t i = 0; i < static_cast<std::size_t>(best.count); ++i)
     scale = std::max(scale, best.points[i].w.squaredNorm());

@@ -6,13 +6,6 @@
 
 namespace tw {
 
-namespace {
-
-// below this distance, relative to the size, a point counts as inside
-constexpr double touch_ratio = 1e-9;
-
-}  // namespace
-
 bool over_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point, double slack) {
   for (int i = 0; i < face.count; ++i) {
     const Polyhedron::Side& side = p.side(face.first + i);
@@ -66,8 +59,10 @@ NearestToPoint nearest_to_point(const Polyhedron& p, const Vec3& point) {
   int number = 0;
   const double height = p.face_separation(point, number);
   const Polyhedron::Face& face = p.face(number);
+  // below this distance, relative to the size, a point counts as inside
+  constexpr double inside_ratio = 1e-9;
   // the greatest height over a face plane is the distance where the foot lies in the face
-  const bool inside = height <= touch_ratio * p.radius();
+  const bool inside = height <= inside_ratio * p.radius();
   if (!inside && !over_face(p, face, point, 0)) return nearest_edge(p, point);
   NearestToPoint result;
   result.normal = face.normal;

@@ -19,9 +19,6 @@ namespace tw {
 
 namespace {
 
-constexpr int most_steps = 200;
-constexpr int most_stalls = 6;
-
 // what the distance may err by, relative to the size
 constexpr double apart_accuracy = 1e-13;
 constexpr double depth_accuracy = 1e-12;
@@ -74,6 +71,7 @@ bool has_ellipsoid(const SupportCore& a, const SupportCore& b) {
 
 Descent descend(const SupportCore& a, const SupportCore& b, const Vec3& shift,
                 double accuracy = apart_accuracy) {
+  constexpr int most_steps = 200, most_stalls = 6;
   Descent d;
   const double size = a.size() + b.size();
   add_point(d, difference_support(a, b, shift, b.center() + shift - a.center()));

@@ -14,11 +14,11 @@ namespace {
 constexpr double tie = 1e-13;
 
 // slack of the tests that leave edges out, relative to the size
-constexpr double slack = 1e-9;
+constexpr double left_out_slack = 1e-9;
 
 // below this sine of their angle two edges count as parallel: the thin Minkowski face between them
 // is then within rounding of its neighbours
-constexpr double parallel = 1e-13;
+constexpr double parallel_edges = 1e-13;
 
 // The search so far.
 struct Search {
@@ -123,7 +123,7 @@ bool arcs_cross(const PlacedEdge& a, const PlacedEdge& b) {
 Vec3 edge_axis(const PlacedEdge& a, const PlacedEdge& b) {
   Vec3 n = a.along.cross(b.along);
   const double square = n.squaredNorm();
-  if (!(square > parallel * parallel * a.along.squaredNorm() * b.along.squaredNorm()))
+  if (!(square > parallel_edges * parallel_edges * a.along.squaredNorm() * b.along.squaredNorm()))
     return Vec3::Zero();
   n /= std::sqrt(square);
   // nearly parallel edges: what rounding left along them would tilt the axis out of the arcs
@@ -184,7 +184,7 @@ LeastAxis least_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in
   try_faces(b, a, a_in_b, AxisKind::face_b, search);
   if (search.chosen != before) search.best.normal = -(b_in_a.R * search.best.normal);
   // moving B by at most -s along the answer makes the two edges meet
-  try_edges(a, b, b_in_a, std::max(gap, -search.chosen) + slack * size, search);
+  try_edges(a, b, b_in_a, std::max(gap, -search.chosen) + left_out_slack * size, search);
   search.best.distance = search.greatest;
   return search.best;
 }

@@ -374,7 +374,7 @@ double box_gap(const Aabb& a, const Aabb& b) {
 }
 
 // The least separation of one part of each of two shapes so far.  Ties: the first pair.
-struct Nearest {
+struct NearestParts {
   const Shape& a;
   const Frame& frame_a;
   const Shape& b;
@@ -399,7 +399,7 @@ struct Nearest {
 
 // All parts of one shape beneath a node of its tree, whose box is `gap` away, against part `few` of
 // the other, whose box in the tree's frame is given: the nearest boxes first.
-void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, double gap,
+void search(NearestParts& nearest, const PartTree& tree, const PartTree::Node& node, double gap,
             bool of_b, std::size_t few, const Aabb& box) {
   if (!nearest.may_hold(gap)) return;
   if (node.is_leaf)
@@ -416,7 +416,7 @@ void search(Nearest& nearest, const PartTree& tree, const PartTree::Node& node, 
 
 Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape& b,
                                const Frame& frame_b) {
-  Nearest nearest{a, frame_a, b, frame_b};
+  NearestParts nearest{a, frame_a, b, frame_b};
   const bool in_b = searches_second(a, b);
   const Shape& many = in_b ? b : a;
   const Shape& few = in_b ? a : b;

@@ -13,10 +13,10 @@ constexpr double sliver = 1e-28;
 
 // a plane through the newest point that passes the origin or the last corner within this ratio of
 // their distance, squared, leaves open on which side they are
-constexpr double flat = 1e-20;
+constexpr double flat_square = 1e-20;
 
 // The best face found so far, by numbers of points in the simplex.
-struct Nearest {
+struct NearestFace {
   double square = 1e300;  // |v|^2
   int count = 0;
   std::array<int, 3> index{};
@@ -24,14 +24,14 @@ struct Nearest {
   Vec3 v = Vec3::Zero();
 };
 
-void try_point(const Simplex& s, int i, Nearest& best) {
+void try_point(const Simplex& s, int i, NearestFace& best) {
   const Vec3& w = s.points[static_cast<std::size_t>(i)].w;
   const double square = w.squaredNorm();
   if (!(square < best.square)) return;
   best = {square, 1, {i, 0, 0}, {1, 0, 0}, w};
 }
 
-void try_segment(const Simplex& s, int i, int j, Nearest& best) {
+void try_segment(const Simplex& s, int i, int j, NearestFace& best) {
   const Vec3& p = s.points[static_cast<std::size_t>(i)].w;
   const Vec3& q = s.points[static_cast<std::size_t>(j)].w;
   const Vec3 e = q - p;
@@ -48,7 +48,7 @@ void try_segment(const Simplex& s, int i, int j, Nearest& best) {
   best = {square, 2, {i, j, 0}, {1 - t, t, 0}, v};
 }
 
-void try_triangle(const Simplex& s, int i, int j, int k, Nearest& best) {
+void try_triangle(const Simplex& s, int i, int j, int k, NearestFace& best) {
   const Vec3& p = s.points[static_cast<std::size_t>(i)].w;
   Vec3 e = s.points[static_cast<std::size_t>(j)].w - p;
   Vec3 f = s.points[static_cast<std::size_t>(k)].w - p;
@@ -103,12 +103,12 @@ bool beyond(const Simplex& s, int i, int j, int inner) {
   const double origin_height = -n.dot(top);
   const double inner_height = n.dot(down);
   if (!(origin_height * inner_height > 0)) return true;
-  const double limit = flat * n.squaredNorm();
+  const double limit = flat_square * n.squaredNorm();
   return origin_height * origin_height < limit * top.squaredNorm() ||
          inner_height * inner_height < limit * down.squaredNorm();
 }
 
-void keep(Simplex& s, const Nearest& best) {
+void keep(Simplex& s, const NearestFace& best) {
   // indices may come in any order: gather first
   std::array<SimplexPoint, 3> kept;
   for (std::size_t i = 0; i < static_cast<std::size_t>(best.count); ++i) {
@@ -123,7 +123,7 @@ void keep(Simplex& s, const Nearest& best) {
 }  // namespace
 
 bool reduce(Simplex& simplex) {
-  Nearest best;
+  NearestFace best;
   switch (simplex.count) {
     case 1: try_point(simplex, 0, best); break;
     case 2: try_segment(simplex, 0, 1, best); break;

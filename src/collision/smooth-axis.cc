@@ -14,7 +14,7 @@ namespace {
 constexpr int newton_steps = 12, secant_steps = 12;
 
 // what s may lose where its slope falls, relative to the size
-constexpr double rounding = 1e-15;
+constexpr double value_rounding = 1e-15;
 
 // a line this near to square to the axis may lie along its plane, sine
 constexpr double nearly_square = 0.1;
@@ -67,7 +67,8 @@ void newton(const SupportCore& a, const SupportCore& b, Vec3& n, Reach& best) {
     const Reach there = reach_along(a, b, next);
     // s is flat at its top: there the gradient shows the way
     const double slope = there.w.cross(next).norm();
-    const bool nearer = there.s > best.s - rounding * size && slope < 0.5 * best.w.cross(n).norm();
+    const bool nearer =
+        there.s > best.s - value_rounding * size && slope < 0.5 * best.w.cross(n).norm();
     if (!(there.s > best.s) && !nearer) return;
     n = next;
     best = there;
@@ -94,7 +95,7 @@ void turn_about(const SupportCore& a, const SupportCore& b, const Vec3& axis, Ve
     const Vec3 at = turned(from, axis, x1);
     here = reach_along(a, b, at);
     const double f1 = slope(at, here.w);
-    const bool level = here.s > reached.s - rounding * size && std::abs(f1) < least;
+    const bool level = here.s > reached.s - value_rounding * size && std::abs(f1) < least;
     if (here.s > reached.s || level) {
       reached = here;
       most = at;
@@ -107,7 +108,7 @@ void turn_about(const SupportCore& a, const SupportCore& b, const Vec3& axis, Ve
     f0 = f1;
     x1 = next;
   }
-  if (!(reached.s > best.s - rounding * size)) return;
+  if (!(reached.s > best.s - value_rounding * size)) return;
   n = most.normalized();
   best = reach_along(a, b, n);
 }

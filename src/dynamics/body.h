@@ -18,6 +18,7 @@
 #include "dynamics/ids.h"
 #include "dynamics/rigid-body.h"
 #include "geometry/shape.h"
+#include "geometry/visual.h"
 
 namespace tw {
 
@@ -45,6 +46,7 @@ struct BodyInfo {
   std::optional<Vec3> color;
   bool visible = true;
   Place place;
+  VisualPtr visual;      // what is drawn of it; null: its shape
   bool removed = false;  // World::remove_body; its number stays taken
 };
 
@@ -53,7 +55,8 @@ struct Body {
   ProcessId process{};                   // that its motion belongs to
   const Multibody* multibody = nullptr;  // it is a link of; null: of none
   std::uint32_t link = 0;                // which one
-  std::vector<BodyId> neighbours;        // links across a joint, which it never touches; ascending
+  bool welded_down = false;              // it is a link that is welded to a base that stands
+  std::vector<BodyId> neighbours;        // across a joint: it touches them where told to; ascending
   ContactBody contact;
   double mass = 0;              // kg; 0 for fixed and kinematic
   Vec3 moments = Vec3::Zero();  // kg m^2
@@ -81,6 +84,7 @@ struct Body {
   bool dynamic() const { return info.kind == BodyKind::dynamic; }
   bool fixed() const { return info.kind == BodyKind::fixed; }
   bool kinematic() const { return info.kind == BodyKind::kinematic; }
+  bool never_moves() const { return fixed() || welded_down; }
   BodyId id() const { return info.id; }
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "dynamics/bond.h"
 
+#include <cmath>
+
 #include "base/hash.h"
 #include "math/rotation-vector.h"
 
@@ -26,6 +28,20 @@ Vec3 turned(const TurnLaw& law, const PoseTwist& a, const PoseTwist& b) {
   return turn_between(a.q * law.relative, b.q);
 }
 
+// Of a spring that hardens: h, sqrt(h), and df/dx for f = k h x + c sqrt(h) v.
+struct Hardened {
+  double h, root;
+
+  Hardened(const SecondHardening& firm, const Vec3& x)
+      : h(1 + (firm.firmness > 0 ? firm.hardness(x.norm()) : 0)), root(std::sqrt(h)) {}
+  Mat3 by_x(double k, double c, const SecondHardening& firm, const Vec3& x, const Vec3& v) const {
+    Mat3 result = (k * h) * Mat3::Identity();
+    if (h == 1) return result;
+    const double length = x.norm(), slope = firm.slope(length);
+    return result + (k * slope * x + c * slope / (2 * root) * v) * x.transpose() / length;
+  }
+};
+
 // Jl(phi)^-1, column by column.
 Mat3 rate_matrix(const Vec3& phi) {
   Mat3 J;
@@ -37,12 +53,14 @@ Mat3 rate_matrix(const Vec3& phi) {
 
 Bond::Wrenches Bond::wrenches(const PoseTwist& on_a, const PoseTwist& on_b) const {
   const Reach reach(*this, on_a, on_b);
-  const Vec3 f = spring.force(reach.d, reach.e);
+  const Vec3 f = spring.force(reach.d, reach.e, firm);
   Wrenches result;
   result.a = {f, reach.s_a.cross(f)};
   result.b = {-f, -reach.s_b.cross(f)};
   if (!holds) return result;
-  const Vec3 torque = turn.stiffness * turned(turn, on_a, on_b) + turn.damping * (on_b.w - on_a.w);
+  const Vec3 phi = turned(turn, on_a, on_b);
+  const Hardened hard(firm_turn, phi);
+  const Vec3 torque = turn.stiffness * hard.h * phi + turn.damping * hard.root * (on_b.w - on_a.w);
   result.a.torque += torque;
   result.b.torque -= torque;
   return result;
@@ -55,9 +73,9 @@ Bond::Wrenches Bond::wrenches(const PoseTwist& on_a, const PoseTwist& on_b) cons
 // of the turn dphi = Jl(phi)^-1 dth_b - Jl(-phi)^-1 dth_a.
 Bond::Derivative Bond::derivative(const PoseTwist& on_a, const PoseTwist& on_b) const {
   const Reach reach(*this, on_a, on_b);
-  const Vec3 f = spring.force(reach.d, reach.e);
+  const Vec3 f = spring.force(reach.d, reach.e, firm);
   Mat3 by_d, by_e;
-  spring.derivative(reach.d, reach.e, by_d, by_e);
+  spring.derivative(reach.d, reach.e, firm, by_d, by_e);
   const Mat3 F = cross_matrix(f), S_a = cross_matrix(reach.s_a), S_b = cross_matrix(reach.s_b);
   const Mat3 w_a = cross_matrix(on_a.w), w_b = cross_matrix(on_b.w);
   const Mat3 none = Mat3::Zero(), one = Mat3::Identity();
@@ -83,9 +101,17 @@ Bond::Derivative Bond::derivative(const PoseTwist& on_a, const PoseTwist& on_b) 
   put(1, &WrenchDerivative::by_twist, 3, none, -S_b, none, none);
   if (!holds) return result;
   const Vec3 phi = turned(turn, on_a, on_b);
-  const Mat3 by_turn[2] = {-turn.stiffness * rate_matrix(-phi), turn.stiffness * rate_matrix(phi)};
+  const Hardened hard(firm_turn, phi);
+  Mat3 by_turn[2] = {-turn.stiffness * rate_matrix(-phi), turn.stiffness * rate_matrix(phi)};
+  if (hard.h > 1) {
+    const Vec3 w = on_b.w - on_a.w;
+    const Mat3 by_phi = hard.by_x(turn.stiffness, turn.damping, firm_turn, phi, w);
+    by_turn[0] = -by_phi * rate_matrix(-phi);
+    by_turn[1] = by_phi * rate_matrix(phi);
+  }
   for (const int j : {0, 1}) {
-    const Mat3 damped = (j == 0 ? -turn.damping : turn.damping) * Mat3::Identity();
+    const double damping = turn.damping * hard.root;
+    const Mat3 damped = (j == 0 ? -damping : damping) * Mat3::Identity();
     result.of[0][j].by_pose.bottomRightCorner<3, 3>() += by_turn[j];
     result.of[1][j].by_pose.bottomRightCorner<3, 3>() -= by_turn[j];
     result.of[0][j].by_twist.bottomRightCorner<3, 3>() += damped;
@@ -95,9 +121,10 @@ Bond::Derivative Bond::derivative(const PoseTwist& on_a, const PoseTwist& on_b) 
 }
 
 double Bond::energy(const PoseTwist& on_a, const PoseTwist& on_b) const {
-  const double stretched = spring.energy(Reach(*this, on_a, on_b).d);
+  const double stretched = spring.energy(Reach(*this, on_a, on_b).d, firm);
   if (!holds) return stretched;
-  return stretched + 0.5 * turn.stiffness * turned(turn, on_a, on_b).squaredNorm();
+  const Vec3 phi = turned(turn, on_a, on_b);
+  return stretched + turn.stiffness * (0.5 * phi.squaredNorm() + firm_turn.energy(phi.norm()));
 }
 
 std::uint64_t Bond::hash() const {
@@ -114,8 +141,11 @@ std::uint64_t Bond::hash() const {
   return h.value();
 }
 
-Vec3 SpringLaw::force(const Vec3& d, const Vec3& dv) const {
-  if (rest == 0) return stiffness * d + damping * dv;
+Vec3 SpringLaw::force(const Vec3& d, const Vec3& dv, const SecondHardening& firm) const {
+  if (rest == 0) {
+    const Hardened hard(firm, d);
+    return stiffness * hard.h * d + damping * hard.root * dv;
+  }
   const double l = d.norm();
   if (l == 0) return Vec3::Zero();
   const Vec3 u = d / l;
@@ -124,12 +154,14 @@ Vec3 SpringLaw::force(const Vec3& d, const Vec3& dv) const {
 
 // f = t u, t = k (l - rest) + c u.dv;  du = Q dd, Q = (1 - u u^T)/l;  dt = k u.dd + c dv.(Q dd) +
 // c u.d(dv)
-void SpringLaw::derivative(const Vec3& d, const Vec3& dv, Mat3& by_d, Mat3& by_dv) const {
+void SpringLaw::derivative(const Vec3& d, const Vec3& dv, const SecondHardening& firm, Mat3& by_d,
+                           Mat3& by_dv) const {
   by_d.setZero();
   by_dv.setZero();
   if (rest == 0) {
-    by_d.diagonal().setConstant(stiffness);
-    by_dv.diagonal().setConstant(damping);
+    const Hardened hard(firm, d);
+    by_d = hard.by_x(stiffness, damping, firm, d, dv);
+    by_dv.diagonal().setConstant(damping * hard.root);
     return;
   }
   const double l = d.norm();
@@ -141,9 +173,9 @@ void SpringLaw::derivative(const Vec3& d, const Vec3& dv, Mat3& by_d, Mat3& by_d
   by_dv = damping * u * u.transpose();
 }
 
-double SpringLaw::energy(const Vec3& d) const {
+double SpringLaw::energy(const Vec3& d, const SecondHardening& firm) const {
   const double stretch = d.norm() - rest;
-  return 0.5 * stiffness * stretch * stretch;
+  return 0.5 * stiffness * stretch * stretch + stiffness * firm.energy(stretch);
 }
 
 }  // namespace tw

@@ -10,19 +10,33 @@ namespace tw {
 void ContactBook::add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings) {
   table_.add(a, b, settings);
   if (settings.collide && !*settings.collide) may_disable_ = true;
-  known_.clear();
-  serial_ = next_serial();
-  for (const ContactSide* side : {&a, &b}) {
-    if (side->kind != ContactSide::Kind::body || !named_.insert(side->body).second) continue;
-    if (side->body < classes_.size()) classes_[side->body] = class_of(side->body);
-  }
+  forget_known();
+  name(a);
+  name(b);
 }
 
-ContactTable ContactBook::table_with(const ContactSide& a, const ContactSide& b,
-                                     const ContactSettings& settings) const {
-  ContactTable table = table_;
-  table.add(a, b, settings);
-  return table;
+void ContactBook::name(const ContactSide& side) {
+  if (side.kind != ContactSide::Kind::body || !named_.insert(side.body).second) return;
+  if (side.body < classes_.size()) classes_[side.body] = class_of(side.body);
+}
+
+void ContactBook::take_back(std::size_t size) {
+  table_.take_back(size);
+  forget_known();
+}
+
+void ContactBook::restart(const ContactTable& rules) {
+  table_ = rules;
+  bodies_.clear();
+  classes_.clear();
+  named_.clear();
+  forget_known();
+  table_.visit_sides([this](const ContactSide& side) { name(side); });
+}
+
+void ContactBook::forget_known() {
+  known_.clear();
+  serial_ = next_serial();
 }
 
 void ContactBook::add_body(const Body& body) {

@@ -22,12 +22,11 @@ class ContactBook {
  public:
   // Errors: a value out of its range, with the keyword and the range.
   void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
-  // The rules as they would be with another one, and what `between` would give by them.
-  ContactTable table_with(const ContactSide& a, const ContactSide& b,
-                          const ContactSettings& settings) const;
-  ContactParameters between(const ContactTable& table, BodyId a, BodyId b) const {
-    return table.look_up(bodies_[a], bodies_[b]);
-  }
+  const ContactTable& rules() const { return table_; }
+  // Without those that were added after the first so many.
+  void take_back(std::size_t size);
+  // Those rules, and no bodies yet.
+  void restart(const ContactTable& rules);
   // Whether a rule with that side is about a body.
   bool names(const ContactSide& side, BodyId id) const { return side_matches(side, bodies_[id]); }
   // A body has come into the world; numbers are dense, from 0.
@@ -37,20 +36,20 @@ class ContactBook {
   const ContactParameters& between(BodyId a, BodyId b) const;
   // Whether some pair may have been told not to collide.
   bool may_disable() const { return may_disable_; }
-  // Changes with every rule, not with bodies.
-  unsigned version() const { return table_.version(); }
 
  private:
   // Bodies that a rule names are classes of their own; others are one with all of their material.
   using ClassId = std::uint32_t;
   ClassId class_of(BodyId id);
+  void name(const ContactSide& side);
+  void forget_known();
 
   ContactTable table_;
   std::vector<ContactBody> bodies_;
   std::vector<ClassId> classes_;  // of each body
   std::unordered_map<std::string, ClassId> class_of_material_;
   std::unordered_set<BodyId> named_;
-  bool may_disable_ = false;
+  bool may_disable_ = false;  // once and for all: whoever asks then looks the pair up
   const ContactParameters& look_up(std::uint64_t classes, BodyId a, BodyId b) const;
   static std::uint64_t next_serial();
 

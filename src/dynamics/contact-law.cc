@@ -22,6 +22,9 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
   c.depth = mass * g / c.k;
   c.hardening = (unequal ? answer::unequal_hardening_depths : answer::hardening_depths) * c.depth;
 
+  // a made stiffness has its limit at as many static depths
+  c.firm = SecondHardening::of(answer::firm_share / share * c.depth, c.depth);
+
   // k d0 b = 2 zeta m omega with omega^2 = k/m = g/d0
   c.b =
       parameters.damping ? *parameters.damping : 2 * answer::damping_ratio / std::sqrt(g * c.depth);
@@ -38,11 +41,16 @@ ContactConstants contact_constants(const ContactParameters& parameters, double m
 
 namespace {
 
-// k(d)/k
-double hardness(const ContactConstants& law, double depth) {
+// k(d)/k without the second hardening
+double first_hardness(const ContactConstants& law, double depth) {
   if (!(depth > 0 && law.hardening > 0)) return 1;
   const double ratio = depth / law.hardening;
   return 1 + std::min(ratio * ratio, answer::hardening_cap);
+}
+
+// k(d)/k
+double hardness(const ContactConstants& law, double depth) {
+  return first_hardness(law, depth) + law.firm.hardness(depth);
 }
 
 }  // namespace
@@ -52,7 +60,8 @@ double spring_force(const ContactConstants& law, double share, double depth) {
 }
 
 double friction_grip(const ContactConstants& law, double depth) {
-  return std::sqrt(hardness(law, depth));
+  if (!(depth > 0)) return 1;
+  return std::sqrt(first_hardness(law, depth) + law.firm.grip(depth));
 }
 
 double spring_energy(const ContactConstants& law, double share, double depth) {
@@ -60,14 +69,15 @@ double spring_energy(const ContactConstants& law, double share, double depth) {
   const double ratio = law.hardening > 0 ? depth / law.hardening : 0, squared = ratio * ratio;
   constexpr double cap = answer::hardening_cap;
   const double hard = squared < cap ? 0.5 * squared : cap - 0.5 * cap * cap / squared;
-  return 0.5 * share * law.k * depth * depth * (1 + hard);
+  const double first = 0.5 * share * law.k * depth * depth * (1 + hard);
+  return first + share * law.k * law.firm.energy(depth);
 }
 
-// The root of y + y^3 = x by Newton's method, from above; beyond the cap the law is linear.
-double spring_depth(const ContactConstants& law, double share, double force) {
-  if (!(force > 0)) return 0;
-  const double linear = force / (share * law.k);
-  if (!(law.hardening > 0)) return linear;
+namespace {
+
+// Where the second hardening has no part: the root of y + y^3 = x by Newton's method, from above;
+// beyond the cap the law is linear.
+double soft_depth(const ContactConstants& law, double linear) {
   const double x = linear / law.hardening;
   constexpr double cap = answer::hardening_cap;
   if (x * x >= cap * (1 + cap) * (1 + cap)) return linear / (1 + cap);
@@ -77,6 +87,26 @@ double spring_depth(const ContactConstants& law, double share, double force) {
     y -= (y + y * y * y - x) / (1 + 3 * y * y);
   }
   return y * law.hardening;
+}
+
+}  // namespace
+
+double spring_depth(const ContactConstants& law, double share, double force) {
+  if (!(force > 0)) return 0;
+  const double linear = force / (share * law.k);
+  if (!(law.hardening > 0)) return linear;
+  const double soft = soft_depth(law, linear);
+  if (law.firm.part(soft) == 0) return soft;
+  // the force is convex up to the limit, and linear from there on: Newton's method from above
+  const double limit = law.firm.limit;
+  if (force >= spring_force(law, share, limit)) return linear / hardness(law, limit);
+  double depth = std::min(soft, limit);
+  for (double last = never; depth < last;) {
+    last = depth;
+    const double h = hardness(law, depth);
+    depth -= (depth * h - linear) / (h + depth * law.firm.slope(depth));
+  }
+  return depth;
 }
 
 }  // namespace tw

@@ -1,15 +1,18 @@
 // The law of persistent contact: normal force and friction at one contact point.
 //
-//   N  = max(0, k d (1 + min((d/dh)^2, 100)) (1 + b e d'))    Hunt-Crossley, hardening
-//   e  = min(1, 10 dh/d)
-// with d the depth (m, negative: apart) and d' its rate.  The depth is that of the overlap, or,
-// where what was placed touching starts loaded, more by the contact's offset.  Beyond 10 dh it is a
-// spring beside a damper, N = 101 k (d + tau d') with tau = 10 dh b, and lets a depth go at d/tau
-// at most; nor do the two slide or turn in each other any faster: beside friction there is
-//   T = -c u,  Q = -C (w_b - w_a),  c = 101 k tau (1 - e),  C = c d size/2
-// where d size/2 is the square of the half width of two balls' overlap.  `anchored` friction
+//   N  = max(0, k d h (1 + b e d'))    Hunt-Crossley, hardening
+//   h  = 1 + min((d/dh)^2, 100) + H s^4,  e = min(1, 10 dh/d)
+// with d the depth (m, negative: apart), d' its rate, and H s^4 of second-hardening.h, which bears
+// what is far above the weight.  The depth is that of the overlap, or, where what was placed
+// touching starts loaded, more by the contact's offset.  Beyond 10 dh it is a spring beside a
+// damper, N = h k (d + tau d') with tau = 10 dh b, and lets a depth go at d/tau at most; nor do the
+// two slide or turn in each other any faster: beside friction there is
+//   T = -c u,  Q = -C (w_b - w_a),  c = 101 k tau (1 - e) + H k tau (1 - dl/d),  C = c d size/2
+// (the second part beyond dl), where d size/2 is the square of the half width of two balls'
+// overlap.  `anchored` friction
 // carries a tangential stretch xi, in the frame of the reference body, and hardens as the normal
-// spring does, with the grip y = sqrt(1 + min((d/dh)^2, 100)):
+// spring does, with the grip y, y^2 = 1 + min((d/dh)^2, 100) + (d H s^4)'
+// (beyond dl that at dl):
 //   F* = -y (kt xi + ct u),   F = F* cut to mu N,   xi' = (-F - y kt xi)/ct
 // so that xi' = y u while the contact sticks and xi relaxes to the cone while it slides.  Its
 // energy is kt xi^2/2 whatever y is: F.u + kt xi.xi' <= 0, it gives what it took, however deep it
@@ -31,6 +34,7 @@
 
 #include "base/constants.h"
 #include "dynamics/contact-parameters.h"
+#include "dynamics/second-hardening.h"
 #include "math/vec.h"
 
 namespace tw {
@@ -41,8 +45,9 @@ struct ContactConstants {
   double hardening = 0;  // dh, m: depth at which the stiffness has doubled
   double b = 0;          // s/m
   double mu = 0;
-  double kt = 0;     // N/m, 0.8 k
-  double ct = 0;     // N s/m, sqrt(kt m)
+  double kt = 0;  // N/m, 0.8 k
+  double ct = 0;  // N s/m, sqrt(kt m)
+  SecondHardening firm;
   double size = 0;   // m: the lesser thickness (dynamics/body.h)
   double depth = 0;  // d0, m: under the lighter body's own weight
   FrictionLaw law = FrictionLaw::anchored;

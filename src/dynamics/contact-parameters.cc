@@ -45,6 +45,8 @@ bool side_matches(const ContactSide& side, const ContactBody& body) {
   return side_specificity(side, body) >= 0;
 }
 
+constexpr int both_named = 3 * 2 + 2;
+
 std::optional<int> match_specificity(const ContactSide& x, const ContactSide& y,
                                      const ContactBody& a, const ContactBody& b) {
   const auto one_way = [](const ContactSide& s, const ContactSide& t, const ContactBody& p,
@@ -71,7 +73,6 @@ void ContactTable::add(const ContactSide& a, const ContactSide& b,
   require_range(settings.fusion_speed, "fusion-speed", 0, speed_limit,
                 "a speed in m/s, from 0 to 1e12");
   rules_.push_back({a, b, settings});
-  ++version_;
 }
 
 ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody& b) const {
@@ -93,6 +94,7 @@ ContactParameters ContactTable::look_up(const ContactBody& a, const ContactBody&
     take(open[3], s.damping, result.damping);
     take(open[4], s.fusion_speed, result.fusion_speed);
     take(open[5], s.friction_law, result.friction_law);
+    if (open[6] && s.collide) result.collide_names_both = specificity == both_named;
     take(open[6], s.collide, result.collide);
     take(open[7], s.rolling_friction, result.rolling_friction);
     take(open[8], s.spinning_friction, result.spinning_friction);

@@ -46,6 +46,9 @@ struct ContactParameters {
   FrictionLaw friction_law = FrictionLaw::anchored;
   ImpactLaw impact_law = ImpactLaw::chatterjee_ruina;
   bool collide = true;
+  bool collide_names_both = false;  // and the rule that says so names both bodies
+
+  bool operator==(const ContactParameters&) const = default;
 };
 
 // A body as the rules see it.
@@ -60,8 +63,14 @@ class ContactTable {
   void add(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   ContactParameters look_up(const ContactBody& a, const ContactBody& b) const;
   bool empty() const { return rules_.empty(); }
-  // Changes with every add: lets callers cache what they looked up.
-  unsigned version() const { return version_; }
+  std::size_t size() const { return rules_.size(); }
+  // Without those that were added after the first so many.
+  void take_back(std::size_t size) { rules_.resize(size); }
+  // Calls visit(side) for both sides of each rule.
+  template <class Visit>
+  void visit_sides(Visit&& visit) const {
+    for (const Rule& rule : rules_) visit(rule.a), visit(rule.b);
+  }
 
  private:
   struct Rule {
@@ -69,7 +78,6 @@ class ContactTable {
     ContactSettings settings;
   };
   std::vector<Rule> rules_;
-  unsigned version_ = 0;
 };
 
 // Whether the side is about this body.

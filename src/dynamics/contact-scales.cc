@@ -10,8 +10,6 @@
 namespace tw {
 namespace {
 
-double lesser_thickness(const Body& a, const Body& b) { return std::min(a.thickness, b.thickness); }
-
 double speed_from(const ContactParameters& parameters, double gravity, double size) {
   const double by_default =
       std::max(answer::least_default_speed, answer::fusion_share * std::sqrt(gravity * size));
@@ -24,6 +22,8 @@ double Scene::gravity_scale() const {
   const double g = options.gravity.norm();
   return g > 0 ? g : answer::standard_gravity;
 }
+
+double lesser_thickness(const Body& a, const Body& b) { return std::min(a.thickness, b.thickness); }
 
 double ContactScales::bounce_time() const { return pi * std::sqrt(law.depth / gravity); }
 

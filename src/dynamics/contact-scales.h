@@ -40,6 +40,9 @@ struct ContactScales {
   double bounce_time() const;  // s
 };
 
+// m: how deep contacts of the two may be goes by it.
+double lesser_thickness(const Body& a, const Body& b);
+
 // m/s: what approaches slower than this stays in contact.
 double fusion_speed(const Scene& scene, const Body& a, const Body& b);
 

@@ -149,6 +149,21 @@ ForcesPtr without_holds(const ForcesPtr& forces, BodyId a, BodyId b) {
   return change.done();
 }
 
+bool has(const ForcesPtr& forces, const void* law_or_bond) {
+  if (!forces) return false;
+  const auto is_it = [&](const auto& one) { return one.get() == law_or_bond; };
+  return std::any_of(forces->laws().begin(), forces->laws().end(), is_it) ||
+         std::any_of(forces->bonds().begin(), forces->bonds().end(), is_it);
+}
+
+ForcesPtr without(const ForcesPtr& forces, const void* law_or_bond) {
+  ForceChange change(forces);
+  const auto is_it = [&](const auto& one) { return one.get() == law_or_bond; };
+  std::erase_if(change.laws(), is_it);
+  std::erase_if(change.bonds(), is_it);
+  return change.done();
+}
+
 void add_differences(const ForceLaw& law, double time, const PoseTwist& body, double length,
                      double speed, WrenchDerivative& sum) {
   // the cube root of rounding balances the error of the difference

@@ -79,6 +79,9 @@ bool needs_group(const ForcesPtr& forces);
 // Without springs and holds to the body, or without what holds the two.
 ForcesPtr without_those_on(const ForcesPtr& forces, BodyId body);
 ForcesPtr without_holds(const ForcesPtr& forces, BodyId a, BodyId b);
+// Whether this law or bond is among them; the same without it.
+bool has(const ForcesPtr& forces, const void* law_or_bond);
+ForcesPtr without(const ForcesPtr& forces, const void* law_or_bond);
 
 inline const std::vector<BondPtr>& bonds_of(const ForcesPtr& forces) {
   static const std::vector<BondPtr> none;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "dynamics/impulse-solver.h"
 
+#include <algorithm>
+
 #include "dynamics/stronge-law.h"
 
 namespace tw {
@@ -24,6 +26,7 @@ ImpulseSlot ImpulseSlot::border(const PoseTwist& point) {
 void ImpulseSolver::clear() {
   slots_.clear();
   blocks_.clear();
+  holds_.clear();
   received_.clear();
   normal_impulse_ = work_of_held_ = largest_impulse_ = largest_approach_ = 0;
   largest_ = {};
@@ -36,15 +39,36 @@ std::uint32_t ImpulseSolver::add(const ImpulseSlot& slot) {
 
 void ImpulseSolver::join(std::uint32_t of, std::uint32_t on, const Mat6& block) {
   slots_[of].answer = slots_[on].answer = Answer::joined;
-  blocks_.push_back({of, on, block});
+  blocks_.resize(slots_.size());
+  blocks_[on].push_back({of, block});
   received_.resize(slots_.size(), Vec6::Zero());
+}
+
+std::vector<std::uint32_t> ImpulseSolver::answering(std::uint32_t slot) const {
+  if (slots_[slot].answer == Answer::free) return {slot};
+  std::vector<std::uint32_t> all;
+  if (slots_[slot].answer == Answer::joined)
+    for (const Block& block : blocks_[slot]) all.push_back(block.of);
+  return all;
+}
+
+void ImpulseSolver::return_to(const Moment& moment) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    slots_[i].v = moment.slots[i].v;
+    slots_[i].w = moment.slots[i].w;
+  }
+  std::copy(moment.received.begin(), moment.received.end(), received_.begin());
+  std::fill(received_.begin() + static_cast<std::ptrdiff_t>(moment.received.size()),
+            received_.end(), Vec6::Zero());
+  normal_impulse_ = moment.normal_impulse;
+  work_of_held_ = moment.work_of_held;
 }
 
 // K_ij at one point of both
 Mat3 ImpulseSolver::cross_compliance(std::uint32_t of, std::uint32_t on, const Vec3& where) const {
   Mat3 K = Mat3::Zero();
-  for (const Block& block : blocks_) {
-    if (block.of != of || block.on != on) continue;
+  for (const Block& block : blocks_[on]) {
+    if (block.of != of) continue;
     Eigen::Matrix<double, 6, 3> wrench;
     wrench << Mat3::Identity(), cross_matrix(where - slots_[on].x);
     Eigen::Matrix<double, 3, 6> velocity;
@@ -78,8 +102,7 @@ void ImpulseSolver::apply(std::uint32_t slot, const Vec3& impulse, const Vec3& w
   Vec6 wrench;
   wrench << impulse, (where - s.x).cross(impulse);
   received_[slot] += wrench;
-  for (const Block& block : blocks_) {
-    if (block.on != slot) continue;
+  for (const Block& block : blocks_[slot]) {
     const Vec6 change = block.Y * wrench;
     slots_[block.of].v += change.head<3>();
     slots_[block.of].w += change.tail<3>();

@@ -22,6 +22,26 @@
 // which leave the least kinetic energy of all velocities at which nothing approaches faster than it
 // bears; without restitution and friction.
 //
+// What carries a load already can not give way: it takes the blow up at once, however often an
+// impulse would have to go to and fro.  Then all contacts, struck and carrying, answer together.
+// With w0 the velocities before and Y P what impulses P change, the plastic blow P is
+//   N >= 0,  u_n >= 0,  N.u_n = 0  at  w1 = w0 + Y P,   |T| <= mu N against the sliding,
+// with N, T the parts of P along and across normals; P_c without friction where it is struck, P_f
+// with it, |T| <= mu (N_f + e N_c) there.  Velocities afterwards are those of
+//   P_f + e P_c:  w1_f + e (w1_c - w0),
+// so each struck point leaves with e times its approach, what carried and sticks stays at rest, and
+// what is struck ends its sliding where friction can.  Without friction no energy is gained,
+// whatever e is, for w1 is what is nearest to w0 in the metric of the masses of all that is
+// admitted, a cone, so that w0 - w1 and w1 are square to each other and
+//   E(w1 + e (w1 - w0)) = E(w1) + e^2 E(w0 - w1) <= E(w0).
+// Nor by P_c, whose friction works against u(w1):
+//   E - E(w0) = (1 + e) P.u(w1) - (1 - e^2)/2 P.Y P <= 0  as  P.u(w1) <= 0.
+// Source: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988);
+// where all that carries is at rest this is Poisson's restitution, at one point Newton's, too, and
+// with friction Chatterjee and Ruina's (impact-law.h) but for the direction of sliding.  What the
+// contacts take up, -P.(u_before + u_after)/2, is looked at: friction is left out where it would be
+// negative.
+//
 // All in the world frame.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -83,6 +103,14 @@ class ImpulseSolver {
   std::size_t slot_count() const { return slots_.size(); }
   // Y_ij: an impulse on slot `on` moves slot `of`, and both are joined from now on.
   void join(std::uint32_t of, std::uint32_t on, const Mat6& block);
+  // The slots that an impulse on this one moves.
+  std::vector<std::uint32_t> answering(std::uint32_t slot) const;
+  // Joins free slots so that they answer as one rigid body, which moves on with their momentum and
+  // angular momentum: what they swing against each other would be energy that holds give.
+  void join_rigidly(std::span<const std::uint32_t> slots);
+  // Joins two slots so that no impulse changes how they move against each other: a hold.  Either
+  // may be held.
+  void hold(std::uint32_t a, std::uint32_t b);
 
   // u.n, m/s: negative while the points approach.
   double approach(const ImpulseContact& c) const { return relative_velocity(c).dot(c.normal); }
@@ -93,14 +121,29 @@ class ImpulseSolver {
   ImpulseResult solve(std::span<const ImpulseContact> contacts, double negligible,
                       int most_impulses);
 
+  // The blow at the first `struck` contacts, with that restitution; the others carry.  All answer
+  // together.  False, and nothing is changed, where no such impulses are found: between walls that
+  // move against each other.
+  bool strike_together(std::span<const ImpulseContact> contacts, std::size_t struck,
+                       double restitution);
+
   // All that is left over, at once, unless it is between walls that move against each other.
   // Contacts at a border are left out, and what approaches at one of them afterwards is told as by
   // `solve`.
   ImpulseResult settle(std::span<const ImpulseContact> contacts);
 
+  // What impulses change; of slots that were added since, as they were added.
+  struct Moment {
+    std::vector<ImpulseSlot> slots;
+    std::vector<Vec6> received;
+    double normal_impulse = 0, work_of_held = 0;
+  };
+  Moment moment() const { return {slots_, received_, normal_impulse_, work_of_held_}; }
+  void return_to(const Moment& moment);
+
   // ---- what all impulses so far add up to ----
-  // On a joined slot: the impulse, N s, and its moment about x, N m s.
-  const Vec6& received(std::uint32_t slot) const { return received_[slot]; }
+  // On a joined slot: the impulse, N s, and its moment about x, N m s, with those of the holds.
+  std::vector<Vec6> received() const;
   double normal_impulse() const { return normal_impulse_; }  // N s, a sum of magnitudes
   // J: a held body does work with the force it exerts at its own speed.
   double work_of_held() const { return work_of_held_; }
@@ -110,8 +153,15 @@ class ImpulseSolver {
 
  private:
   struct Block {
-    std::uint32_t of, on;
+    std::uint32_t of;
     Mat6 Y;
+  };
+  // What a hold does: with p all impulses on the slots of the row, it gives b -share p and a the
+  // opposite, at b's centre.
+  struct Hold {
+    std::uint32_t a, b;
+    std::vector<std::uint32_t> slots;
+    std::vector<Mat6> shares;
   };
   struct Excess {
     const ImpulseContact* contact = nullptr;
@@ -127,12 +177,15 @@ class ImpulseSolver {
   void apply(std::uint32_t slot, const Vec3& impulse, const Vec3& where);
   void exchange(const ImpulseContact& c, const Vec3& impulse);
   bool held_as_one(std::span<const ImpulseContact* const> contacts, double differ) const;
+  Eigen::MatrixXd changes(std::span<const ImpulseContact> contacts,
+                          std::span<const Mat3> frames) const;
   bool reaches_border(const ImpulseContact& c) const {
     return slots_[c.a].answer == Answer::border || slots_[c.b].answer == Answer::border;
   }
 
   std::vector<ImpulseSlot> slots_;
-  std::vector<Block> blocks_;   // of joined slots
+  std::vector<std::vector<Block>> blocks_;  // by the slot that is struck, as far as any is joined
+  std::vector<Hold> holds_;
   std::vector<Vec6> received_;  // by slot, as far as any is joined
   double normal_impulse_ = 0, work_of_held_ = 0, largest_impulse_ = 0, largest_approach_ = 0;
   ImpulseContact largest_;

@@ -23,6 +23,7 @@ struct SceneOptions {
   double accuracy = 1e-6;       // relative
   double group_check_rate = 0;  // Hz, the finest; 0: by the sizes of the members
   bool cash_karp = false;       // isolated bodies never fly in closed form: the paper's integrator
+  bool push_overlaps = false;   // what overlaps at the start is pushed apart
 };
 
 struct Scene {
@@ -45,12 +46,13 @@ struct Scene {
     return !a.neighbours.empty() &&
            std::binary_search(a.neighbours.begin(), a.neighbours.end(), b.id());
   }
-  // Whether some pairs may not touch.
+  // Whether some pairs may not touch, or neighbours may.
   bool may_disable() const { return contacts.may_disable() || !multibodies.empty(); }
-  // Whether the two may touch at all.
+  // Whether the two may touch at all; neighbours only by a rule that names both.
   bool may_collide(const Body& a, const Body& b) const {
-    return !a.info.removed && !b.info.removed && !are_neighbours(a, b) &&
-           contacts.between(a.id(), b.id()).collide;
+    if (a.info.removed || b.info.removed || (a.never_moves() && b.never_moves())) return false;
+    const ContactParameters& p = contacts.between(a.id(), b.id());
+    return p.collide && (p.collide_names_both || !are_neighbours(a, b));
   }
 };
 

@@ -9,9 +9,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/error.h"
@@ -157,17 +159,9 @@ void orient(const std::vector<Vec3>& centred, std::vector<std::vector<int>>& pol
   std::sort(polygons.begin(), polygons.end());
 }
 
-}  // namespace
-
-Polyhedron convex_hull(const std::vector<Vec3>& points) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    TW_REQUIRE(is_finite(points[i]), "point " + std::to_string(i) + " of a hull is (" +
-                                         show(points[i].x()) + " " + show(points[i].y()) + " " +
-                                         show(points[i].z()) + "); expected finite numbers");
-  TW_REQUIRE(points.size() >= 4,
-             "a hull needs at least 4 points; got " + std::to_string(points.size()));
+// Nothing where the joined facets bend.
+std::optional<Polyhedron> hull_of(const std::vector<Vec3>& points) {
   std::vector<Vec3> centred = centred_points(points);
-  require_solid(centred);
   QhullRun qhull;
   qhull.run(centred);
   std::vector<std::vector<int>> polygons = qhull.polygons();
@@ -185,7 +179,48 @@ Polyhedron convex_hull(const std::vector<Vec3>& points) {
     }
   for (auto& polygon : polygons)
     for (int& i : polygon) i = number[static_cast<std::size_t>(i)];
-  return Polyhedron(std::move(vertices), polygons);
+  try {
+    return Polyhedron(std::move(vertices), polygons);
+  } catch (const UserError&) {
+    return std::nullopt;
+  }
+}
+
+// Grids of that share of the size, in bits: 1e-9 to 6e-5.
+constexpr int finest_grid = 30, coarsest_grid = 14, grid_step = 4;
+
+// Each once, at the nearest point of a grid: exact numbers.
+std::vector<Vec3> on_grid(const std::vector<Vec3>& points, double step) {
+  const auto before = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  std::vector<Vec3> snapped;
+  for (const Vec3& p : points)
+    snapped.push_back(step * (p / step).unaryExpr([](double x) { return std::round(x) + 0.0; }));
+  std::sort(snapped.begin(), snapped.end(), before);
+  snapped.erase(std::unique(snapped.begin(), snapped.end()), snapped.end());
+  return snapped;
+}
+
+}  // namespace
+
+Polyhedron convex_hull(const std::vector<Vec3>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    TW_REQUIRE(is_finite(points[i]), "point " + std::to_string(i) + " of a hull is (" +
+                                         show(points[i].x()) + " " + show(points[i].y()) + " " +
+                                         show(points[i].z()) + "); expected finite numbers");
+  TW_REQUIRE(points.size() >= 4,
+             "a hull needs at least 4 points; got " + std::to_string(points.size()));
+  const std::vector<Vec3> centred = centred_points(points);
+  require_solid(centred);
+  if (auto found = hull_of(points)) return *std::move(found);
+  double size = 0;
+  for (const Vec3& p : centred) size = std::max(size, p.cwiseAbs().maxCoeff());
+  const double whole = std::exp2(std::ceil(std::log2(size)));
+  for (int bits = finest_grid; bits >= coarsest_grid; bits -= grid_step)
+    if (auto found = hull_of(on_grid(points, std::ldexp(whole, -bits)))) return *std::move(found);
+  throw UserError("the hull of " + std::to_string(points.size()) +
+                  " points can't be computed: its facets bend");
 }
 
 }  // namespace tw

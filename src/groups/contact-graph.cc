@@ -226,6 +226,13 @@ enum class Wanted : std::uint8_t {
   touching,   // the same of one that may have been in contact before
 };
 
+// Whether two that come to touch so deep in each other may have been put there; what is deeper was
+// pressed.
+bool was_put_so(const Scene& scene, double depth, double size) {
+  return depth > answer::start_depth * size &&
+         (depth <= answer::start_overlap * size || scene.options.push_overlaps);
+}
+
 // Finds the contacts of a pair.
 void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
   const bool must = wants == Wanted::always;
@@ -283,7 +290,14 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
     fresh.masses = before->pair->masses;
     match_old(work, look.contacts, fresh, *before);
   } else {
-    for (NewContact& c : look.contacts) start_unpressed(work, body_a, body_b, c);
+    for (NewContact& c : look.contacts) {
+      start_unpressed(work, body_a, body_b, c);
+      take_ground_offset(work, body_a, body_b, c);
+    }
+    // what overlaps when it comes to touch was put so: only what it goes deeper presses
+    if (wants != Wanted::touching && was_put_so(work.scene(), -distance, scales.size))
+      for (NewContact& c : look.contacts)
+        c.contact.offset = std::min(c.contact.offset, unpressed(std::max(c.gap, distance), size));
   }
   if (wants != Wanted::touching) preload(work, look.contacts, fresh, a, b);
 }
@@ -413,6 +427,9 @@ void fuse(Regrouping& work, double interval) {
   };
   const PlacedBody first = placed(work.successors[0]), second = placed(work.successors[1]);
   meet(first, second, Wanted::always);
+  // who strikes each other is told by the impact
+  if (is_edit(work.key()) && work.reports_fusions)
+    work.report.push_back(fusion_of(work, work.pairs.back()));
   if (!work.together) return;
 
   const std::uint64_t struck = pair_id(first.body->id(), second.body->id());
@@ -421,6 +438,7 @@ void fuse(Regrouping& work, double interval) {
       const Body& partner = work.scene().body(other);
       const std::uint64_t pair = pair_id(id, other);
       if ((partner.dynamic() && other < id) || pair == struck || work.pair_before(pair) ||
+          !work.scene().may_collide(work.scene().body(id), partner) ||
           std::binary_search(work.left_out.begin(), work.left_out.end(), pair))
         return;
       const std::size_t count = work.pairs.size();

@@ -82,6 +82,17 @@ void strike(const Multibody& multibody, double now, MultibodyState& joints) {
 
 }  // namespace
 
+std::vector<LeaningStop> leaning_stops(const Multibody& multibody, const MultibodyState& joints) {
+  std::vector<LeaningStop> all;
+  const std::vector<Axis>& axes = multibody.tree.axes();
+  for (std::size_t i = 0; i < joints.stops.size(); ++i) {
+    if (joints.stops[i] == Stop::none) continue;
+    const AtStop at(axes[i], joints);
+    if (at.stop == joints.stops[i] && at.gap < 0) all.push_back({&axes[i], at.side});
+  }
+  return all;
+}
+
 void settle_stops(const Multibody& multibody, double now, bool may_leave, MultibodyState& joints) {
   const std::vector<Axis>& axes = multibody.tree.axes();
   bool any = false;

@@ -9,9 +9,18 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "multibody/multibody.h"
 
 namespace tw {
+
+// A stop that a joint leans on, pressed: of which axis, and the way out along what is limited.
+struct LeaningStop {
+  const multibody::Axis* axis = nullptr;
+  double side = 0;  // 1 or -1
+};
+std::vector<LeaningStop> leaning_stops(const Multibody& multibody, const MultibodyState& joints);
 
 // `may_leave`: whether what has come off its stop is let go.
 void settle_stops(const Multibody& multibody, double now, bool may_leave, MultibodyState& joints);

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
-#include "groups/joint-stops.h"
+#include "base/error.h"
 #include "integrate/joint-record.h"
 #include "integrate/moving-base.h"
+#include "multibody/limits.h"
 
 namespace tw {
 
@@ -15,7 +16,7 @@ using namespace multibody;
 PlacedJoints::PlacedJoints(const Multibody& multibody, const MultibodyState& joints, double time)
     : multibody_(multibody), k_(multibody.tree) {
   // gravity and accelerations of the base don't enter places and velocities
-  multibody::Surroundings around;
+  multibody::BaseMotion around;
   MovingBase(multibody).set(time, around);
   around.v = joints.base.v, around.w = joints.base.w;
   place(multibody.tree, joints.q, joints.u, around, k_);
@@ -75,51 +76,104 @@ void JointImpulses::add(Successor& successor, std::uint32_t slot) {
     Struck struck{multibody,
                   successor.joints,
                   {},
+                  {},
+                  false,
                   std::make_shared<PlacedJoints>(*multibody, *successor.joints, time_),
                   std::make_shared<Articulation>(multibody->tree)};
     factor(multibody->tree, struck.placed->kinematics(), *struck.factors);
     at = struck_.insert(at, std::move(struck));
   }
+  TW_ASSERT(!at->joined, "all links of a multibody are added before they are joined");
   at->links.emplace_back(static_cast<int>(successor.body->link), slot);
 }
 
+std::vector<ImpulseContact> JointImpulses::add_stops() {
+  std::vector<ImpulseContact> contacts;
+  for (Struck& s : struck_) {
+    if (s.joined) continue;
+    for (const LeaningStop& stop : leaning_stops(*s.multibody, *s.joints)) {
+      ImpulseSlot along;
+      along.v = limited_rate(*stop.axis, s.joints->q, s.joints->u) * Vec3::UnitX();
+      const std::uint32_t held = solver_.add({}), slot = solver_.add(along);
+      s.stops.emplace_back(stop, slot);
+      ImpulseContact contact;
+      contact.a = held, contact.b = slot;
+      contact.normal = stop.side * Vec3::UnitX();
+      contacts.push_back(contact);
+    }
+  }
+  return contacts;
+}
+
 void JointImpulses::join() {
-  for (const Struck& s : struck_) {
+  for (Struck& s : struck_) {
+    if (s.joined) continue;
+    s.joined = true;
     const Tree& tree = s.multibody->tree;
     const Factored factored{tree, s.placed->kinematics(), *s.factors};
     ImpulseWork work(tree);
-    std::vector<double> du(static_cast<std::size_t>(tree.nv()));
+    std::vector<double> du(static_cast<std::size_t>(tree.nv())), force(du.size());
+    std::vector<Mat6> of_links(s.links.size()), of_stops(s.stops.size());
+    // what a unit impulse changed, as this column of all blocks
+    const auto take_column = [&](int column) {
+      for (std::size_t i = 0; i < s.links.size(); ++i) {
+        const auto& [of, of_slot] = s.links[i];
+        const Motion& change = work.change[static_cast<std::size_t>(tree.link(of).node)];
+        of_links[i].col(column) << change.v + change.w.cross(solver_.slot(of_slot).x -
+                                                             s.placed->kinematics().origin),
+            change.w;
+      }
+      for (std::size_t i = 0; i < s.stops.size(); ++i)
+        of_stops[i].col(column) =
+            limited_rate(*s.stops[i].first.axis, s.joints->q, du) * Vec6::Unit(0);
+    };
+    const auto join_all = [&](std::uint32_t on) {
+      for (std::size_t i = 0; i < s.links.size(); ++i)
+        solver_.join(s.links[i].second, on, of_links[i]);
+      for (std::size_t i = 0; i < s.stops.size(); ++i)
+        solver_.join(s.stops[i].second, on, of_stops[i]);
+    };
     for (const auto& [on, on_slot] : s.links) {
-      std::vector<Mat6> blocks(s.links.size());
       for (int column = 0; column < 6; ++column) {
         LinkImpulse unit{on, solver_.slot(on_slot).x, Vec3::Zero(), Vec3::Zero()};
         (column < 3 ? unit.linear : unit.angular) = Vec3::Unit(column % 3);
         velocity_change(factored, {&unit, 1}, {}, work, du);
-        for (std::size_t i = 0; i < s.links.size(); ++i) {
-          const auto& [of, of_slot] = s.links[i];
-          const Motion& change = work.change[static_cast<std::size_t>(tree.link(of).node)];
-          blocks[i].col(column) << change.v + change.w.cross(solver_.slot(of_slot).x -
-                                                             s.placed->kinematics().origin),
-              change.w;
-        }
+        take_column(column);
       }
-      for (std::size_t i = 0; i < s.links.size(); ++i)
-        solver_.join(s.links[i].second, on_slot, blocks[i]);
+      join_all(on_slot);
+    }
+    for (const auto& [stop, on_slot] : s.stops) {
+      for (Mat6& block : of_links) block.setZero();
+      for (Mat6& block : of_stops) block.setZero();
+      set_along_limited(*stop.axis, s.joints->q, 1, force);
+      velocity_change(factored, {}, force, work, du);
+      take_column(0);
+      join_all(on_slot);
     }
   }
 }
 
+bool JointImpulses::has_joined(const Multibody& multibody) const {
+  return std::any_of(struck_.begin(), struck_.end(),
+                     [&](const Struck& s) { return s.multibody == &multibody && s.joined; });
+}
+
 void JointImpulses::take() {
+  if (struck_.empty()) return;
+  const std::vector<Vec6> received = solver_.received();
   for (const Struck& s : struck_) {
     const Tree& tree = s.multibody->tree;
     std::vector<LinkImpulse> impulses;
-    for (const auto& [link, slot] : s.links) {
-      const Vec6& received = solver_.received(slot);
-      impulses.push_back({link, solver_.slot(slot).x, received.head<3>(), received.tail<3>()});
-    }
+    for (const auto& [link, slot] : s.links)
+      impulses.push_back(
+          {link, solver_.slot(slot).x, received[slot].head<3>(), received[slot].tail<3>()});
     ImpulseWork work(tree);
-    std::vector<double> du(static_cast<std::size_t>(tree.nv()));
-    velocity_change({tree, s.placed->kinematics(), *s.factors}, impulses, {}, work, du);
+    std::vector<double> du(static_cast<std::size_t>(tree.nv())), along(du.size()), force(du.size());
+    for (const auto& [stop, slot] : s.stops) {
+      set_along_limited(*stop.axis, s.joints->q, received[slot][0], along);
+      for (std::size_t k = 0; k < force.size(); ++k) force[k] += along[k];
+    }
+    velocity_change({tree, s.placed->kinematics(), *s.factors}, impulses, force, work, du);
     for (std::size_t k = 0; k < du.size(); ++k) s.joints->u[k] += du[k];
   }
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dynamics/impulse-solver.h"
+#include "groups/joint-stops.h"
 #include "groups/regrouping.h"
 #include "multibody/impulses.h"
 #include "multibody/multibody.h"
@@ -46,19 +47,28 @@ void share_joints(std::vector<Successor>& successors);
 void follow_changed_joints(double time, std::vector<Successor>& successors);
 
 // Joins the slots of links in a solver, then takes what they received.
+//
+// A stop that carries is a contact of two slots: what is limited, whose velocity is its rate along
+// x, against one that is held.
 class JointImpulses {
  public:
   JointImpulses(ImpulseSolver& solver, double time) : solver_(solver), time_(time) {}
-  // Nothing where the successor is no link.
+  // Nothing where the successor is no link; before its multibody's links are joined.
   void add(Successor& successor, std::uint32_t slot);
+  // Slots for the stops that the multibodies lean on, and their contacts.
+  std::vector<ImpulseContact> add_stops();
+  // Those that are not yet joined.
   void join();
+  bool has_joined(const Multibody& multibody) const;
   void take();
 
  private:
   struct Struck {
     const Multibody* multibody;
     std::shared_ptr<MultibodyState> joints;
-    std::vector<std::pair<int, std::uint32_t>> links;  // and their slots
+    std::vector<std::pair<int, std::uint32_t>> links;          // and their slots
+    std::vector<std::pair<LeaningStop, std::uint32_t>> stops;  // and theirs
+    bool joined = false;
     std::shared_ptr<PlacedJoints> placed;
     std::shared_ptr<multibody::Articulation> factors;
   };

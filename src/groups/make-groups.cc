@@ -151,6 +151,9 @@ void start_arc(Regrouping& work, Group& group) {
       // a copy: two groups may hold the pair
       NewContact& contact = contacts.emplace_back(work.contacts[c]);
       change_law(contact, law);
+      // a damper holds against the push, too
+      if (pushes(work.scene(), contact.contact.offset))
+        contact.contact.law.b = std::min(law.b, 0.5 / push_speed(work.scene(), law.size));
       contact.contact.a = index_of(contact.tag.reference);
       contact.contact.b = index_of(contact.tag.other);
       start.contacts.push_back(contact.contact);
@@ -254,7 +257,13 @@ double patience_of(const Regrouping& work, const Group& group, double interval) 
 // The check that is due stays due where there is something to look at, unless this is it.
 void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
   const double now = work.now();
-  const double whole = interval_of(work, group);
+  double whole = interval_of(work, group);
+  // what is pushed apart goes on by checks
+  if (std::any_of(group.pairs.begin(), group.pairs.end(),
+                  [&](const ContactPair& pair) { return work.pushes_apart(pair); }))
+    for (const ProcessId member : group.members)
+      if (const Body& body = *work.successor_of(member)->body; body.shape_P)
+        whole = std::min(whole, finest_check(work.scene(), body));
   group.patience = patience_of(work, group, whole);
   const double interval = std::min(whole, group.patience);
   group.next_check = std::min(border_end, group.has_border ? next_common_check_time(now, interval)

@@ -9,15 +9,30 @@
 
 #include "base/constants.h"
 #include "groups/foreseen.h"
+#include "math/near-in-x.h"
 
 namespace tw {
 namespace {
 
 // What is left of a contact's offset where it opens: as much less as it does, so that what was
-// pressed together by a load does not float when the load is gone.  Springs only lose by it.
-double released(double offset, double gap) {
-  return offset > 0 ? std::max(0.0, offset - std::max(0.0, gap))
-                    : std::max(offset, std::min(gap, 0.0));
+// pressed together by a load does not float when the load is gone.  Springs only lose by it.  By
+// the time in which the body follows: it sinks no faster than the contact swings, and what a check
+// finds open that long would be taken off again and again.
+double released(const Regrouping& work, const Group& before, const GroupContact& was, double gap) {
+  if (!(was.offset > 0)) return std::max(was.offset, std::min(unpressed(gap, was.law.size), 0.0));
+  const double swing = 2 * pi * std::sqrt(was.law.gap_scale() / work.scene().gravity_scale());
+  const double share = std::min(1.0, (work.now() - before.arc->start().time) / swing);
+  return std::max(0.0, was.offset - share * std::max(0.0, gap));
+}
+
+// Where what overlaps is to be pushed apart an offset that holds it as it is goes to 0, by how much
+// since the arc began.
+double pushed(const Regrouping& work, const Group& before, const ContactConstants& law,
+              double offset) {
+  const Scene& scene = work.scene();
+  if (!pushes(scene, offset)) return offset;
+  const double way = push_speed(scene, law.size) * (work.now() - before.arc->start().time);
+  return std::min(0.0, offset + std::min(way, answer::most_pushed * law.gap_scale()));
 }
 
 // How deep the contacts of the body are that it had before, at most, m.
@@ -54,13 +69,16 @@ void match_nearest(const Group& before, const ContactPair& old, std::vector<OldP
   };
   thread_local std::vector<Match> matches;
   matches.clear();
+  thread_local NearInX near;
+  near.set(old.count, [&](std::uint32_t o) { return there[o].followed.point.x(); });
   for (std::uint32_t c = 0; c < fresh.size(); ++c)
-    for (std::uint32_t o = 0; o < old.count; ++o) {
+    // by the feature, one twice as far off is as near
+    near.visit(fresh[c].point.x(), 2 * farthest, [&](std::uint32_t o) {
       const ContactTag& tag = before.tags[old.first + o];
       double distance = (there[o].followed.point - fresh[c].point).norm();
       if (tag.feature == fresh[c].tag.feature && tag.parts == fresh[c].tag.parts) distance *= 0.5;
       if (distance < farthest) matches.push_back({distance, c, o});
-    }
+    });
   std::sort(matches.begin(), matches.end());
   old_of.assign(fresh.size(), unmatched);
   for (const Match& match : matches) {
@@ -71,9 +89,9 @@ void match_nearest(const Group& before, const ContactPair& old, std::vector<OldP
 }
 
 // A point that comes to a face which bears a load already presses as those beside it do: their
-// stiffness is shared with it, and so is the depth that they count from.
-void take_offset(const Group& before, const ContactPair& old, const std::vector<OldPoint>& there,
-                 NewContact& fresh) {
+// stiffness is shared with it, and so is the depth that they count from.  False: there is none.
+bool take_offset(const Regrouping& work, const Group& before, const ContactPair& old,
+                 const std::vector<OldPoint>& there, NewContact& fresh) {
   double nearest = never;
   for (std::uint32_t o = 0; o < old.count; ++o) {
     if (before.tags[old.first + o].parts != fresh.tag.parts) continue;
@@ -84,8 +102,9 @@ void take_offset(const Group& before, const ContactPair& old, const std::vector<
     nearest = distance;
     const GroupContact& was = before.arc->start().contacts[old.first + o];
     fresh.law_before = was.law;
-    fresh.contact.offset = released(was.offset, fresh.gap);
+    fresh.contact.offset = released(work, before, was, fresh.gap);
   }
+  return nearest < never;
 }
 
 }  // namespace
@@ -101,6 +120,41 @@ void start_unpressed(const Regrouping& work, const Body& a, const Body& b, NewCo
   if (-c.gap <= allowed) return;
   allowed = std::max({allowed, deepest_before(work, a), deepest_before(work, b)});
   c.contact.offset = std::min(0.0, c.gap + allowed);
+}
+
+void take_ground_offset(const Regrouping& work, const Body& a, const Body& b, NewContact& fresh) {
+  if (a.dynamic() == b.dynamic()) return;
+  const Body& mover = a.dynamic() ? a : b;
+  const Successor* successor = work.successor_of(mover.id());
+  if (!successor || !successor->data.group) return;
+  const Group& group = *successor->data.group;
+  const auto from_ground = [&](const ContactTag& tag, const Vec3& normal) {
+    return tag.other == mover.id() ? normal : Vec3(-normal);
+  };
+  constexpr double in_one_plane = 1 - 0.5 * answer::coplanar * answer::coplanar;
+  const Vec3 up = from_ground(fresh.tag, fresh.normal);
+  const std::vector<GroupContact>& contacts = group.arc->start().contacts;
+  // mostly there is none to take
+  if (std::all_of(contacts.begin(), contacts.end(), [](auto& was) { return was.offset == 0; }))
+    return;
+  double nearest = never;
+  const GroupContact* stands_on = nullptr;
+  for (const std::uint32_t number : group.pairs_of(successor->data.member)) {
+    const ContactPair& pair = group.pairs[number];
+    if (work.scene().body(pair.other(mover.id())).dynamic()) continue;
+    each_contact(pair, [&](std::uint32_t c) {
+      const GroupContact& was = contacts[c];
+      const ContactForce followed = group.lone_contact_at(c, work.now());
+      if (from_ground(group.tags[c], followed.normal).dot(up) < in_one_plane) return;
+      const double distance = (followed.point - fresh.point).norm();
+      if (distance >= nearest) return;
+      nearest = distance;
+      stands_on = &was;
+    });
+  }
+  if (!stands_on || stands_on->offset == 0) return;
+  fresh.law_before = stands_on->law;
+  fresh.contact.offset = released(work, group, *stands_on, fresh.gap);
 }
 
 void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const ContactPair& pair,
@@ -125,7 +179,8 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     const std::uint32_t best = old_of[c];
     if (best == unmatched) {
       start_unpressed(work, body_a, body_b, fresh);
-      take_offset(before, *old, there, fresh);
+      if (!take_offset(work, before, *old, there, fresh))
+        take_ground_offset(work, body_a, body_b, fresh);
       continue;
     }
     const ContactTag& tag = before.tags[old->first + best];
@@ -133,7 +188,7 @@ void match_old(const Regrouping& work, std::vector<NewContact>& contacts, const 
     fresh.law_before = was.law;
     fresh.share_before = was.share;
     fresh.foreseen = is_foreseen(fresh, there[best].followed, tag.reference, size);
-    fresh.contact.offset = released(was.offset, fresh.gap);
+    fresh.contact.offset = pushed(work, before, was.law, released(work, before, was, fresh.gap));
     // of another side of the body
     if (std::abs(there[best].followed.normal.dot(fresh.normal)) < answer::same_normal)
       start_unpressed(work, body_a, body_b, fresh);

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/constants.h"
+#include "base/index.h"
 #include "dynamics/impact-law.h"
+#include "groups/match-contacts.h"
 #include "integrate/body-matrix.h"
 
 namespace tw {
@@ -61,6 +64,7 @@ struct Spring {
   Vec3 n = Vec3::UnitZ();
   Mat36 Ja = Mat36::Zero(), Jb = Mat36::Zero();  // d = Ja u_a + Jb u_b
   double k = 0, kt = 0, mu = 0;
+  double overlap = 0;      // m, as placed
   std::size_t number = 0;  // of the contact
   // where the two slide already: which way friction acts on b, unit; else zero
   Vec3 sliding = Vec3::Zero();
@@ -70,7 +74,80 @@ struct Spring {
   double load = 0;
   bool slips = false;
   TurnSpring turning;
+  // -df by the turn and -dM by d, its transpose, and the energy, J: of those that are pressed alone
+  Mat3 by_turn = Mat3::Zero();
+  double energy = 0;
+
+  void press(const Vec3& d, const Vec3& turn, bool holds);
 };
+
+// Of a spring that is pressed as deep as it was placed: of all forces and torques in the cone, with
+// no more than so many times the load of that depth, the nearest in energy to
+//   N = k (depth - n.d),  F = -kt (1 - n n^T) d,  M = -K turn.
+// The derivative of a convex potential: where there is a balance, there is one that is found.
+void Spring::press(const Vec3& d, const Vec3& turn, bool holds) {
+  struct Grip {
+    Mat3 of;       // which part of the way or the turn
+    double k, mu;  // N/m and 1, or N m/rad and m
+    Vec3 wanted = Vec3::Zero(), e = Vec3::Zero();
+    double length = 0;
+  };
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  Grip grips[3] = {
+      {across, kt, mu}, {across, turning.k, turning.rolling}, {along, turning.k, turning.spinning}};
+  for (Grip& grip : grips) {
+    if (!(grip.k > 0)) grip.mu = 0;
+    if (grip.mu == 0) continue;
+    grip.wanted = -grip.k * (grip.of * (&grip == grips ? d : turn));
+    grip.length = grip.wanted.norm();
+    if (grip.length > 0) grip.e = grip.wanted / grip.length;
+  }
+  const double pressing = k * (overlap - n.dot(d));
+  const double most = guard::balance_most_pressed * k * overlap;
+  // N + sum of mu (mu N - length)/k over what would slip = pressing, k times: from below
+  load = pressing;
+  double yields = 1 / k;
+  for (int round = 0; !holds && round < 4; ++round) {
+    double sum = pressing / k;
+    yields = 1 / k;
+    for (const Grip& grip : grips) {
+      if (!(grip.mu > 0 && grip.length > grip.mu * load)) continue;
+      sum += grip.mu * grip.length / grip.k;
+      yields += grip.mu * grip.mu / grip.k;
+    }
+    load = sum / yields;
+  }
+  const bool follows = holds || (load > 0 && load < most);
+  if (!holds) load = std::clamp(load, 0.0, most);
+  energy = load * (pressing - 0.5 * load) / k;
+  // dN = -(grows.dd + rolls.dturn) / yields
+  Vec3 grows = n, rolls = Vec3::Zero();
+  friction = turning.torque = Vec3::Zero();
+  slope = turning.slope = Mat3::Zero();
+  for (const Grip& grip : grips) {
+    const bool is_way = &grip == grips;
+    if (!(grip.mu > 0) || !(load > 0 || holds)) continue;
+    Vec3 held = grip.wanted;
+    Mat3 stiff = grip.k * grip.of;
+    if (!holds && grip.length > grip.mu * load) {
+      const double share = grip.mu * load / grip.length;
+      held *= share;
+      stiff = share * grip.k * (grip.of - grip.e * grip.e.transpose());
+      (is_way ? grows : rolls) += grip.mu * grip.e;
+    }
+    (is_way ? friction : turning.torque) += held;
+    (is_way ? slope : turning.slope) += stiff;
+    energy += held.dot(grip.wanted - 0.5 * held) / grip.k;
+  }
+  by_turn.setZero();
+  if (follows) {
+    slope += grows * grows.transpose() / yields;
+    turning.slope += rolls * rolls.transpose() / yields;
+    by_turn = grows * rolls.transpose() / yields;
+  }
+  force = load * n + friction;
+  slips = false;
+}
 
 class Balance {
  public:
@@ -98,7 +175,18 @@ class Balance {
   }
 
   // False: no forces were found.
-  bool solve() { return at_once() || by_degrees(); }
+  bool solve() {
+    const bool found = at_once() || by_degrees();
+    const bool slides = std::any_of(springs_.begin(), springs_.end(),
+                                    [](const Spring& s) { return !s.sliding.isZero(); });
+    if ((found && stands()) || slides) return found;
+    // what was at rest on springs as deep as they are placed stands on those
+    const auto unloaded = std::tuple(springs_, u_, from_, rate_);
+    pressed_ = true;
+    if (at_once() && stands()) return true;
+    std::tie(springs_, u_, from_, rate_) = unloaded;
+    return found;
+  }
   const std::vector<Spring>& springs() const { return springs_; }
   // Whether the contact begins to slide: not where others hold what slips a little.
   bool slides(const Spring& s) const {
@@ -108,8 +196,17 @@ class Balance {
   }
 
  private:
+  // Whether nothing begins to move.
+  bool stands() const {
+    double fastest = 0;
+    for (std::size_t i = 0; i < u_.size(); ++i)
+      fastest = std::max(fastest, rate_ * (u_[i] - from_[i]).norm());
+    return fastest <= guard::balance_stands * gravity_;
+  }
+
   // All that touch hold and stick at first.
   bool at_once() {
+    std::fill(u_.begin(), u_.end(), Vec6::Zero());
     soften(guard::balance_softness);
     for (int round = 0; round < guard::balance_rounds; ++round)
       if (!settle(round == 0)) return false;
@@ -145,13 +242,12 @@ class Balance {
       if (s.a >= 0 && s.b >= 0) pairs.emplace_back(s.a, s.b);
     return pairs;
   }
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   static Vec3 way(const Spring& s, const std::vector<Vec6>& u) { return way(s, s.Ja, s.Jb, u); }
   static Vec3 way(const Spring& s, const Mat36& Ja, const Mat36& Jb, const std::vector<Vec6>& u) {
     Vec3 d = Vec3::Zero();
-    if (s.a >= 0) d += Ja * u[at(s.a)];
-    if (s.b >= 0) d += Jb * u[at(s.b)];
+    if (s.a >= 0) d += Ja * u[index(s.a)];
+    if (s.b >= 0) d += Jb * u[index(s.b)];
     return d;
   }
 
@@ -159,6 +255,10 @@ class Balance {
     for (Spring& s : springs_) {
       const Mat3 along = s.n * s.n.transpose(), across = Mat3::Identity() - along;
       const Vec3 d = way(s, u_);
+      if (pressed_) {
+        s.press(d, way(s, s.turning.Ja, s.turning.Jb, u_), all_hold);
+        continue;
+      }
       s.load = std::max(0.0, -s.k * s.n.dot(d));
       if (TurnSpring& t = s.turning; t.resists())
         t.set(s.n, way(s, t.Ja, t.Jb, u_), s.load, all_hold);
@@ -195,12 +295,12 @@ class Balance {
     rest_ = weight_;
     for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] -= mass_[i] * (u_[i] - from_[i]);
     for (const Spring& s : springs_) {
-      if (s.a >= 0) rest_[at(s.a)] += s.Ja.transpose() * s.force;
-      if (s.b >= 0) rest_[at(s.b)] += s.Jb.transpose() * s.force;
+      if (s.a >= 0) rest_[index(s.a)] += s.Ja.transpose() * s.force;
+      if (s.b >= 0) rest_[index(s.b)] += s.Jb.transpose() * s.force;
       const TurnSpring& t = s.turning;
       if (!t.resists()) continue;
-      if (s.a >= 0) rest_[at(s.a)] += t.Ja.transpose() * t.torque;
-      if (s.b >= 0) rest_[at(s.b)] += t.Jb.transpose() * t.torque;
+      if (s.a >= 0) rest_[index(s.a)] += t.Ja.transpose() * t.torque;
+      if (s.b >= 0) rest_[index(s.b)] += t.Jb.transpose() * t.torque;
     }
     double sum = 0;
     for (std::size_t i = 0; i < rest_.size(); ++i) {
@@ -216,9 +316,20 @@ class Balance {
       for (int r = 0; r < 6; ++r) to[6 * c + r] += block(r, c);
   }
 
+  // What Newton's method makes least where springs are pressed, J.
+  double energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < u_.size(); ++i) {
+      const Vec6 way = u_[i] - from_[i];
+      sum += 0.5 * way.dot(mass_[i] * way) - weight_[i].dot(u_[i]);
+    }
+    for (const Spring& s : springs_) sum += s.energy;
+    return sum;
+  }
+
   bool step() {
     matrix_.clear(numbers_);
-    for (int i = 0; i < members(); ++i) add_block(i, i, mass_[at(i)]);
+    for (int i = 0; i < members(); ++i) add_block(i, i, mass_[index(i)]);
     for (const Spring& s : springs_) {
       const Mat36* J[2] = {&s.Ja, &s.Jb};
       const int body[2] = {s.a, s.b};
@@ -229,14 +340,15 @@ class Balance {
       const TurnSpring& t = s.turning;
       if (!t.resists()) continue;
       // dN = -k n.dd, where it presses
-      const Vec3 by_way = s.load > 0 ? Vec3(s.k * t.by_load) : Vec3(Vec3::Zero());
+      Mat3 by_way = s.by_turn.transpose();
+      if (!pressed_ && s.load > 0) by_way = s.k * t.by_load * s.n.transpose();
       const Mat36* turn[2] = {&t.Ja, &t.Jb};
       for (int y = 0; y < 2; ++y)
         for (int x = 0; x < 2; ++x)
           if (body[y] >= 0 && body[x] >= 0)
-            add_block(
-                body[y], body[x],
-                turn[y]->transpose() * (t.slope * *turn[x] + by_way * (s.n.transpose() * *J[x])));
+            add_block(body[y], body[x],
+                      turn[y]->transpose() * (t.slope * *turn[x] + by_way * *J[x]) +
+                          J[y]->transpose() * s.by_turn * *turn[x]);
     }
     right_.resize(6 * start_.members.size());
     for (std::size_t i = 0; i < rest_.size(); ++i)
@@ -260,11 +372,12 @@ class Balance {
       // as far as less is left over
       const std::vector<Vec6> here = u_;
       const double before = anew && i == 0 ? never : left;
+      const double energy_before = pressed_ ? energy() : -never;
       for (double share = 1; share >= guard::least_balance_step; share *= 0.5) {
         go(here, share);
         set_forces(false);
         left = set_residual();
-        if (left < before) break;
+        if (left < before || energy() < energy_before) break;
       }
       if (left <= guard::balance_residual) return true;
     }
@@ -274,6 +387,7 @@ class Balance {
   const GroupStart& start_;
   std::vector<Spring> springs_;
   double depth_, gravity_, rate_ = 0;  // 1/tau^2
+  bool pressed_ = false;               // springs begin as deep as they are placed
   BodyMatrix matrix_;
   BodyMatrix::Numbers numbers_;
   std::vector<Mat6> mass_;
@@ -281,16 +395,15 @@ class Balance {
   std::vector<double> right_;
 };
 
-// How fast what was placed touching may be by the time the two meet, m/s.
-double placed_speed(const Scene& scene, double size) {
-  return std::sqrt(2 * answer::start_depth * size * scene.gravity_scale());
-}
-
 bool touches(const NewContact& c, double size) {
-  return c.gap <= c.reach() + answer::start_depth * size;
+  return c.gap <= c.reach() + answer::start_gap * size;
 }
 
-// Notes the pairs of two moving bodies that came to touch now and carry nothing.
+// By more than touch.
+bool overlaps(const NewContact& c) { return c.gap < -answer::start_depth * c.contact.law.size; }
+
+// Notes the pairs of two moving bodies that came to touch now and carry nothing: not those that
+// overlap, which are in contact until they have parted.
 void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
                    const std::vector<NewContact>& contacts) {
   if (!work.together) return;
@@ -305,6 +418,8 @@ void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
                           std::min(scene.body(c.tag.reference).mass, scene.body(c.tag.other).mass);
     if (s.load > answer::carried_share * weight) carrying.push_back(pair_of(c));
   }
+  for (const NewContact& c : contacts)
+    if (overlaps(c)) carrying.push_back(pair_of(c));
   std::sort(carrying.begin(), carrying.end());
   for (const NewContact& c : contacts) {
     const std::uint64_t pair = pair_of(c);
@@ -380,6 +495,10 @@ Spring spring_of(const GroupStart& start, const NewContact& c, std::size_t numbe
 
 }  // namespace
 
+double placed_speed(const Scene& scene, double size) {
+  return std::sqrt(2 * answer::start_depth * size * scene.gravity_scale());
+}
+
 double placed_at(const State& state) {
   if (state.group) return state.group->placed_at;
   const bool was_put = state.arc_key.kind == KeyKind::birth || is_edit(state.arc_key);
@@ -416,9 +535,12 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
     const Vec3 relative = work.placed(c.tag.other).velocity_at(c.point) -
                           work.placed(c.tag.reference).velocity_at(c.point);
     const double closing = relative.dot(c.normal);
+    // what parts and does not press has no load
+    if (closing > placed_speed(scene, size) && c.gap >= c.contact.offset) continue;
     if (std::abs(closing) > placed_speed(scene, size)) return;
     depth = std::max(depth, start.contacts[i].law.depth);
     springs.push_back(spring_of(start, c, i));
+    springs.back().overlap = std::max(0.0, -c.gap);
     const Vec3 slip = relative - closing * c.normal;
     if (slip.norm() > placed_speed(scene, size)) springs.back().sliding = -slip.normalized();
   }
@@ -433,8 +555,9 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
     const NewContact& looks = contacts[s.number];
     const Quat into = work.attitude(looks.tag.reference).conjugate();
     work.tally.placed_energy -= energy_of(c, into * looks.normal, looks.gap);
-    c.offset =
-        s.load > 0 ? spring_depth(c.law, c.share, s.load) + looks.gap : std::min(looks.gap, 0.0);
+    c.offset = s.load > 0        ? spring_depth(c.law, c.share, s.load) + looks.gap
+               : overlaps(looks) ? unpressed(looks.gap, c.law.size)
+                                 : std::min(looks.gap, 0.0);
     c.stretch = Vec3::Zero();
     const double grip = friction_grip(c.law, c.offset - looks.gap);
     if (s.kt > 0) {

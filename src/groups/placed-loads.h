@@ -32,6 +32,10 @@ namespace tw {
 // When what is in this state was put where it is, as far as its state tells, s; -never: long ago.
 double placed_at(const State& state);
 
+// What parts or closes no faster hardly does, m/s: so fast is what was placed touching by the time
+// the two meet.
+double placed_speed(const Scene& scene, double size);
+
 // Whether that was so lately that it cannot have fallen farther since than bodies may overlap when
 // they come into the world.
 bool is_just_placed(const Scene& scene, const Body& body, const State& state, double now);

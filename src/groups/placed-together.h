@@ -2,7 +2,8 @@
 //
 // Loads (placed-loads.h) are right for the whole alone: what joins a heap one by one finds the
 // loads of those before it, that are too small, and has all of them found anew.  So the pairs that
-// touch where they were put are noted, and the first fusion of one body takes all with it.
+// touch where they were put are noted, and the first fusion of one body takes all with it.  Those
+// that overlap there by more than touch come into contact when the next run begins.
 //
 // A value, known before anything moves: the same for all schedules.
 //
@@ -22,16 +23,25 @@ class PlacedTogether {
   using Pair = std::pair<BodyId, BodyId>;
 
   // These touch where they were put, one of them at `when`, s: those of other times are past.
-  void note(BodyId a, BodyId b, double when) {
+  void note(BodyId a, BodyId b, double when, bool overlap) {
     if (when != when_) pairs_.clear();
     when_ = when;
     pairs_.emplace_back(a, b);
     pairs_.emplace_back(b, a);
+    if (overlap) overlapping_.emplace_back(std::min(a, b), std::max(a, b));
     sorted_ = false;
   }
   // It is put elsewhere, or taken out.
   void forget(BodyId id) {
-    std::erase_if(pairs_, [&](const Pair& p) { return p.first == id || p.second == id; });
+    const auto has_it = [&](const Pair& p) { return p.first == id || p.second == id; };
+    std::erase_if(pairs_, has_it);
+    std::erase_if(overlapping_, has_it);
+  }
+  // The pairs that overlap and were not asked for yet, each once; ascending.
+  std::vector<Pair> take_overlapping() {
+    std::sort(overlapping_.begin(), overlapping_.end());
+    overlapping_.erase(std::unique(overlapping_.begin(), overlapping_.end()), overlapping_.end());
+    return std::exchange(overlapping_, {});
   }
   // After the last was noted, before the first question.
   void settle() {
@@ -53,6 +63,7 @@ class PlacedTogether {
 
  private:
   std::vector<Pair> pairs_;  // from either side
+  std::vector<Pair> overlapping_;
   double when_ = 0;
   bool sorted_ = true;
 };

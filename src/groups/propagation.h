@@ -1,10 +1,8 @@
-// After an impact on a member of a group: what touches it and is now approached too fast for a
-// spring gets an impulse without restitution, fastest first; what does not touch yet is left to
-// collision checks.
+// After a discontinuity: what touches and is approached too fast for a spring gets an impulse
+// without restitution, fastest first; what does not touch yet is left to collision checks.
 //
-// The two that struck each other belong to it: a heavy body that comes down on a light one is
-// stopped by as many blows as it is heavier, for the floor gives back each time what the light one
-// was given.  Each as an impact of its own would cost new arcs for the whole group.
+// A blow has been taken up before (blow.h): this is for what a check finds, and for what was too
+// much for the blow.
 //
 // Source: doc/numerics.md, "Contact groups".
 //

@@ -141,7 +141,6 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     work.placed_bodies = placed;
     work.together = request.together;
     work.starts_loaded = !placed.empty() && region.inside.size() <= answer::most_placed;
-    work.struck_at = request.struck_at;
     work.left_out = left_out;
     find_contacts(work, struck);
 

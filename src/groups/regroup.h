@@ -32,10 +32,7 @@ using Known = std::function<bool(ProcessId)>;
 
 struct RegroupRequest {
   Cause cause;
-  bool reports_fissions = false;  // somebody wants to hear of them
-  // Where the first two have struck each other, normals from the first to the second; none where
-  // they should not strike again.
-  std::span<const ContactPoint> struck_at = {};
+  bool reports_fissions = false;             // somebody wants to hear of them
   bool reports_fusions = false;              // of others than the first two
   const PlacedTogether* together = nullptr;  // null: nobody was
 };

@@ -30,6 +30,13 @@ void Regrouping::update_index() {
     slots_[slot_of(successors[i].process())] = {successors[i].process(), i};
 }
 
+bool Regrouping::pushes_apart(const ContactPair& pair) const {
+  bool any = false;
+  each_contact(pair,
+               [&](std::uint32_t c) { any = any || pushes(scene(), contacts[c].contact.offset); });
+  return any;
+}
+
 const PairBefore* Regrouping::pair_before(std::uint64_t pair) const {
   const auto at =
       std::lower_bound(pairs_before.begin(), pairs_before.end(), pair,

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,6 +55,15 @@ struct NewContact {
   double reach() const { return std::max(contact.offset, 0.0); }
 };
 
+// How fast overlaps are pushed apart, m/s.
+inline double push_speed(const Scene& scene, double size) {
+  return answer::push_share * std::sqrt(scene.gravity_scale() * size);
+}
+// Whether a contact with that offset holds an overlap that is to be pushed apart.
+inline bool pushes(const Scene& scene, double offset) {
+  return scene.options.push_overlaps && offset < 0;
+}
+
 // A contact pair before the discontinuity, in the group that owns it.
 struct PairBefore {
   std::uint64_t id = 0;
@@ -73,9 +83,8 @@ struct Regrouping {
   // Pairs that carry nothing in the balance of what was placed: found with the loads, and those
   // that were found before and are left to themselves.  Ascending.
   std::vector<std::uint64_t> unloaded, left_out;
-  bool starts_loaded = false;                    // its groups do
-  std::span<const ContactPoint> struck_at = {};  // where the first two struck each other
-  std::vector<Successor>& successors;            // of all that take part
+  bool starts_loaded = false;          // its groups do
+  std::vector<Successor>& successors;  // of all that take part
 
   Groups old;                            // whose members get new arcs, each once
   std::vector<PairBefore> pairs_before;  // of processes with new arcs, ascending
@@ -116,6 +125,8 @@ struct Regrouping {
   bool changes(BodyId body) const { return changes(successor_of(body)); }
   // A dynamic body that keeps its arc: it stands at the border, or farther off.
   bool lies_beyond(BodyId body) const { return scene().body(body).dynamic() && !changes(body); }
+  // Whether one of the pair's contacts holds an overlap that is to be pushed apart.
+  bool pushes_apart(const ContactPair& pair) const;
   // Null if the two were not in contact.
   const PairBefore* pair_before(std::uint64_t pair) const;
   // Where a body is now: by its successor, or, of one without, on its motion.

@@ -124,7 +124,7 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
   for (const ContactPair& pair : work.pairs) {
     if (pair.count == 0) continue;
     for (const BodyId id : {pair.a(), pair.b()})
-      if (is_restless(work, id)) wake(pair.other(id));
+      if (is_restless(work, id) || work.pushes_apart(pair)) wake(pair.other(id));
   }
 
   // what is tied together rests together

@@ -77,7 +77,7 @@ TreeMotion tree_motion(const Group& group, std::uint32_t member, const State& st
   Kinematics& k = motion.k;
   std::vector<double> q = state.joints->q, u(state.joints->u.size());
   if (!group.at_rest) group.arc->joints(mine.tree, when, q, u);
-  Surroundings around;
+  BaseMotion around;
   MovingBase(*given.multibody, start.end).set(when, around);
   around.gravity = given.gravity;
   place(tree, q, u, around, k);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/constants.h"
+#include "math/near-in-x.h"
 
 namespace tw {
 namespace {
@@ -63,15 +64,21 @@ void share(Points& all, double radius, const SamePlane& same_plane, const SameSi
   const std::vector<NewContact*>& points = all.contacts;
   thread_local std::vector<double> here;
   here.assign(points.size(), 1);
+  thread_local NearInX near;
+  near.set(points.size(), [&](std::size_t i) { return points[i]->point.x(); });
   for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      if (i == j || !same_side(*points[i], *points[j])) continue;
+    near.visit(points[i]->point.x(), radius, [&](std::size_t j) {
+      if (i == j || !same_side(*points[i], *points[j])) return;
       const double distance = (points[i]->point - points[j]->point).norm();
       here[i] += all.counts[j] * std::max(0.0, 1 - distance / radius);
-    }
+    });
+  double places = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    double places = 0;
-    for (std::size_t j = 0; j < points.size(); ++j)
+    // of one normal all have the same places
+    const bool as_before = i > 0 && points[i]->normal == points[i - 1]->normal &&
+                           points[i]->tag.reference == points[i - 1]->tag.reference;
+    if (!as_before) places = 0;
+    for (std::size_t j = 0; j < points.size() && !as_before; ++j)
       if (i == j || same_plane(*points[i], *points[j]))
         places += all.counts[j] / here[j] + all.beyond[j];
     points[i]->contact.share =

@@ -19,6 +19,8 @@ struct Push {
   Vec3 point = Vec3::Zero();
   double depth = 0;  // m
   double share = 0;  // of the thinner one's thickness
+  // Whether it presses deeper than a contact's limit, and the body is the one that is told of.
+  bool overloaded = false;
 };
 
 // Of its springs, on the other body, N.  A body in a corner with friction is held by forces that
@@ -62,8 +64,11 @@ class Pushes {
         const ContactTag& tag = contact.tag;
         const Vec3 force = spring_force_of(contact, work.attitude(tag.reference));
         const double depth = -contact.gap, share = share_of(contact);
-        add({tag.other, tag.reference, contact.normal, force, contact.point, depth, share});
-        add({tag.reference, tag.other, -contact.normal, -force, contact.point, depth, share});
+        const bool over = is_overloaded(contact), other = is_thinner(tag.other, tag.reference);
+        add({tag.other, tag.reference, contact.normal, force, contact.point, depth, share,
+             over && other});
+        add({tag.reference, tag.other, -contact.normal, -force, contact.point, depth, share,
+             over && !other});
       });
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Push& x, const Push& y) { return x.body < y.body; });
@@ -74,6 +79,15 @@ class Pushes {
         std::equal_range(all_.begin(), all_.end(), Push{body},
                          [](const Push& x, const Push& y) { return x.body < y.body; });
     return {first, last};
+  }
+  // What presses it beyond the limit of a contact, by forces that no contact makes or by what gives
+  // way: twice the same, the deepest.
+  Squeeze overload(BodyId body, double least) const {
+    Squeeze deepest;
+    for (const Push& push : on(body))
+      if (push.overloaded && push.share >= least && (!deepest || push.share > deepest.share()))
+        deepest = {&push, &push};
+    return deepest;
   }
   // The two that push it against each other, one by as great a share as `least` and `held` on both
   // sides: those with the greatest.
@@ -95,6 +109,16 @@ class Pushes {
   static double share_of(const NewContact& c) { return -c.gap / c.contact.law.size; }
   // Whether it could keep a body squeezed.
   static bool is_deep(const NewContact& c) { return share_of(c) >= 0.5 * answer::squeezed_share; }
+  static bool is_overloaded(const NewContact& c) {
+    const ContactConstants& law = c.law_before ? *c.law_before : c.contact.law;
+    return c.contact.offset - c.gap > law.firm.limit;
+  }
+  // Of two in contact one gives way: the one that moves, or the thinner one.
+  bool is_thinner(BodyId one, BodyId other) const {
+    const Body &a = work_.scene().body(one), &b = work_.scene().body(other);
+    if (!a.dynamic() || !b.dynamic()) return a.dynamic();
+    return a.thickness < b.thickness || (a.thickness == b.thickness && a.mass < b.mass);
+  }
   // Of all forces on the body within 60 degrees of this one, N.
   double side(const Push& push) const {
     Vec3 sum = Vec3::Zero();
@@ -161,7 +185,9 @@ void note_squeezed(Regrouping& work) {
     if (!before && pushes.empty()) continue;
     const Body& body = *successor.body;
     const double least = before ? 0.5 * answer::squeezed_share : answer::squeezed_share;
-    const Squeeze squeeze = pushes.squeeze(body.id(), least, !before);
+    Squeeze squeeze = pushes.squeeze(body.id(), least, !before);
+    if (!squeeze && !pushes.squeeze(body.id(), 0, true))
+      squeeze = pushes.overload(body.id(), before ? 0 : answer::firm_share);
     if (!squeeze) {
       since = never;
       continue;

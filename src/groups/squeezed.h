@@ -9,6 +9,11 @@
 // corner.  A body at the bottom of a stack is not, however heavy the stack is.  It is squeezed
 // until no two push it so at half that depth.
 //
+// So is one, too, that a single contact presses deeper than the limit of its law
+// (dynamics/second-hardening.h), and than that of a default one as a share of the thickness: by a
+// force, a spring or a motor of more than some million weights.  Of two such bodies it is the one
+// that moves, or the thinner one.
+//
 // Asked at each discontinuity of its group, of the poses and contacts there: a function of what is
 // committed.
 //

@@ -173,14 +173,19 @@ ShapePtr hull_of(const Object& object, const std::vector<Vec3>& points) {
 
 }  // namespace
 
-ShapePtr read_solid(const std::string& file, const Vec3& scale, bool hulls) {
+ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   Mesh mesh = suffix == ".obj" ? read_obj(file) : read_any(file);
   TW_REQUIRE(!mesh.objects.empty(),
              "the mesh " + file + " has no faces; expected some that enclose a volume");
-  for (Vec3& point : mesh.points) point = point.cwiseProduct(scale);
+  for (Vec3& point : mesh.points) {
+    TW_REQUIRE(is_finite(point),
+               "the mesh " + file + " has a vertex that is not finite; expected numbers");
+    if (options.y_up) point = Vec3(point.x(), -point.z(), point.y());
+    point = point.cwiseProduct(options.scale);
+  }
   const std::vector<std::size_t> places = same_places(mesh.points);
   std::vector<Object> parts;
   for (Object& object : mesh.objects) {
@@ -191,18 +196,31 @@ ShapePtr read_solid(const std::string& file, const Vec3& scale, bool hulls) {
   }
 
   std::vector<ShapePtr> shapes;
+  std::size_t flat_parts = 0;
+  std::string first_flat;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::string what = "the mesh " + file + ": " + title(parts[i], i, parts.size());
+    const std::string what = title(parts[i], i, parts.size());
     try {
       shapes.push_back(hull_of(parts[i], mesh.points));
     } catch (const UserError& error) {
-      throw UserError(what + " has no hull: " + error.what());
+      // a stray triangle, a sheet
+      if (flat_parts++ == 0) first_flat = what + " has no hull: " + error.what();
+      continue;
     }
     const double dent = deepest_dent(parts[i], mesh.points, *shapes.back());
-    TW_REQUIRE(hulls || dent <= flat,
-               what + " isn't convex: its hull stands " + show(dent) +
+    TW_REQUIRE(options.hulls || dent <= flat,
+               "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
                    " of its size over one of its faces; expected objects that are convex each, "
                    "which make a union, or #:convex-hull? #t for the hull of each");
+  }
+  if (shapes.empty()) throw UserError("the mesh " + file + ": " + first_flat);
+  if (flat_parts > 0) {
+    std::string others;
+    if (flat_parts > 1)
+      others = std::to_string(flat_parts) + " of " + std::to_string(parts.size()) +
+               " parts have no hull, the first: ";
+    mending.mend("the mesh " + file + ": ", others, UserError(first_flat),
+                 flat_parts > 1 ? "they are left out" : "it is left out");
   }
   return shapes.size() == 1 ? shapes[0] : make_union(shapes);
 }

@@ -5,16 +5,23 @@
 #include <string>
 
 #include "geometry/shape.h"
+#include "import/mending.h"
 
 namespace tw {
 
+struct SolidOptions {
+  Vec3 scale = Vec3::Ones();  // metres in a unit of the file
+  bool hulls = false;         // the hull of what is not convex is wanted all the same
+  bool y_up = false;          // the file's y is up: it becomes z, and its z becomes -y
+};
+
 // The shape of an OBJ file (coordinates as they are written) or of any other that Assimp reads, STL
 // among them: a hull, or the union of the hulls of what hangs together in it by common vertices,
-// object by object in the file's order.  Coordinates are multiplied by `scale`, which gives metres.
+// object by object in the file's order.  Parts that are flat are mended: left out.
 //
-// Errors: UserError, with the file's name, where it is missing, is no mesh, or is flat; and with
-// the name of the object where one is not convex, by more than 1e-4 of its size, unless `hulls`
-// says that its hull is wanted all the same.
-ShapePtr read_solid(const std::string& file, const Vec3& scale, bool hulls);
+// Errors: UserError, with the file's name, where it is missing, is no mesh, or is flat as a whole;
+// and with the name of the object where one is not convex, by more than 1e-4 of its size, and
+// hulls are not wanted.
+ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending);
 
 }  // namespace tw

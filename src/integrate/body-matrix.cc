@@ -11,7 +11,7 @@ namespace tw {
 
 namespace {
 
-constexpr int B = BodyMatrix::block;
+constexpr int per_body = BodyMatrix::block;
 
 // block LU is trusted up to this backward error; 1e-15 is usual
 constexpr double trusted_error = 1e-11;
@@ -46,16 +46,16 @@ BodyMatrix::Pivoted::Pivoted(int bodies, const std::vector<std::pair<int, int>>&
   for (auto first = entries.begin(); first != entries.end();) {
     auto last = first;
     while (last != entries.end() && last->first == first->first) ++last;
-    for (int c = 0; c < B; ++c) {
+    for (int c = 0; c < per_body; ++c) {
       for (auto e = first; e != last; ++e)
-        for (int r = 0; r < B; ++r) Ai.push_back(B * e->second + r);
+        for (int r = 0; r < per_body; ++r) Ai.push_back(per_body * e->second + r);
       Ap.push_back(static_cast<int>(Ai.size()));
     }
     first = last;
   }
   Ax.resize(Ai.size());
   klu_defaults(&common);
-  symbolic = klu_analyze(B * bodies, Ap.data(), Ai.data(), &common);
+  symbolic = klu_analyze(per_body * bodies, Ap.data(), Ai.data(), &common);
 }
 
 BodyMatrix::BodyMatrix(int bodies, const std::vector<std::pair<int, int>>& pairs)
@@ -88,9 +88,10 @@ bool BodyMatrix::factor_pivoted() {
   for (std::size_t first = 0; first < p.entries.size();) {
     std::size_t last = first;
     while (last < p.entries.size() && p.entries[last].first == p.entries[first].first) ++last;
-    for (int c = 0; c < B; ++c)
+    for (int c = 0; c < per_body; ++c)
       for (std::size_t e = first; e < last; ++e)
-        to = std::copy_n(at(offset(p.entries[e].second, p.entries[e].first)) + B * c, B, to);
+        to = std::copy_n(at(offset(p.entries[e].second, p.entries[e].first)) + per_body * c,
+                         per_body, to);
     first = last;
   }
   klu_free_numeric(&p.numeric, &p.common);
@@ -105,7 +106,7 @@ bool BodyMatrix::solve(double* right_side) {
   }
   if (!by_pivoted_) {
     thread_local std::vector<double> given;
-    given.assign(right_side, right_side + B * bodies_);
+    given.assign(right_side, right_side + per_body * bodies_);
     blocks_.solve(numbers_->factors.data(), right_side);
     unchecked_ = false;
     if (blocks_.backward_error(numbers_->values.data(), right_side, given.data()) < trusted_error)
@@ -114,7 +115,7 @@ bool BodyMatrix::solve(double* right_side) {
     if (!factor_pivoted()) return false;
   }
   Pivoted& p = *pivoted_factors_;
-  return klu_solve(p.symbolic, p.numeric, B * bodies_, 1, right_side, &p.common) != 0;
+  return klu_solve(p.symbolic, p.numeric, per_body * bodies_, 1, right_side, &p.common) != 0;
 }
 
 }  // namespace tw

@@ -16,6 +16,7 @@ class BoundsTree {
   static constexpr std::size_t block = 16;
 
   std::size_t size() const { return levels_.empty() ? 0 : levels_.front().size(); }
+  const MotionBounds& operator[](std::size_t i) const { return levels_.front()[i]; }
   void append(MotionBounds bounds) {
     for (std::size_t level = 0;; ++level) {
       if (levels_.size() == level) levels_.emplace_back();

@@ -71,10 +71,13 @@ TW_LANES void set_drag(const ContactPack& pack, const PackState& s, PackLinear& 
   o.deep = s.deep;
   if (!s.deep) return;
   const Lanes ratio = s.depth * pack.inverse_hardening, hardest = lanes(answer::hardest_ratio);
-  const Lanes by_depth = s.drag * hardest / ((ratio - hardest) * s.depth);
+  Lanes by_depth = (s.drag - s.firm_drag) * hardest / ((ratio - hardest) * s.depth);
+  // the other part: c = c2 (1 - dl/d)
+  const Lanes depth = s.depth * pack.inverse_limit, zero = lanes(0), one = lanes(1);
+  by_depth += s.firm_drag > zero ? s.firm_drag / ((depth - one) * s.depth) : zero;
   o.damper = s.drag;
   o.pull = s.drag * s.vr;
-  const Lanes slope = s.drag > lanes(0) ? by_depth : lanes(0);
+  const Lanes slope = s.drag > zero ? by_depth : zero;
   o.more_drag = slope * s.u;
   o.turn_damper = s.turn_drag;
   o.more_turn = (pack.half_size * (s.drag + s.depth * slope)) * o.dw;
@@ -239,8 +242,15 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes ratio = s.depth * pack.inverse_hardening, squared = ratio * ratio;
   const LaneMask hardens = squared < lanes(answer::hardening_cap);
-  const Lanes tightening =
+  Lanes tightening =
       (s.depth > zero) & hardens ? ratio * pack.inverse_hardening / (s.grip * s.grip) : zero;
+  if (s.firm) {
+    // of H s^3 (s + 4 z/rest), z = d/dl
+    const Lanes rest = lanes(1 - answer::firm_from), z = s.depth * pack.inverse_limit;
+    const Lanes part = rest * max(s.firm_part, lanes(1e-100));
+    const Lanes more = s.harder * (lanes(2) + lanes(3) * z / part);
+    tightening += lanes(0.5) * more / (s.grip * s.grip);
+  }
   if (pack.law == FrictionLaw::anchored)
     set_anchored(pack, s, tightening, o);
   else
@@ -249,8 +259,13 @@ void linearise_pack(const ContactPack& pack, const PackState& s, PackLinear& o) 
 
   // N = K (1 - b vn): dN/dd = K'(1 - b vn), K' = k (1 + 3 ratio^2); beyond the cap K b is constant
   // and dN/dd = K' = k (1 + cap)
-  const Lanes slope = hardens ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
-                              : lanes(1 + answer::hardening_cap);
+  // the second hardening h, which begins there: k (h + d h' (1 - b vn))
+  Lanes slope = hardens ? (one + lanes(3) * squared) * (one - s.damping * s.vn)
+                        : lanes(1 + answer::hardening_cap);
+  if (s.firm) {
+    const Lanes part = s.firm_part * s.firm_part;
+    slope += pack.firmness * part * part + s.depth * s.harder * (one - s.damping * s.vn);
+  }
   // whether what just touches presses already is rounding
   const LaneMask touches =
       (ratio > lanes(-answer::just_touching)) & (one - s.damping * s.vn > zero);

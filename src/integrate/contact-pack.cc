@@ -239,18 +239,38 @@ TW_LANES void set_idle(const ContactPack& pack, const LaneVec& stretch, PackStat
   o.N = o.stiffness = o.target_length = o.scale = o.drag = lanes(0);
   o.target = o.F = o.f = none;
   o.slipping = LaneMask{};
-  o.deep = o.turns = false;
+  o.reaches_firmness = o.firm = o.deep = o.turns = false;
   o.stretch_rate = pack.law == FrictionLaw::anchored ? (-pack.kt / pack.ct) * stretch : none;
 }
 
-// N = max(0, k d h (1 - b vn)), h = 1 + min((d/dh)^2, cap), b less beyond the cap; y = sqrt(h)
-TW_LANES void set_normal_force(const ContactPack& pack, PackState& o) {
+// Adds H s^4 to the hardness h, s from 0 to 1 between a share of dl and dl, and (d H s^4)' to y^2,
+// beyond dl that at dl.
+TW_LANES void add_firmness(const ContactPack& pack, bool without, PackState& o, Lanes& hard,
+                           Lanes& squared_grip) {
+  const Lanes zero = lanes(0), one = lanes(1), from = lanes(answer::firm_from);
+  const Lanes depth = o.depth * pack.inverse_limit;
+  const LaneMask begun = (depth > from) & (pack.firmness > zero);
+  o.reaches_firmness = any(begun);
+  o.firm = o.reaches_firmness && !without;
+  if (!o.firm) return;
+  const Lanes rest = one - from, s = begun ? (min(depth, one) - from) / rest : zero;
+  const Lanes cubed = pack.firmness * s * s * s;
+  o.firm_part = s;
+  o.harder = s < one ? lanes(4) * cubed * pack.inverse_limit / rest : zero;
+  hard += cubed * s;
+  squared_grip += cubed * (s + lanes(4) * min(depth, one) / rest);
+}
+
+// N = max(0, k d h (1 - b vn)), h = 1 + min((d/dh)^2, cap) + H s^4, b less beyond the cap
+TW_LANES void set_normal_force(const ContactPack& pack, bool without_firmness, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1);
   const Lanes depth = o.depth, ratio = depth * pack.inverse_hardening;
-  const Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
+  Lanes hard = one + min(ratio * ratio, lanes(answer::hardening_cap));
+  Lanes squared_grip = hard;
+  add_firmness(pack, without_firmness, o, hard, squared_grip);
   const Lanes ease = min(one, lanes(answer::hardest_ratio) / max(ratio, lanes(1e-300)));
   o.damping = ease * pack.damping;
-  o.grip = depth > zero ? sqrt(hard) : one;
+  o.grip = depth > zero ? sqrt(squared_grip) : one;
   const Lanes damped = one - o.damping * o.vn;
   const LaneMask pressed = (depth > zero) & (damped > zero);
   o.stiffness = pressed ? pack.k * depth * hard : zero;
@@ -291,10 +311,10 @@ TW_LANES void set_smooth_friction(const ContactPack& pack, PackState& o) {
 }
 
 // Beyond the cap a damper along the surfaces and of turning, too: c = k (1 + cap) tau (1 - e),
-// C = c d size/2
+// and k H tau (1 - dl/d) more beyond dl; C = c d size/2
 TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
   const Lanes zero = lanes(0), one = lanes(1), hardest = lanes(answer::hardest_ratio);
-  o.drag = zero;
+  o.drag = o.firm_drag = zero;
   const Lanes ratio = o.depth * pack.inverse_hardening;
   const LaneMask beyond = ratio > hardest;
   o.deep = o.turns = any(beyond);
@@ -302,6 +322,12 @@ TW_LANES void add_drag(const ContactPack& pack, PackState& o) {
   const Lanes most =
       lanes(1 + answer::hardening_cap) * pack.k * pack.damping * (o.depth * hardest / ratio);
   o.drag = beyond ? most * (one - hardest / ratio) : zero;
+  if (o.firm) {
+    const Lanes depth = o.depth * pack.inverse_limit;
+    const Lanes share = pack.firmness * lanes(1 / (1 + answer::hardening_cap));
+    o.firm_drag = beyond & (depth > one) ? share * most * (one - one / depth) : zero;
+    o.drag += o.firm_drag;
+  }
   o.f = o.f - o.drag * o.u;
   o.turn_drag = o.drag * o.depth * pack.half_size;
   o.torque = o.turn_drag * (o.wa - o.wb);
@@ -315,7 +341,7 @@ TW_LANES void add_resistance(const ContactPack& pack, const LaneVec& bend, PackS
 
 template <ContactFeature feature>
 void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-              const LaneVec& bend, const LaneVec& side, bool forces_alone, PackState& o) {
+              const LaneVec& bend, const LaneVec& side, const PackWish& wish, PackState& o) {
   // core points
   const LaneBodies a(pack, bodies, pack.a), b(pack, bodies, pack.b);
   o.Ra = a.R();
@@ -351,7 +377,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
   o.depth = pack.offset - o.gap;
   o.idle = is_idle(pack, o);
   if (o.idle) set_idle(pack, stretch, o);
-  if (o.idle && forces_alone) return;
+  if (o.idle && wish.forces_alone) return;
 
   // velocity at the contact point
   o.sa = o.ra - pack.radius_b * o.n;
@@ -365,7 +391,7 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
   if (o.idle) return;
 
   // force
-  set_normal_force(pack, o);
+  set_normal_force(pack, wish.without_firmness, o);
   if (pack.law == FrictionLaw::anchored)
     set_anchored_friction(pack, o);
   else
@@ -405,6 +431,8 @@ void fill_lane(ContactPack& pack, int lane, const GroupContact& contact, int mem
   const ContactConstants& law = contact.law;
   pack.k[lane] = contact.share * law.k;
   pack.inverse_hardening[lane] = law.hardening > 0 ? 1 / law.hardening : 0;
+  pack.inverse_limit[lane] = law.firm.limit > 0 ? 1 / law.firm.limit : 0;
+  pack.firmness[lane] = law.firm.firmness;
   pack.damping[lane] = law.b;
   pack.half_size[lane] = 0.5 * law.size;
   const double turning = contact.share * law.squared_lever();
@@ -449,25 +477,39 @@ ContactPack empty_pack() {
 }  // namespace
 
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
-                   const LaneVec& bend, const LaneVec& side, PackState& out, bool forces_alone) {
+                   const LaneVec& bend, const LaneVec& side, PackState& out, const PackWish& wish) {
   using F = ContactFeature;
   switch (pack.feature) {
-    case F::plane: return evaluate<F::plane>(pack, bodies, stretch, bend, side, forces_alone, out);
-    case F::line: return evaluate<F::line>(pack, bodies, stretch, bend, side, forces_alone, out);
-    case F::point: return evaluate<F::point>(pack, bodies, stretch, bend, side, forces_alone, out);
-    case F::crossing:
-      return evaluate<F::crossing>(pack, bodies, stretch, bend, side, forces_alone, out);
-    case F::rim: return evaluate<F::rim>(pack, bodies, stretch, bend, side, forces_alone, out);
+    case F::plane: return evaluate<F::plane>(pack, bodies, stretch, bend, side, wish, out);
+    case F::line: return evaluate<F::line>(pack, bodies, stretch, bend, side, wish, out);
+    case F::point: return evaluate<F::point>(pack, bodies, stretch, bend, side, wish, out);
+    case F::crossing: return evaluate<F::crossing>(pack, bodies, stretch, bend, side, wish, out);
+    case F::rim: return evaluate<F::rim>(pack, bodies, stretch, bend, side, wish, out);
     case F::tangent_plane:
-      return evaluate<F::tangent_plane>(pack, bodies, stretch, bend, side, forces_alone, out);
-    case F::curved:
-      return evaluate<F::curved>(pack, bodies, stretch, bend, side, forces_alone, out);
+      return evaluate<F::tangent_plane>(pack, bodies, stretch, bend, side, wish, out);
+    case F::curved: return evaluate<F::curved>(pack, bodies, stretch, bend, side, wish, out);
   }
 }
 
 LaneVec starting_side(const ContactPack& pack, const BodyKinematics* bodies) {
   return LaneBodies(pack, bodies, pack.a).R() * pack.normal;
 }
+
+namespace {
+
+// Of the second hardening: the integral of k H d s^4, beyond dl of k H d.
+TW_LANES Lanes firm_energy(const ContactPack& pack, const PackState& state) {
+  constexpr double from = answer::firm_from, rest = 1 - from;
+  const Lanes zero = lanes(0), one = lanes(1), s = state.firm_part, squared = s * s;
+  const Lanes depth = state.depth * pack.inverse_limit;
+  const Lanes ends = lanes(rest * from / 5) + lanes(rest * rest / 6) * s;
+  const Lanes within = squared * squared * s * ends;
+  const Lanes beyond = lanes(0.5) * max(zero, depth * depth - one);
+  const Lanes limit = s > zero ? one / pack.inverse_limit : zero;
+  return pack.k * pack.firmness * limit * limit * (within + beyond);
+}
+
+}  // namespace
 
 Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes zero = lanes(0), half = lanes(0.5), cap = lanes(answer::hardening_cap);
@@ -479,6 +521,7 @@ Lanes pack_energy(const ContactPack& pack, const PackState& state) {
   const Lanes hard = squared < cap ? half * squared : cap - half * over;
   const Lanes normal = half * pack.k * depth * depth * (lanes(1) + hard);
   Lanes all = normal;
+  if (state.firm) all += firm_energy(pack, state);
   // beyond the cone a stretch pushes no harder: it relaxes by sliding and gives nothing back; as
   // deep as they are, or as hard as they press while they still get deeper
   const Lanes pressing = max(state.stiffness, state.N) / state.grip;

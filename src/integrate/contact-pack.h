@@ -43,7 +43,7 @@ struct ContactPack {
   LaneVec other_direction;                      // frame of b: crossing and rim
   std::shared_ptr<PackEllipsoids> ellipsoids;   // tangent plane and curved
   Lanes radius_a, radius_b, rim, offset;
-  Lanes k, inverse_hardening, damping, mu, kt, ct, half_size;
+  Lanes k, inverse_hardening, inverse_limit, firmness, damping, mu, kt, ct, half_size;
   ResistanceLaw resistance;
   int bend = -1;  // number of its row of bends; -1: it resists nothing
 };
@@ -105,10 +105,13 @@ struct PackState {
   LaneVec target;              // F* before the cut (anchored), u (smooth)
   Lanes target_length, scale;  // F = scale target
   LaneMask slipping;
-  LaneVec F, stretch_rate;     // the rate in a's frame
-  bool idle = false;           // all are open, and nothing resists turns: no forces, no derivatives
+  LaneVec F, stretch_rate;  // the rate in a's frame
+  bool idle = false;        // all are open, and nothing resists turns: no forces, no derivatives
+  // Whether any is within the second hardening, or beyond, and whether it counts.
+  bool reaches_firmness = false, firm = false;
+  Lanes firm_part, harder;     // s, and dh/dd of the second hardening, 1/m; set where it is firm
   bool deep = false;           // whether any is beyond the hardest ratio
-  Lanes drag;                  // c of the tangential damper there, N s/m
+  Lanes drag, firm_drag;       // c of the tangential damper there, N s/m, and what is beyond dl
   LaneVec f;                   // N n + F - drag u
   Lanes turn_drag;             // c d size/2, N m s
   bool turns = false;          // whether any torque beside that of f
@@ -116,12 +119,16 @@ struct PackState {
   ResistanceState resistance;  // set where the pack has bends
 };
 
+struct PackWish {
+  bool forces_alone = false;      // of an idle pack points and velocities may be left out
+  bool without_firmness = false;  // the law without its second hardening
+};
+
 // `stretch`, `bend`: a's frame; bends count where the pack has some.  `side`: the normals at an
-// earlier instant, which choose their sign (line, point).  `forces_alone`: of an idle pack points
-// and velocities may be left out.
+// earlier instant, which choose their sign (line, point).
 void evaluate_pack(const ContactPack& pack, const BodyKinematics* bodies, const LaneVec& stretch,
                    const LaneVec& bend, const LaneVec& side, PackState& out,
-                   bool forces_alone = false);
+                   const PackWish& wish = {});
 
 // The normals that the definition of the contacts gives at the start of an arc: they choose the
 // sign.

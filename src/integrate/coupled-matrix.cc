@@ -8,12 +8,9 @@
 #include <numeric>
 
 #include "base/constants.h"
+#include "base/index.h"
 
 namespace tw {
-
-namespace {
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 struct CoupledMatrix::Data {
   int size = 0;

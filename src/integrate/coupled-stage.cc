@@ -155,6 +155,7 @@ void GroupSystem::gather_column(const Couplings& couplings, GroupScratch& s,
     if (!reached) continue;
     row.assign(index(trees_[t]->freedoms()), 0.0);
     trees_[t]->gather(s.wrenches.data(), row.data());
+    trees_[t]->fold(row.data());
     for (std::size_t k = 0; k < row.size(); ++k) column[index(tree_unknowns_[t]) + k] -= row[k];
     for (const int member : members) s.wrenches[index(member)] = BodyWrench{};
   }
@@ -205,6 +206,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
       const int number = tree_unknowns_[t] + static_cast<int>(k);
       clear(number);
       unit[k] = 1;
+      tree.follow(unit.data());
       kq = unit;
       tree.eliminate(kq.data());
       tree.spread(kq.data(), unit.data(), s.changes.data());
@@ -213,7 +215,7 @@ bool GroupSystem::factor_coupled(GroupScratch& s) {
         column[index(tree_unknowns_[t]) + i] += tree.matrix()[n * k + i];
       const double own = std::abs(column[index(number)]);
       coupled_->set_column(number, column.data(), own > 0 ? std::sqrt(sigma_ / own) : 1);
-      unit[k] = 0;
+      std::fill(unit.begin(), unit.end(), 0.0);
     }
     for (const int member : tree.start().members) s.changes[index(member)] = BodyChange{};
   }
@@ -254,6 +256,7 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
     double* to = right + tree_unknowns_[t];
     trees_[t]->right_side(kq + trees_[t]->freedoms(), kq, to);
     trees_[t]->gather(s.wrenches.data(), to);
+    trees_[t]->fold(to);
   }
   if (!coupled_->solve(right)) return false;
 
@@ -268,6 +271,7 @@ bool GroupSystem::solve_coupled(GroupScratch& s, double* stage) {
     const std::size_t n = index(tree.freedoms());
     double *kq = stage + tree_rows_[t], *ku = kq + n;
     std::copy_n(right + tree_unknowns_[t], n, ku);
+    tree.follow(ku);
     work.assign(ku, ku + n);
     tree.eliminate(work.data());
     for (std::size_t e = 0; e < n; ++e) kq[e] += work[e];

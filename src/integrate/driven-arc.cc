@@ -7,18 +7,19 @@
 
 #include "base/constants.h"
 #include "base/interruption.h"
+#include "integrate/group-rows.h"
 #include "integrate/turning.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
+
+using rows::quat;
+using rows::vec;
+
 namespace {
 
 // places in y
 enum : int { x_at = 0, theta_at = 3, v_at = 6, L_at = 9, numbers = 12 };
-
-Eigen::Map<const Vec3> vec(const double* p) { return Eigen::Map<const Vec3>(p); }
-Eigen::Map<Vec3> vec(double* p) { return Eigen::Map<Vec3>(p); }
-Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
 
 Vec3 angular_velocity_of(const Quat& q, const Vec3& inverse_moments, const Vec3& L) {
   const Mat3 R = q.toRotationMatrix();
@@ -169,6 +170,11 @@ Twist DrivenArc::twist(double time) const {
 
 PoseTwist DrivenArc::at(double time) const {
   const DenseStep* step = step_at(time);
+  // where it fails it has its velocity still: it may go on from there without the force that failed
+  if (!step && time == solution_.reached()) {
+    if (time == solution_.start()) return start_;
+    step = &solution_.at(time);
+  }
   if (!step) {
     const Pose there = pose(time);
     return {there.p, there.q, Vec3::Zero(), Vec3::Zero()};

@@ -7,10 +7,15 @@
 #include <cstring>
 
 #include "base/constants.h"
+#include "integrate/group-rows.h"
 #include "integrate/turning.h"
 #include "math/rotation-vector.h"
 
 namespace tw {
+
+using rows::load;
+using rows::quat;
+using rows::vec;
 
 namespace {
 
@@ -18,8 +23,6 @@ constexpr int row_node = 12, row_step = 24, pack_side = 12;
 // places in a member's part of a node and of a step
 enum : int { x_at = 0, v_at = 3, L_at = 6, w_at = 9, q_at = 12, node_numbers = 16 };
 enum : int { theta_at = 0, rate_at = 3, d3_at = 6, d4_at = 12, step_numbers = 18 };
-
-Vec3 vec(const double* p) { return {p[0], p[1], p[2]}; }
 
 // Puts numbers down one after the other, at the end of a row that grows by so many.
 class Writer {
@@ -40,16 +43,8 @@ class Writer {
   double* to_;
 };
 
-Quat quat(const double* p) { return Quat(p[0], p[1], p[2], p[3]); }
-
 Vec3 vec(Lanes v) { return {v[0], v[1], v[2]}; }
 TW_LANES Lanes xyz(const double* p) { return Lanes{p[0], p[1], p[2], 0}; }
-
-LaneVec load(const double* p) {
-  LaneVec v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
 
 Quat normalized(const Quat& q) {
   const double n = 1 / std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());

@@ -4,11 +4,10 @@
 
 #include <cstring>
 
+#include "base/index.h"
 #include "integrate/group-system.h"
 
 namespace tw::rows {
-
-inline std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 TW_LANES LaneVec load(const double* p) {
   LaneVec v;

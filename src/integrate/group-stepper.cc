@@ -15,7 +15,7 @@
 namespace tw {
 namespace {
 
-TW_LANES Lanes load(const double* from) {
+TW_LANES Lanes load_four(const double* from) {
   Lanes four;
   std::memcpy(&four, from, sizeof four);
   return four;
@@ -28,7 +28,7 @@ TW_LANES Lanes weighted_sum(Lanes first, const double (&weights)[rodas4::stages 
                             const double* const (&rows)[rodas4::stages], std::size_t e) {
   Lanes sum = first;
   [&]<int... j>(std::integer_sequence<int, j...>) __attribute__((always_inline)) {
-    ((sum += lanes(weights[j]) * load(rows[j] + e)), ...);
+    ((sum += lanes(weights[j]) * load_four(rows[j] + e)), ...);
   }
   (std::make_integer_sequence<int, n>());
   return sum;
@@ -122,12 +122,12 @@ bool GroupStepper::set_stage(double h, GroupScratch& s) {
     double* y = s.trial.data();
     const double* y0 = s.state.data();
     for (std::size_t e = 0; e < size; e += lane_count)
-      store(weighted_sum<i>(load(y0 + e), a[i], earlier, e), y + e);
+      store(weighted_sum<i>(load_four(y0 + e), a[i], earlier, e), y + e);
     system_.evaluate(record_.reached() + alpha[i] * h, y, s, U);
     ++counts_.evaluations;
     const Lanes rate = lanes(1 / h);
     for (std::size_t e = 0; e < size; e += lane_count)
-      store(load(U + e) + rate * weighted_sum<i>(lanes(0), c[i], earlier, e), U + e);
+      store(load_four(U + e) + rate * weighted_sum<i>(lanes(0), c[i], earlier, e), U + e);
   }
   if (system_.moved_from_outside() && gamma_i[i] != 0)
     for (std::size_t e = 0; e < size; ++e) U[e] += h * gamma_i[i] * s.time_slope[e];
@@ -226,6 +226,17 @@ double Rejection::cut(double h, double error) {
   return std::clamp(answer::step_safety / root, least, 0.9);
 }
 
+// The largest of a member in the step, over tolerance.  Where what pressed hard lets go within a
+// step, the error is damped by a stiffness that is there no more: such a step is to do little.
+double GroupStepper::velocity_change(const GroupScratch& s) const {
+  double most = 0;
+  for (int i = 0; i < system_.members(); ++i) {
+    const double *from = s.state.data() + 12 * i + 6, *to = s.trial.data() + 12 * i + 6;
+    most = std::max(most, (rows::vec(to) - rows::vec(from)).norm());
+  }
+  return most / start_.velocity_tolerance;
+}
+
 double GroupStepper::fastest_turn(const GroupScratch& s) const {
   double squared = 0;
   for (int i = 0; i < system_.members(); ++i) {
@@ -299,8 +310,11 @@ bool GroupStepper::implicit_step() {
   system_.set_outside(time, s);
   record_.load_last(system_, s.state.data());
   load_joints(s);
+  s.firm = true;
   system_.linearise(time, s.state.data(), s, s.slope.data());
   ++counts_.evaluations;
+  s.firm = s.reaches_firmness;
+  const int pressed_hard = s.pressed_hard;
   const double turn_limit = answer::most_step_turn / std::max(fastest_turn(s), 1e-300);
   if (!(next_step_ > 0)) next_step_ = first_step(s);
   double h = std::min({next_step_, left, turn_limit});
@@ -318,7 +332,15 @@ bool GroupStepper::implicit_step() {
       h = 0.5 * left;
     double error = 0;
     const bool good = try_step(h, s, error);
-    const bool breaks_away = good && error <= 1 && (friction_doubt(s) > 1 || unforeseen(h, s) > 1);
+    if (good && error <= 1 && s.reaches_firmness && !s.firm) {
+      s.firm = true;
+      ++counts_.rejected;
+      continue;
+    }
+    const bool breaks_away =
+        good && error <= 1 &&
+        ((s.pressed_hard < pressed_hard && velocity_change(s) > answer::let_go_change) ||
+         friction_doubt(s) > 1 || unforeseen(h, s) > 1);
     if (good && error <= 1 && !breaks_away) {
       const double change = std::clamp(answer::step_safety / std::sqrt(std::sqrt(error)),
                                        answer::least_step_change, answer::most_step_change);

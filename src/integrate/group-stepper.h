@@ -53,6 +53,7 @@ class GroupStepper {
   bool try_step(double h, GroupScratch& s, double& error);
   double error_norm(const GroupScratch& s) const;
   double fastest_turn(const GroupScratch& s) const;
+  double velocity_change(const GroupScratch& s) const;
   void accept(double time, GroupScratch& s);
   void load_joints(GroupScratch& s);
   void append_joints(double time, GroupScratch& s);

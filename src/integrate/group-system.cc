@@ -185,11 +185,18 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
   // contacts
   std::fill(s.wrenches.begin(), s.wrenches.begin() + packs_.slots, BodyWrench{});
   PackState state;
+  const PackWish wish{.forces_alone = true, .without_firmness = !s.firm};
+  s.reaches_firmness = false;
+  s.pressed_hard = 0;
   for (int p = 0; p < packs(); ++p) {
     const ContactPack& pack = packs_.packs[index(p)];
     const std::size_t at = stretch_row(p);
     const LaneVec bend = pack.bend >= 0 ? load(y + bend_row(pack)) : LaneVec{};
-    evaluate_pack(pack, s.bodies.data(), load(y + at), bend, sides_[index(p)], state, true);
+    evaluate_pack(pack, s.bodies.data(), load(y + at), bend, sides_[index(p)], state, wish);
+    s.reaches_firmness |= state.reaches_firmness;
+    if (state.firm)
+      for (int i = 0; i < lane_count; ++i)
+        s.pressed_hard += state.firm_part[i] > 0 && state.N[i] > 0;
     if constexpr (with_derivative) linearise_pack(pack, state, s.linear[index(p)]);
     store(state.stretch_rate, slope + at);
     if (state.idle) continue;

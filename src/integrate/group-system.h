@@ -39,7 +39,10 @@ struct GroupScratch {
   BodyMatrix::Numbers matrix;
   std::vector<double> right_side;  // the unknowns; at least one a member
   std::vector<double> state, slope, time_slope, trial, stage[6];
-  double moving_at = -never;  // s: where the outside bodies that move stand
+  bool firm = true;               // whether the second hardening of contacts counts
+  bool reaches_firmness = false;  // of some contact, as evaluated last
+  int pressed_hard = 0;           // contacts that press within it, as evaluated last
+  double moving_at = -never;      // s: where the outside bodies that move stand
 };
 
 class GroupSystem {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/constants.h"
+#include "base/index.h"
 #include "base/never.h"
 #include "multibody/impulses.h"
 
@@ -15,7 +16,6 @@ namespace tw {
 using namespace multibody;
 
 namespace {
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Of each dof, whether it is a distance, m.
 std::vector<bool> distances(const Tree& tree) {
@@ -122,10 +122,10 @@ std::vector<DofRate> dof_rates(const GroupTree& start, In q, In u) {
     if (!state.servos.empty()) servo = state.servos[i];
     double stiffness = law.stiffness + servo.stiffness, damping = law.damping + servo.damping;
     if (law.friction > 0) damping += law.friction / friction_speed(axes[i]);
-    if (!state.stops.empty() && state.stops[i] != Stop::none) stiffness += axes[i].stop_stiffness;
+    if (!state.stops.empty()) stiffness += stop_rigidity(axes[i], state.stops[i], q);
     if (stiffness == 0 && damping == 0) continue;
     if (rates.empty()) {
-      Surroundings around;
+      BaseMotion around;
       around.base = start.multibody->base;
       place(tree, q, u, around, placed);
       if (!factor(tree, placed, factors)) return {{i, axes[i].u, never, never}};
@@ -154,7 +154,10 @@ JointRates joint_rates(const GroupTree& start) {
 }
 
 bool is_nonstiff(const GroupTree& start, double size, double rate) {
-  const std::vector<double>& u = start.state->u;
+  std::vector<double> u = start.state->u;
+  // how fast it flies as a whole says nothing of how fast its forces change
+  for (const Node& node : start.multibody->tree.nodes())
+    if (node.kind == NodeKind::floating) std::fill_n(u.begin() + node.u, 3, 0.0);
   const double most =
       answer::stiff_ratio * fastest_rate(distances(start.multibody->tree), u.data(), size, rate);
   const JointRates rates = joint_rates(start);

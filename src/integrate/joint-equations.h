@@ -34,7 +34,7 @@ class JointEquations final : public Equations {
   double tolerance_, size_, rate_;
   std::vector<bool> is_distance_;  // of each dof
   MovingBase base_;
-  mutable multibody::Surroundings around_;
+  mutable multibody::BaseMotion around_;
   mutable multibody::Kinematics placed_;
   mutable multibody::Articulation articulation_;
   mutable std::vector<double> q_, tau_;

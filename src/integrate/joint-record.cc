@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/index.h"
 #include "math/root.h"
 #include "math/rotation-vector.h"
 #include "multibody/limits.h"
@@ -16,8 +17,6 @@ namespace tw {
 using namespace multibody;
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Parts of a step that have bounds of their own.
 constexpr int parts = 4;
@@ -161,7 +160,7 @@ void JointRecord::fill(int step, double r, double time, bool of_path, Placed& p)
   // kept work spaces fit one tree each
   if (!p.k || p.k->nodes.size() != index(tree.node_count()) || p.k->axes.size() != index(n_))
     p.k = std::make_unique<Kinematics>(tree);
-  Surroundings around;
+  BaseMotion around;
   base_.set(time, around);
   place(tree, p.q, p.u, around, *p.k);
 }
@@ -271,6 +270,7 @@ void JointRecord::keep_bounds(int step) {
   std::vector<NodeMotion> before, after;
   std::vector<PoseTwist> links_before(multibody_->links.size()), links_after(links_before);
   std::vector<MotionRates> rates(index(tree.node_count()));
+  kept_bounds_.resize(multibody_->links.size());
   const auto place_at = [&](double r, std::vector<NodeMotion>& nodes,
                             std::vector<PoseTwist>& links) {
     const Placed& p = place_on_path(step, r);
@@ -288,8 +288,8 @@ void JointRecord::keep_bounds(int step) {
     for (int i = first_node; i < tree.node_count(); ++i)
       rates[index(i)] = node_rates(i, rates[index(tree.node(i).parent)], stretch, {before, after});
     for (int i = 0; i < tree.link_count(); ++i)
-      kept_bounds_.push_back(link_bounds(rates[index(tree.link(i).node)], i, stretch,
-                                         links_before[index(i)], links_after[index(i)]));
+      kept_bounds_[index(i)].append(link_bounds(rates[index(tree.link(i).node)], i, stretch,
+                                                links_before[index(i)], links_after[index(i)]));
   }
 }
 
@@ -326,7 +326,7 @@ MotionBounds JointRecord::bounds(int link, double from, double to) const {
              std::clamp(static_cast<int>(path_.fraction(step, time) * parts), 0, parts - 1);
     };
     const int end = part_of(last, to), begin = from < to ? part_of(first, from) : end;
-    for (int i = begin; i <= end; ++i) result.add(kept_bounds(i, link));
+    kept_bounds_[index(link)].add(index(begin), index(end + 1), result);
   }
   // rounding
   const double largest =
@@ -398,9 +398,12 @@ JointRecord JointRecord::stretch(double from) const {
   copy.path_ = path_.stretch(from);
   copy.nodes_.assign(node(first), nodes_.data() + nodes_.size());
   copy.nodes_u_.assign(node_u(first), nodes_u_.data() + nodes_u_.size());
-  if (!kept_bounds_.empty())
-    copy.kept_bounds_.assign(&kept_bounds(first * parts, 0),
-                             kept_bounds_.data() + kept_bounds_.size());
+  for (std::size_t link = 0; link < kept_bounds_.size(); ++link) {
+    const BoundsTree& kept = kept_bounds_[link];
+    copy.kept_bounds_[link] = {};
+    for (std::size_t i = index(first * parts); i < kept.size(); ++i)
+      copy.kept_bounds_[link].append(kept[i]);
+  }
   return copy;
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrate/bounds-tree.h"
 #include "integrate/moving-base.h"
 #include "integrate/step-polynomials.h"
 #include "integrate/trajectory.h"
@@ -73,10 +74,6 @@ class JointRecord {
                            const PoseTwist& a, const PoseTwist& b) const;
   void keep_bounds(int step);
   MotionBounds short_bounds(int step, int link, double from, double to) const;
-  const MotionBounds& kept_bounds(int part, int link) const {
-    return kept_bounds_[static_cast<std::size_t>(part) * multibody_->links.size() +
-                        static_cast<std::size_t>(link)];
-  }
   const double* node(int i) const {
     return nodes_.data() +
            static_cast<std::size_t>(i) * static_cast<std::size_t>(multibody_->tree.nq());
@@ -89,10 +86,10 @@ class JointRecord {
   const Multibody* multibody_;
   MovingBase base_;
   int n_;
-  StepPolynomials path_;                   // displacements, velocities
-  std::vector<double> nodes_;              // q
-  std::vector<double> nodes_u_;            // u at the nodes
-  std::vector<MotionBounds> kept_bounds_;  // links over the first part of the first step, ..
+  StepPolynomials path_;                 // displacements, velocities
+  std::vector<double> nodes_;            // q
+  std::vector<double> nodes_u_;          // u at the nodes
+  std::vector<BoundsTree> kept_bounds_;  // of each link, over the parts of the steps
   std::uint64_t serial_ = next_serial();
 };
 

@@ -20,6 +20,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 struct Quality {
   double error = never;
   int stubborn = 0;  // so many halvings in a row did not halve the error
+  // it is smooth, and from here on faster than it may be, s
+  double too_fast_from = never;
+  std::exception_ptr too_fast;
 };
 
 class Sampler {
@@ -42,6 +45,10 @@ class Sampler {
     if (bad_ <= a) return fail(a, failure_);
     Quality quality;
     if (bad_ > b && fits(a, b, above, quality)) return true;
+    // shorter pieces would pass by the rounding that is allowed for
+    if (quality.too_fast)
+      return (quality.too_fast_from <= a || follow(a, quality.too_fast_from, {})) &&
+             fail(quality.too_fast_from, quality.too_fast);
     if (span_.pieces.size() >= guard::most_motion_pieces)
       return fail(a, std::make_exception_ptr(UserError(
                          procedure_.name() + " is so rough between " + show(a) + " s and " +
@@ -95,13 +102,20 @@ class Sampler {
           miss(finest, poses[static_cast<std::size_t>(j)], motion_node_time(j, a, b)) / allowed);
       if (!(error <= noise)) return false;
     }
-    quality = {error, error > 0.5 * above.error ? above.stubborn + 1 : 0};
+    quality.error = error;
+    quality.stubborn = error > 0.5 * above.error ? above.stubborn + 1 : 0;
     if (error > 1 && quality.stubborn < 2) return false;
 
     for (std::size_t j = 0; j + 1 < motion_nodes; ++j) {
       const int node = static_cast<int>(j);
-      procedure_.require_speed(motion_node_time(node, a, b), poses[j],
-                               motion_node_time(node + 1, a, b), poses[j + 1]);
+      const double from = motion_node_time(node, a, b);
+      try {
+        procedure_.require_speed(from, poses[j], motion_node_time(node + 1, a, b), poses[j + 1]);
+      } catch (const UserError&) {
+        quality.too_fast_from = from;
+        quality.too_fast = std::current_exception();
+        return false;
+      }
     }
     for (const int degree : {2, 4}) {
       const MotionPiece simpler(a, b, poses, degree);

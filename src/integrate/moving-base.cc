@@ -15,7 +15,7 @@ double MovingBase::inside(double time) const {
   return time < end_ ? time : std::nextafter(end_, -never);
 }
 
-void MovingBase::set(double time, Surroundings& around) const {
+void MovingBase::set(double time, BaseMotion& around) const {
   around.base = multibody_->base;
   if (!moves()) return;
   const double known = std::min(time, end_), beyond = time - known;
@@ -38,7 +38,7 @@ void MovingBase::set(double time, Surroundings& around) const {
 
 Twist MovingBase::twist(double time) const {
   if (!moves()) return {};
-  Surroundings around;
+  BaseMotion around;
   set(time, around);
   return {around.v, around.w};
 }
@@ -58,7 +58,7 @@ void follow_base(const Multibody& multibody, double time, MultibodyState& joints
   const MovingBase base(multibody);
   if (!base.moves()) return;
   const Twist now = base.twist(time);
-  Surroundings jump;
+  BaseMotion jump;
   base.set(time, jump);
   jump.v = jump.w = Vec3::Zero();
   jump.a = now.v - joints.base.v;

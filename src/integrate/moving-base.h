@@ -24,7 +24,7 @@ class MovingBase {
 
   bool moves() const { return multibody_->base_motion != nullptr; }
   // All but gravity.
-  void set(double time, multibody::Surroundings& around) const;
+  void set(double time, multibody::BaseMotion& around) const;
   // As `set` has it; and just before.
   Twist twist(double time) const;
   Twist twist_before(double time) const;

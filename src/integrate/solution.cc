@@ -7,12 +7,11 @@
 
 #include "base/constants.h"
 #include "base/error.h"
+#include "base/index.h"
 #include "base/never.h"
 
 namespace tw {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 bool all_finite(const double* numbers, int count) {
   double sum = 0;

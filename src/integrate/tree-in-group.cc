@@ -12,7 +12,6 @@
 namespace tw {
 
 using namespace multibody;
-using rows::index;
 using rows::vec;
 
 TreeInGroup::TreeInGroup(const GroupTree& start, double end)
@@ -107,6 +106,7 @@ void TreeInGroup::set_stage_rate(double sigma) {
       if (column[j] != 0)
         for (std::size_t i = 0; i < n; ++i) to[i] -= Kq_[n * j + i] * column[j];
   }
+  fold_matrix(tree(), matrix_);
 }
 
 void TreeInGroup::eliminate(double* r) const {
@@ -200,9 +200,20 @@ double TreeInGroup::friction_doubt(const double* u0, const double* error) const 
 }
 
 void TreeInGroup::accelerate(double* row) const {
-  const Eigen::Map<const Eigen::MatrixXd> mass(mass_.data(), n_, n_);
   Eigen::Map<Eigen::VectorXd> x(row, n_);
-  x = mass.llt().solve(x).eval();
+  if (tree().couplings().empty()) {
+    const Eigen::Map<const Eigen::MatrixXd> mass(mass_.data(), n_, n_);
+    x = mass.llt().solve(x).eval();
+    return;
+  }
+  std::vector<double> folded = mass_;
+  fold_matrix(tree(), folded);
+  fold(row);
+  x = Eigen::Map<const Eigen::MatrixXd>(folded.data(), n_, n_).llt().solve(x).eval();
+  follow(row);
 }
+
+void TreeInGroup::follow(double* row) const { multibody::follow(tree(), {row, index(n_)}); }
+void TreeInGroup::fold(double* row) const { multibody::fold(tree(), {row, index(n_)}); }
 
 }  // namespace tw

@@ -53,7 +53,11 @@ class TreeInGroup {
   void set_stage_rate(double sigma);
   // kq = E r in place.
   void eliminate(double* r) const;
-  // The matrix s M - Ku - Kq E, by columns.
+  // Joints that follow others (multibody/couplings.h): of a row of unknowns, the followers' from
+  // the leaders'; of a row of a right side, the leaders' take the followers', whose are 0.
+  void follow(double* row) const;
+  void fold(double* row) const;
+  // The matrix s M - Ku - Kq E, folded, by columns.
   const std::vector<double>& matrix() const { return matrix_; }
   // M ru + Kq kq.
   void right_side(const double* ru, const double* kq, double* to) const;
@@ -77,7 +81,7 @@ class TreeInGroup {
   int n_;
   std::vector<double> q0_, q_, tau_, u0_, rate_;
   MovingBase base_;
-  multibody::Surroundings around_;
+  multibody::BaseMotion around_;
   multibody::Kinematics placed_;  // at the last place
   multibody::Kinematics linear_;  // at the step's start
   multibody::Articulation articulation_;

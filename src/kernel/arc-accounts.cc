@@ -25,6 +25,7 @@ Effort count_steps(Counters& counters, const Trajectory& trajectory) {
 }  // namespace
 
 double integrated_length(const State& state, double until) {
+  if (state.group && state.group->at_rest) return 0;
   const double length = until - state.key.time;
   if (!state.trajectory().stepped()) return length;
   if (!state.starts_arc()) return 0;

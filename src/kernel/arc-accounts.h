@@ -13,9 +13,9 @@ struct Simulation;
 StateGraph::OnRelease count_discarded(Simulation& simulation);
 // For states that GVT has passed: what follows from a state was used up to the next one.
 StateGraph::OnRelease count_used(Simulation& simulation);
-// What was integrated of the state's arc from the state to a time, s; of an arc that is stepped all
-// is the first state's: of a group what was computed, of others what was used, and what was
-// forgotten where they halted.
+// What was integrated of the state's arc from the state to a time, s: nothing of what rests.  Of an
+// arc that is stepped all is the first state's: of a group what was computed, of others what was
+// used, and what was forgotten where they halted.
 double integrated_length(const State& state, double until);
 // By kinematic bodies on the state's process from the state to a time along its arc, J.
 double kinematic_work_of(const Simulation& simulation, const State& state, double until);

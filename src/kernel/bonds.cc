@@ -95,6 +95,13 @@ Bond make_hold(const Scene& scene, const Successor& first, const Successor& seco
   bond.spring.damping =
       def.damping.value_or(2 * answer::hold_damping * std::sqrt(bond.spring.stiffness * mass));
   require_constant(bond.spring.damping, "damping of " + what, "N s/m");
+  // what was made to give way does
+  if (!def.stiffness) {
+    const double limit = answer::firm_share * size, sag = answer::hold_sag * size;
+    bond.firm = SecondHardening::of(limit, sag);
+    // at as many weights
+    bond.firm_turn = SecondHardening::of(limit / std::sqrt(arm), sag / std::sqrt(arm));
+  }
   bond.holds = true;
   bond.turn.stiffness = bond.spring.stiffness * arm;
   bond.turn.damping = bond.spring.damping * arm;
@@ -102,7 +109,7 @@ Bond make_hold(const Scene& scene, const Successor& first, const Successor& seco
   return bond;
 }
 
-void add_spring(Kernel& kernel, const SpringDef& def) {
+ForceHandle add_spring(Kernel& kernel, const SpringDef& def) {
   const Simulation& simulation = kernel.simulation;
   const Body &given_a = simulation.body(def.a), &given_b = simulation.body(def.b);
   const std::string spring = "the spring " + between(given_a, given_b);
@@ -131,9 +138,11 @@ void add_spring(Kernel& kernel, const SpringDef& def) {
   TW_REQUIRE(bond.spring.rest >= 0 && bond.spring.rest <= greatest_length,
              "rest of " + spring + " is " + show(bond.spring.rest) +
                  "; expected a length from 0 to " + show(greatest_length) + " m");
+  ForceHandle handle{a.id(), b.id(), nullptr};
   kernel.editing.edit_pair(a.id(), b.id(), [&](SuccessorView& view_a, SuccessorView& view_b) {
-    view_a.tie(view_b, bond);
+    handle.law = view_a.tie(view_b, bond);
   });
+  return handle;
 }
 
 void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def) {

@@ -11,7 +11,7 @@ class Kernel;
 struct Simulation;
 
 // As of World (world.h); edits at the present time.
-void add_spring(Kernel& kernel, const SpringDef& def);
+ForceHandle add_spring(Kernel& kernel, const SpringDef& def);
 void attach(Kernel& kernel, BodyId a, BodyId b, const HoldDef& def);
 void detach(Kernel& kernel, BodyId a, BodyId b);
 // `when`: the present, or the time of a frame that is due.

@@ -43,9 +43,8 @@ std::uint32_t CallbackBook::add(const CallbackDef& def) {
   callback.committed_next = def.start;
   callback.next = {def.start, 0, KeyKind::callback, number};
   // ticks before the present are not made up for
-  const Present& present = sim_.present;
-  const KeyKind now = present.begun ? KeyKind::group_check : KeyKind::birth;
-  if (def.period) callback.next = first_tick(callback, {present.time, 0, now, 0});
+  const Key now = sim_.present.begun ? first_open() : Key{sim_.present.time, 0, KeyKind::birth, 0};
+  if (def.period) callback.next = first_tick(callback, now);
   for (const BodyId id : def.targets) {
     Body& body = *sim_.scene.bodies[id];
     sim_.process(body).callbacks.push_back(number);
@@ -55,6 +54,34 @@ std::uint32_t CallbackBook::add(const CallbackDef& def) {
   return number;
 }
 
+void CallbackBook::measure_periods() {
+  for (const auto& body : sim_.scene.bodies) body->callback_period = never;
+  for (const CallbackRecord& callback : records_)
+    if (!callback.ended && callback.def.period)
+      for (const BodyId id : callback.def.targets) {
+        double& least = sim_.scene.bodies[id]->callback_period;
+        least = std::min(least, *callback.def.period);
+      }
+}
+
+bool CallbackBook::end(const Callback* which) {
+  for (std::uint32_t number = 0; number < records_.size(); ++number) {
+    CallbackRecord& callback = records_[number];
+    if (callback.ended || callback.def.callback.get() != which) continue;
+    callback.ended = true;
+    schedule(number);
+    measure_periods();
+    return true;
+  }
+  return false;
+}
+
+bool CallbackBook::is_called(const Callback* which) const {
+  return std::any_of(records_.begin(), records_.end(), [&](const CallbackRecord& callback) {
+    return !callback.ended && callback.def.callback.get() == which;
+  });
+}
+
 void CallbackBook::end_all_of(BodyId body) {
   for (std::uint32_t number = 0; number < records_.size(); ++number) {
     CallbackRecord& callback = records_[number];
@@ -62,6 +89,7 @@ void CallbackBook::end_all_of(BodyId body) {
     callback.ended = true;
     schedule(number);
   }
+  measure_periods();
 }
 
 void CallbackBook::take_head_starts() {
@@ -137,27 +165,35 @@ void CallbackBook::note_committed(const State& state) {
     callback.committed_next = state.next_callback;
 }
 
-std::vector<std::pair<Key, double>> CallbackBook::committed_ticks() const {
+Key CallbackBook::first_open() const {
   const Present& present = sim_.present;
-  const Key now = !present.begun          ? Key{}
-                  : present.due.inclusive ? Key{present.time, 0, KeyKind::group_check, 0}
-                                          : present.key();
-  std::vector<std::pair<Key, double>> ticks;
-  for (const CallbackRecord& callback : records_) {
-    const Key next{callback.committed_next, 0, KeyKind::callback, ticks.size()};
-    ticks.push_back(
-        {callback.def.period ? first_tick(callback, now) : next, callback.committed_next});
-  }
-  return ticks;
+  if (!present.begun) return Key{};
+  return present.due.inclusive ? Key{present.time, 0, KeyKind::group_check, 0} : present.key();
 }
 
-void CallbackBook::restore(const std::vector<std::pair<Key, double>>& ticks) {
-  for (std::uint32_t i = 0; i < records_.size(); ++i) {
-    records_[i].next = ticks[i].first;
-    records_[i].committed_next = ticks[i].second;
-    records_[i].parked = false;
-    schedule(i);
+std::vector<CallbackRecord> CallbackBook::keep() const {
+  std::vector<CallbackRecord> kept = records_;
+  for (std::size_t number = 0; number < kept.size(); ++number) {
+    CallbackRecord& callback = kept[number];
+    callback.next = callback.def.period
+                        ? first_tick(records_[number], first_open())
+                        : Key{callback.committed_next, 0, KeyKind::callback, number};
+    callback.parked = false;
+    callback.event = EventQueue::none;
   }
+  return kept;
+}
+
+void CallbackBook::restore(const std::vector<CallbackRecord>& kept) {
+  for (CallbackRecord& callback : records_) sim_.queue.withdraw(callback.event);
+  for (Process& process : sim_.processes) process.callbacks.clear();
+  records_ = kept;
+  for (std::uint32_t number = 0; number < records_.size(); ++number) {
+    for (const BodyId id : records_[number].def.targets)
+      sim_.process(sim_.body(id)).callbacks.push_back(number);
+    schedule(number);
+  }
+  measure_periods();
 }
 
 }  // namespace tw

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "kernel/definitions.h"
@@ -26,7 +25,7 @@ struct CallbackRecord {
   EventQueue::Handle event = EventQueue::none;
   double head_start = 0;
   bool parked = false;  // a target has stopped
-  bool ended = false;   // a target was removed
+  bool ended = false;   // it was removed, or a target was
 };
 
 class CallbackBook {
@@ -39,6 +38,9 @@ class CallbackBook {
   std::uint32_t add(const CallbackDef& def);
   // Those that have the body among their targets are called no more.
   void end_all_of(BodyId body);
+  // It is called no more; false: there is no such one.
+  bool end(const Callback* callback);
+  bool is_called(const Callback* callback) const;
   // Before the first run: the next calls get the head starts of their targets.
   void take_head_starts();
 
@@ -55,12 +57,17 @@ class CallbackBook {
   void note_committed(const State& state);
 
   // ---- checkpoints ----
-  // Of each: the key of the first call that is not committed, and the committed next time.
-  std::vector<std::pair<Key, double>> committed_ticks() const;
-  void restore(const std::vector<std::pair<Key, double>>& ticks);
+  // With the first calls that are not committed.
+  std::vector<CallbackRecord> keep() const;
+  // Those, and no others.
+  void restore(const std::vector<CallbackRecord>& kept);
 
  private:
   void schedule(std::uint32_t number);
+  // Of each body the least period of the callbacks that are handed its states.
+  void measure_periods();
+  // What is below it has been called, or is not made up for.
+  Key first_open() const;
   // The first tick whose key is not below `key`.
   Key first_tick(const CallbackRecord& callback, const Key& key) const;
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -104,6 +105,11 @@ class CollisionCallback {
 };
 
 using CollisionObserver = std::function<void(const Collision&)>;
+using CollisionObserverPtr = std::shared_ptr<const CollisionObserver>;
+
+// Whether a checkpoint knows who looks: observers of a scene come and go with it, whoever records a
+// run stays.
+enum class Watch : std::uint8_t { of_scene, outside };
 
 // One moving body in a frame.
 struct BodyPose {

@@ -5,6 +5,11 @@
 // change.  So a run that goes on from a restored checkpoint commits the same history, bit for bit,
 // as one that was never interrupted.
 //
+// Who was there is part of it: bodies and multibodies, rules of contact, callbacks, observers.
+// What came since is gone, what was removed is back.  They are shared, and one that a checkpoint
+// knows never changes but by lists that are made anew (bodies.cc); so any checkpoint of a world may
+// be restored after any other.
+//
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/checkpoint.h"
 
@@ -37,10 +42,12 @@ std::shared_ptr<const Checkpoint> Kernel::checkpoint() {
   auto result = std::make_shared<Checkpoint>();
   result->owner = this;
   result->present = simulation.present;
-  result->contact_rules = simulation.scene.contacts.version();
+  result->bodies = bodies.keep();
   for (const Process& process : simulation.processes)
     result->states.push_back(kept_states(simulation.graph, process.id, simulation.present.key()));
-  result->callbacks = callbacks.committed_ticks();
+  result->callbacks = callbacks.keep();
+  result->collision_callbacks = impacts.callbacks();
+  result->watchers = delivery.keep();
   return result;
 }
 
@@ -48,12 +55,6 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   simulation.require_between_runs("a checkpoint was restored");
   Present& present = simulation.present;
   TW_REQUIRE(checkpoint.owner == this, "the checkpoint belongs to another world");
-  TW_REQUIRE(
-      checkpoint.states.size() == simulation.processes.size() &&
-          checkpoint.callbacks.size() == callbacks.size() &&
-          checkpoint.present.removals == present.removals,
-      "bodies or callbacks were added or removed since the checkpoint; expected the same ones");
-
   // empty the graph and the event queue
   pairs.drop_all();
   for (const Process& process : simulation.processes) {
@@ -63,6 +64,7 @@ void Kernel::restore(const Checkpoint& checkpoint) {
   discontinuities.forget_undone();
 
   // the committed present
+  bodies.restore(checkpoint.bodies);
   present = checkpoint.present;
   simulation.scale_joints();
   for (Process& process : simulation.processes) {
@@ -81,13 +83,15 @@ void Kernel::restore(const Checkpoint& checkpoint) {
     process.lonely_claims = 0;
     if (!body.fixed())
       for (const BodyId id : process.bodies) claims.forget_box(id);
-    if (present.begun) claims.schedule(process.id);
+    // before the first run only what was edited has events
+    if (present.begun || is_edit(simulation.graph.tail(process.id)->key))
+      claims.schedule(process.id);
   }
+  if (present.begun) bodies.place_fixed();
   callbacks.restore(checkpoint.callbacks);
+  impacts.restore(checkpoint.collision_callbacks);
+  delivery.restore(checkpoint.watchers);
   delivery.restart();
-  // groups hold the contact parameters they were made with; what rests would keep them for good
-  if (present.begun && checkpoint.contact_rules != simulation.scene.contacts.version())
-    editing.renew_groups();
 }
 
 }  // namespace tw

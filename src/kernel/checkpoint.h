@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <utility>
 #include <vector>
 
+#include "kernel/bodies.h"
+#include "kernel/callback-book.h"
+#include "kernel/delivery.h"
 #include "kernel/present.h"
 #include "timeline/state.h"
 
@@ -15,7 +17,7 @@ class Kernel;
 struct Checkpoint {
   const Kernel* owner = nullptr;
   Present present;
-  unsigned contact_rules = 0;  // version of the contact parameters: they are the scene's, and stay
+  Bodies::Kept bodies;
   // by body: the last committed one, and what edits have added to it
   struct Kept {
     Key key;
@@ -23,7 +25,9 @@ struct Checkpoint {
     StateData data;
   };
   std::vector<std::vector<Kept>> states;
-  std::vector<std::pair<Key, double>> callbacks;  // next tick; next time without a period
+  std::vector<CallbackRecord> callbacks;
+  std::vector<CollisionCallbackDef> collision_callbacks;
+  Delivery::Kept watchers;
 };
 
 }  // namespace tw

@@ -122,16 +122,16 @@ double Claims::window_end(const Body& body) const {
   // the time to travel window_cells of a cell: v s + a s^2/2 = distance
   const double growth = std::ldexp(1.0, std::max(0, process.lonely_claims - cost::patience));
   const double distance = sim_.options.window_cells * std::max(cell_, 2 * body.radius) * growth;
-  double speed = 0, pull = 0, farthest = start + cost::longest_window;
+  double speed = 0, pull = 0, latest = start + cost::longest_window;
   if (path) {
     speed = path->velocity(start).norm();
     pull = path->acceleration.norm();
   } else {
-    farthest = std::min(farthest, trajectory.step_end(start));
-    speed = trajectory.bounds(start, farthest).speed;
+    latest = std::min(latest, trajectory.step_end(start));
+    speed = trajectory.bounds(start, latest).speed;
   }
   const double root = std::sqrt(speed * speed + 2 * pull * distance);
-  const double end = std::min(farthest, start + 2 * distance / std::max(speed + root, 1e-300));
+  const double end = std::min(latest, start + 2 * distance / std::max(speed + root, 1e-300));
   return std::max(std::min(end, called), least);
 }
 
@@ -153,6 +153,11 @@ Aabb Claims::claimed_box(const Body& body, double end) const {
   }
   box.grow(cost::box_inflation * (box.lo.cwiseAbs().maxCoeff() + box.hi.cwiseAbs().maxCoeff()));
   return box;
+}
+
+void Claims::place_fixed(const Body& body) {
+  if (!body.unbounded) sim_.grid.place(body.id(), claimed_box(body, sim_.present.gvt), true);
+  placed_[body.id()] = true;
 }
 
 // Where the arcs end is found before anybody relies on them.

@@ -65,6 +65,8 @@ class Claims {
   bool placed(BodyId id) const { return placed_[id]; }
   // Its box is that of another time, until it claims again.
   void forget_box(BodyId id) { placed_[id] = false; }
+  // A fixed one that has claimed all, and is back: others meet it as they claim.
+  void place_fixed(const Body& body);
   // Windows go by the typical spacing of moving bodies.
   void measure_spacing();
 

@@ -145,7 +145,7 @@ void Commit::count(const State& state) {
   if (first && call) ++counters_.callback_changes;
   counters_.fusions += state.tally.fusions;
   // their keys are those of impacts; what was placed touching comes together at one of them
-  if (state.tally.fusions > 0) --counters_.collisions;
+  if (impact && state.tally.fusions > 0) --counters_.collisions;
   counters_.fissions += state.tally.fissions;
   counters_.contact_changes += state.tally.contact_changes;
   counters_.impulses_given_up += state.tally.impulses_given_up;

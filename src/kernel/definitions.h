@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/shape.h"
+#include "geometry/visual.h"
 #include "integrate/trajectory.h"
 #include "kernel/callback.h"
 #include "multibody/tree.h"
@@ -32,7 +34,8 @@ struct BodyDef {
   SlotsPtr slots;             // null: no slots
   std::optional<Vec3> color;  // sRGB 0..1
   bool visible = true;
-  Place place;  // of the form that made it
+  VisualPtr visual;  // null: that of the shape
+  Place place;       // of the form that made it
 };
 
 // A link of a multibody: its body, whose name, pose, velocities and motion say nothing, and how it
@@ -83,6 +86,13 @@ class ForceProcedure {
   virtual std::uint64_t number() const = 0;
 };
 
+// What add_spring, add_drag and add_force of a world return: tells a force from all others, and on
+// whom it acts.  What acts is known by its address, which states share.
+struct ForceHandle {
+  BodyId a = no_body, b = no_body;  // b: a again, where it acts on one alone
+  std::shared_ptr<const void> law;
+};
+
 struct CallbackDef {
   std::vector<BodyId> targets;
   std::shared_ptr<Callback> callback;
@@ -93,7 +103,9 @@ struct CallbackDef {
 };
 
 struct CollisionCallbackDef {
-  ContactSide a, b;
+  // It is called for what is between the first and the second of one of these pairs.
+  using Sides = std::pair<ContactSide, ContactSide>;
+  std::vector<Sides> sides = std::vector<Sides>(1);  // of all, unless given
   std::shared_ptr<CollisionCallback> callback;
   std::string name;
   Place place;

@@ -15,8 +15,31 @@
 
 namespace tw {
 
-void Delivery::add_observer(CollisionObserver observer, CollisionKind kind) {
-  observers_.push_back({std::move(observer), kind});
+CollisionObserverPtr Delivery::add_observer(CollisionObserver observer, CollisionKind kind,
+                                            Watch watch) {
+  auto shared = std::make_shared<const CollisionObserver>(std::move(observer));
+  observers_.push_back({shared, kind, watch});
+  return shared;
+}
+
+bool Delivery::remove_observer(const CollisionObserver* observer) {
+  for (std::size_t i = 0; i < observers_.size(); ++i) {
+    if (observers_[i].observer.get() != observer) continue;
+    observers_.erase(observers_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (i < next_observer_) --next_observer_;
+    return true;
+  }
+  return false;
+}
+
+bool Delivery::has(const CollisionObserver* observer) const {
+  return std::any_of(observers_.begin(), observers_.end(),
+                     [&](const Observer& record) { return record.observer.get() == observer; });
+}
+
+bool Delivery::has(const FrameSink* sink) const {
+  return std::any_of(sinks_.begin(), sinks_.end(),
+                     [&](const Sink& record) { return record.sink.get() == sink; });
 }
 
 bool Delivery::observed(CollisionKind kind) const {
@@ -24,19 +47,25 @@ bool Delivery::observed(CollisionKind kind) const {
                      [&](const Observer& record) { return record.kind == kind; });
 }
 
-void Delivery::add_sink(std::shared_ptr<FrameSink> sink, double fps) {
+void Delivery::add_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch) {
   TW_REQUIRE(std::isfinite(fps) && fps > 0,
              "frames per second are " + show(fps) + "; expected a positive number");
   TW_REQUIRE(fps <= greatest_rate,
              "frames per second are " + show(fps) + "; expected at most " + show(greatest_rate));
   const double time = sim_.present.time;
-  Sink record{std::move(sink), fps, static_cast<long>(std::floor(time * fps))};
+  Sink record{std::move(sink), fps, watch, static_cast<long>(std::floor(time * fps))};
   while (record.next_time() < time) ++record.next_frame;
   sinks_.push_back(std::move(record));
 }
 
-void Delivery::remove_sink(const FrameSink* sink) {
-  std::erase_if(sinks_, [&](const Sink& record) { return record.sink.get() == sink; });
+bool Delivery::remove_sink(const FrameSink* sink) {
+  return std::erase_if(sinks_, [&](const Sink& record) { return record.sink.get() == sink; }) > 0;
+}
+
+std::vector<double> Delivery::rates() const {
+  std::vector<double> rates;
+  for (const Sink& sink : sinks_) rates.push_back(sink.fps);
+  return rates;
 }
 
 void Delivery::note(const std::shared_ptr<const Report>& report) {
@@ -90,7 +119,7 @@ void Delivery::deliver_collision() {
   const std::shared_ptr<const Collision> collision = undelivered_.front();
   while (next_observer_ < observers_.size()) {
     const Observer& record = observers_[next_observer_++];
-    if (record.kind == collision->kind) record.observer(*collision);
+    if (record.kind == collision->kind) (*record.observer)(*collision);
   }
   undelivered_.pop_front();
   --sorted_;
@@ -116,6 +145,23 @@ void Delivery::deliver_frame(Sink& record) {
 double Delivery::first_needed(double otherwise) const {
   for (const Sink& sink : sinks_) otherwise = std::min(otherwise, sink.next_time());
   return otherwise;
+}
+
+Delivery::Kept Delivery::keep() const {
+  Kept kept{observers_, sinks_};
+  const auto is_outside = [](const auto& record) { return record.watch == Watch::outside; };
+  std::erase_if(kept.observers, is_outside);
+  std::erase_if(kept.sinks, is_outside);
+  return kept;
+}
+
+void Delivery::restore(const Kept& kept) {
+  const auto replace = [](auto& records, const auto& others) {
+    std::erase_if(records, [](const auto& record) { return record.watch == Watch::of_scene; });
+    records.insert(records.end(), others.begin(), others.end());
+  };
+  replace(observers_, kept.observers);
+  replace(sinks_, kept.sinks);
 }
 
 void Delivery::restart() {

@@ -22,10 +22,16 @@ class Delivery {
  public:
   explicit Delivery(Simulation& simulation) : sim_(simulation) {}
 
-  void add_observer(CollisionObserver observer, CollisionKind kind);
+  CollisionObserverPtr add_observer(CollisionObserver observer, CollisionKind kind,
+                                    Watch watch = Watch::outside);
+  // What is left to deliver it does not hear any more; false: there is no such one.
+  bool remove_observer(const CollisionObserver* observer);
+  bool has(const CollisionObserver* observer) const;
   // fps > 0.  Frames before the present time are not delivered again.
-  void add_sink(std::shared_ptr<FrameSink> sink, double fps);
-  void remove_sink(const FrameSink* sink);
+  void add_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch = Watch::outside);
+  bool remove_sink(const FrameSink* sink);
+  bool has(const FrameSink* sink) const;
+  std::vector<double> rates() const;  // frames per second, by sink
   // Whether somebody wants to hear of these.
   bool observed(CollisionKind kind) const;
 
@@ -40,6 +46,27 @@ class Delivery {
   double first_needed(double otherwise) const;
 
   // ---- checkpoints ----
+  struct Observer {
+    CollisionObserverPtr observer;
+    CollisionKind kind = CollisionKind::collision;
+    Watch watch = Watch::outside;
+  };
+  struct Sink {
+    std::shared_ptr<FrameSink> sink;
+    double fps = 30;
+    Watch watch = Watch::outside;
+    long next_frame = 0;
+
+    double next_time() const { return static_cast<double>(next_frame) / fps; }
+  };
+  // Those of the scene.
+  struct Kept {
+    std::vector<Observer> observers;
+    std::vector<Sink> sinks;
+  };
+  Kept keep() const;
+  // Those, and who looks from outside.
+  void restore(const Kept& kept);
   // Nothing is left to deliver, and frames go on with the first after what is due.
   void restart();
 
@@ -50,17 +77,6 @@ class Delivery {
   double fps() const { return sinks_.empty() ? 30 : sinks_.front().fps; }
 
  private:
-  struct Observer {
-    CollisionObserver observer;
-    CollisionKind kind = CollisionKind::collision;
-  };
-  struct Sink {
-    std::shared_ptr<FrameSink> sink;
-    double fps = 30;
-    long next_frame = 0;
-
-    double next_time() const { return static_cast<double>(next_frame) / fps; }
-  };
   void deliver_collision();
   void deliver_frame(Sink& sink);
 

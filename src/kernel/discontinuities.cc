@@ -87,8 +87,9 @@ void Discontinuities::append(const Key& key, std::vector<Successor>& successors)
     if (!state->starts_arc() || !successor.body->dynamic()) continue;
     TW_ASSERT(!state->group || state->group->key == key || state->error,
               "state of " + successor.body->info.name + " at " + show(key) + " in an older group");
-    // those of moving groups are counted by steps, when they are done with
-    if (!state->trajectory().stepped()) ++counters_.integrations;
+    // those of moving groups are counted by steps, when they are done with, and rest is none
+    if (!state->trajectory().stepped() && !(state->group && state->group->at_rest))
+      ++counters_.integrations;
   }
   sim_.graph.close_ring(ring);
 }

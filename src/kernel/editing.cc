@@ -17,26 +17,42 @@ namespace tw {
 // Of an edit that concerns these.  After whatever they have done at this instant, where that is
 // final; else before everything there: a callback that stopped the run, or an impact that an
 // interrupt left, sees what was changed, and doesn't take it back by coming earlier.
-Key Editing::edit_key(const std::vector<ProcessId>& concerned) {
+Key Editing::edit_key(const std::vector<ProcessId>& concerned) const {
   if (!sim_.present.due.inclusive)
-    return {sim_.present.time, 0, KeyKind::early_edit, sim_.present.edits++};
+    return {sim_.present.time, 0, KeyKind::early_edit, sim_.present.edits};
   std::uint32_t microstep = 1;
   for (const ProcessId member : concerned)
     for (const State* s = sim_.graph.tail(member); s && s->key.time >= sim_.present.time;
          s = s->prev)
       if (s->key.time == sim_.present.time) microstep = std::max(microstep, s->key.microstep + 1);
-  return {sim_.present.time, microstep, KeyKind::edit, sim_.present.edits++};
+  return {sim_.present.time, microstep, KeyKind::edit, sim_.present.edits};
 }
 
 // Of an edit of these (ascending): it concerns what touches them, too.
-Key Editing::key_around(const std::vector<ProcessId>& edited) {
+Key Editing::key_around(const std::vector<ProcessId>& edited) const {
   const Region region = region_of(sim_.before(sim_.present.key()), edited, true);
   std::vector<ProcessId> concerned = region.inside;
   concerned.insert(concerned.end(), region.border.begin(), region.border.end());
   return edit_key(concerned);
 }
 
-std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
+// Whether anything is other than it was.
+bool Editing::changes(const Key& key, const std::vector<Successor>& successors) const {
+  return std::any_of(successors.begin(), successors.end(), [&](const Successor& successor) {
+    const State& was = sim_.before(key).state(successor.process());
+    return successor.starts_arc() || successor.data.slots != was.slots ||
+           successor.data.random != was.random;
+  });
+}
+
+// Its number is taken only now.
+void Editing::enter(const Key& key, std::vector<Successor>& successors) {
+  groups_.regroup_edited(key, successors);
+  ++sim_.present.edits;
+  discontinuities_.enter(key, successors);
+}
+
+Editing::Edited Editing::edit(BodyId id, const std::function<void(StateView&)>& change) {
   sim_.require_between_runs("a body was changed");
   const Body& body = sim_.body(id);
   const Key key = key_around({body.process});
@@ -46,15 +62,26 @@ std::vector<BodyId> Editing::edit(BodyId id, const std::function<void(StateView&
   const Quat q_before = successors[0].point.q;
   SuccessorView view(sim_.scene, sim_.before(key).state(body.process), successors[0], key, true);
   change(view);
-  groups_.regroup_edited(key, successors);
-  discontinuities_.enter(key, successors);
-  if (body.multibody) return successors[0].placed ? body.multibody->links : std::vector<BodyId>{};
-  const PoseTwist& now = successors[0].point;
+  Edited edited{key, body.process, {}};
+  if (!changes(key, successors)) return edited;
+  const bool placed = successors[0].placed;
+  const PoseTwist now = successors[0].point;
+  enter(key, successors);
+  if (body.multibody) {
+    if (placed) edited.placed = body.multibody->links;
+    return edited;
+  }
   // what is put where it is may be pressed in; to the body's frame and back costs rounding
   constexpr double rounding = 1e-12;
   const bool stays = (now.x - x_before).norm() <= rounding * (x_before.norm() + body.extent()) &&
                      now.q.angularDistance(q_before) <= rounding;
-  return stays ? std::vector<BodyId>{} : std::vector<BodyId>{id};
+  if (!stays) edited.placed = {id};
+  return edited;
+}
+
+void Editing::take_back(const Edited& edited) {
+  discontinuities_.roll_back(edited.process, edited.key);
+  --sim_.present.edits;
 }
 
 void Editing::edit_pair(BodyId a, BodyId b,
@@ -75,13 +102,28 @@ void Editing::edit_pair(BodyId a, BodyId b,
     return sim_.process_of(id) == both.front() ? views.front() : views.back();
   };
   change(view_of(a), view_of(b));
-  groups_.regroup_edited(key, successors);
+  if (changes(key, successors)) enter(key, successors);
+}
+
+void Editing::bring_together(BodyId a, BodyId b) {
+  std::vector<ProcessId> moving;
+  for (const BodyId id : {a, b})
+    if (sim_.body(id).dynamic()) insert(moving, sim_.process_of(id));
+  const Key key = key_around(moving);
+  std::vector<Successor> successors;
+  for (const BodyId id : {a, b})
+    successors.push_back(
+        make_successor(sim_.before(key), sim_.process_of(id), sim_.body(id).dynamic()));
+  share_joints(successors);
+  const Progress progress = groups_.regroup(key, successors, Cause::fusion);
+  TW_ASSERT(progress == Progress::done, "an edit between runs waits for nobody");
   discontinuities_.enter(key, successors);
 }
 
 void Editing::set_gravity(const Vec3& gravity) {
   sim_.require_between_runs("gravity was set");
   TW_REQUIRE(is_finite(gravity), "gravity is not finite; expected #(x y z) in m/s^2");
+  if (gravity == sim_.present.settings.gravity) return;
   sim_.present.settings.gravity = gravity;
   sim_.scale_joints();
   // a body that is still at its birth needs no discontinuity
@@ -120,16 +162,18 @@ void Editing::edit_together(const std::function<bool(BodyId)>& concerned,
       successors.push_back(make_successor(sim_.before(key), process, true));
       change(successors.back());
     }
-    groups_.regroup_edited(key, successors);
-    discontinuities_.enter(key, successors);
+    enter(key, successors);
   }
 }
 
-void Editing::renew_groups() {
+void Editing::renew_groups(std::vector<BodyId> concerned) {
+  if (concerned.empty()) return;
+  std::sort(concerned.begin(), concerned.end());
   edit_together(
       [&](BodyId id) {
         const State* tail = sim_.graph.tail(sim_.process_of(id));
-        return tail->group && !tail->error;
+        return tail->group && !tail->error &&
+               std::binary_search(concerned.begin(), concerned.end(), id);
       },
       [](Successor&) {});
 }

@@ -84,11 +84,10 @@ Region GroupEvents::region_struck(std::span<const BodyId> bodies, const Before& 
 }
 
 GroupEvents::Decided GroupEvents::regrouped(const Before& before, const Known& is_known,
-                                            const Struck& struck,
-                                            const std::vector<Successor>& successors,
+                                            Cause cause, const std::vector<Successor>& successors,
                                             GroupCounters& counters) const {
   return tw::regroup(before, sim_.surroundings, is_known,
-                     {struck.cause, delivery_.observed(CollisionKind::fission), struck.at,
+                     {cause, delivery_.observed(CollisionKind::fission),
                       delivery_.observed(CollisionKind::fusion), &sim_.present.together},
                      successors, counters);
 }
@@ -96,7 +95,7 @@ GroupEvents::Decided GroupEvents::regrouped(const Before& before, const Known& i
 Progress GroupEvents::regroup(const Key& key, std::vector<Successor>& successors, Cause cause) {
   const bool between_runs = is_edit(key);
   const Known is_known = [&](ProcessId id) { return between_runs || known(id, key); };
-  Decided result = regrouped(sim_.before(key), is_known, {cause, {}}, successors, counters_);
+  Decided result = regrouped(sim_.before(key), is_known, cause, successors, counters_);
   if (const Waits* waits = std::get_if<Waits>(&result)) {
     await(waits->region, key);
     return Progress::try_again;
@@ -144,7 +143,7 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
     for (Successor& successor : successors) successor.data.error = std::make_exception_ptr(error);
     return Regrouped{std::move(successors)};
   }
-  return regrouped(before, is_known, {cause, {}}, successors, counters);
+  return regrouped(before, is_known, cause, successors, counters);
 }
 
 // ---- ahead of their events ----

@@ -41,12 +41,8 @@ class GroupEvents {
   // others that take part.
   Progress regroup(const Key& key, std::vector<Successor>& successors, Cause cause);
   // The same as a function of what stands; `is_known`: whose arcs may be relied on.
-  struct Struck {
-    Cause cause;
-    std::span<const ContactPoint> at;  // see RegroupRequest
-  };
   using Decided = std::variant<Regrouped, Waits>;
-  Decided regrouped(const Before& before, const Known& is_known, const Struck& struck,
+  Decided regrouped(const Before& before, const Known& is_known, Cause cause,
                     const std::vector<Successor>& successors, GroupCounters& counters) const;
   // Whether the arcs of the process are known as far as the key: nothing can come before it.
   bool known(ProcessId id, const Key& key) const;

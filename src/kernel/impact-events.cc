@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/impact-events.h"
 
+#include <algorithm>
+
 #include "groups/joints.h"
 #include "groups/regroup.h"
 #include "kernel/active-pairs.h"
@@ -27,10 +29,34 @@ ImpactEvents::ImpactEvents(Simulation& simulation, const ActivePairs& pairs,
                decide_ahead(a, b, before, decision);
              }) {}
 
+namespace {
+
+// The sides by which a callback is about the two; null: it is not.
+const CollisionCallbackDef::Sides* sides_for(const CollisionCallbackDef& def, const Body& a,
+                                             const Body& b) {
+  for (const auto& sides : def.sides)
+    if (match_specificity(sides.first, sides.second, a.contact, b.contact)) return &sides;
+  return nullptr;
+}
+
+}  // namespace
+
+bool ImpactEvents::is_called(const CollisionCallback* callback) const {
+  return std::any_of(callbacks_.begin(), callbacks_.end(), [&](const CollisionCallbackDef& def) {
+    return def.callback.get() == callback;
+  });
+}
+
+bool ImpactEvents::remove(const CollisionCallback* callback) {
+  return std::erase_if(callbacks_, [&](const CollisionCallbackDef& def) {
+           return def.callback.get() == callback;
+         }) > 0;
+}
+
 bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
   if (delivery_.observed(CollisionKind::collision)) return true;
   for (const CollisionCallbackDef& def : callbacks_)
-    if (match_specificity(def.a, def.b, a.contact, b.contact)) return true;
+    if (sides_for(def, a, b)) return true;
   return false;
 }
 
@@ -38,10 +64,11 @@ bool ImpactEvents::wants_collision(const Body& a, const Body& b) const {
 void ImpactEvents::run_callbacks(const Collision& collision, const Before& before, Successor& a,
                                  Successor& b) const {
   for (const CollisionCallbackDef& def : callbacks_) {
-    if (!match_specificity(def.a, def.b, a.body->contact, b.body->contact)) continue;
+    const auto* const sides = sides_for(def, *a.body, *b.body);
+    if (!sides) continue;
     // the sides in the order given; where both match either way, the body added first comes first
     const bool straight =
-        side_matches(def.a, a.body->contact) && side_matches(def.b, b.body->contact);
+        side_matches(sides->first, a.body->contact) && side_matches(sides->second, b.body->contact);
     SuccessorView view_a(sim_.scene, before.state(a.process()), a, collision.key, false);
     SuccessorView view_b(sim_.scene, before.state(b.process()), b, collision.key, false);
     ++counters_.callbacks_run;
@@ -55,7 +82,6 @@ void ImpactEvents::run_callbacks(const Collision& collision, const Before& befor
 // Successors of all whom it concerns; a function of what stands before its key, but for callbacks.
 GroupEvents::Decided ImpactEvents::decide(BodyId a, BodyId b, const Before& before,
                                           const Known& is_known, GroupCounters& counters) const {
-  const Key& key = before.key();
   const Body &body_a = sim_.body(a), &body_b = sim_.body(b);
   std::vector<Successor> successors;
   successors.reserve(2);
@@ -63,8 +89,10 @@ GroupEvents::Decided ImpactEvents::decide(BodyId a, BodyId b, const Before& befo
   successors.push_back(make_successor(before, body_b.process, body_b.dynamic()));
   share_joints(successors);
   const Wanted wanted{wants_collision(body_a, body_b), delivery_.observed(CollisionKind::fusion)};
-  const auto [soft, points, collision] =
-      compute_impact(sim_.scene, sim_.surroundings, key, wanted, successors[0], successors[1]);
+  const std::variant<Impact, Waits> computed =
+      compute_impact(before, sim_.surroundings, is_known, wanted, successors);
+  if (const Waits* waits = std::get_if<Waits>(&computed)) return *waits;
+  const auto& [soft, collision] = std::get<Impact>(computed);
 
   // callbacks see the successors; their errors stop the receivers, speculatively
   if (collision && collision->kind == CollisionKind::collision && !successors[0].data.error &&
@@ -83,8 +111,8 @@ GroupEvents::Decided ImpactEvents::decide(BodyId a, BodyId b, const Before& befo
   if (successors[0].data.error)
     discontinuities_.stop_group_mates(before, successors);
   else if (soft || touches_groups(successors))
-    return groups_.regrouped(before, is_known, {soft ? Cause::fusion : Cause::impact, points},
-                             successors, counters);
+    return groups_.regrouped(before, is_known, soft ? Cause::fusion : Cause::impact, successors,
+                             counters);
   return Regrouped{std::move(successors)};
 }
 

@@ -25,6 +25,11 @@ class ImpactEvents {
                const PairChecks& checks, GroupEvents& groups, const Delivery& delivery);
 
   void add_callback(const CollisionCallbackDef& def) { callbacks_.push_back(def); }
+  bool is_called(const CollisionCallback* callback) const;
+  // False: there is no such one.
+  bool remove(const CollisionCallback* callback);
+  const std::vector<CollisionCallbackDef>& callbacks() const { return callbacks_; }
+  void restore(const std::vector<CollisionCallbackDef>& callbacks) { callbacks_ = callbacks; }
   // The pending impact of an active pair.
   Progress process(std::uint32_t pair);
   // Has helpers decide what is due next, beside what the loop does with this event.

@@ -12,27 +12,13 @@
 #include "collision/separation.h"
 #include "dynamics/contact-scales.h"
 #include "dynamics/impulse-solver.h"
+#include "groups/blow.h"
 #include "groups/flush-ground.h"
 #include "groups/joints.h"
 #include "groups/regrouping.h"
 
 namespace tw {
 namespace {
-
-// Replaces each manifold of several points by its centroid, the others stay.
-std::vector<ContactPoint> centroids(const std::vector<ContactPoint>& points) {
-  std::vector<ContactPoint> result;
-  for (std::size_t i = 0; i < points.size();) {
-    ContactPoint c = points[i];
-    Vec3 sum = Vec3::Zero();
-    std::size_t j = i;
-    for (; j < points.size() && points[j].pair == c.pair; ++j) sum += points[j].point;
-    c.point = sum / static_cast<double>(j - i);
-    result.push_back(c);
-    i = j;
-  }
-  return result;
-}
 
 ContactPoint sphere_contact(const Body& a, const PoseTwist& pa, const Body& b,
                             const PoseTwist& pb) {
@@ -176,10 +162,7 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
   const double slow = scales.fusion_speed;
   if (key.microstep > 1 && fastest <= guard::grazing * slow) return true;
   if (is_pinned(key, fastest, a, b)) return true;
-  const bool unsettled = a.data.impacts.unsettled_time == key.time &&
-                         b.data.impacts.unsettled_time == key.time &&
-                         a.data.impacts.partner == b.body->id();
-  if (unsettled || key.microstep > guard::most_repeated) {
+  if (key.microstep > guard::most_repeated) {
     (a.enters() ? a : b).data.tally.declared_soft = 1;
     return true;
   }
@@ -209,19 +192,17 @@ bool is_soft(const Scene& scene, const Key& key, const Vec3& normal, double fast
 
 }  // namespace
 
-Impact compute_impact(const Scene& scene, const Surroundings& surroundings, const Key& key,
-                      const Wanted& wanted, Successor& a, Successor& b) {
-  // scratch: a gas has no time for the heap
-  thread_local std::vector<ContactPoint> points;
-  find_impact_points(scene, a, b, points);
-  Impact impact;
-  // nothing to hit: the two are followed as a contact while they pass the seam
-  impact.soft =
-      drop_low_sides(scene, key, a, b, points) || drop_ghosts(scene, surroundings, a, b, points);
-  if (impact.soft) return impact;
-  const ContactParameters& contact = scene.contacts.between(a.body->id(), b.body->id());
-  // what is told once stands on the first state that enters the graph
-  Tally& tally = (a.enters() ? a : b).data.tally;
+namespace {
+
+Collision collision(CollisionKind kind, const Key& key, const std::vector<Successor>& successors,
+                    const Vec3& point, const Vec3& normal, double speed, double impulse) {
+  return {
+      kind,  key,    successors[0].body->id(), successors[1].body->id(), key.time, point, normal,
+      speed, impulse};
+}
+
+// Two that nothing else touches or holds.
+Blow strike_alone(const Key& key, const BlowAt& at, Successor& a, Successor& b) {
   thread_local ImpulseSolver solver;
   solver.clear();
   const std::uint32_t slot_a = solver.add(ImpulseSlot::of(*a.body, a.point));
@@ -230,58 +211,84 @@ Impact compute_impact(const Scene& scene, const Surroundings& surroundings, cons
   joints.add(a, slot_a);
   joints.add(b, slot_b);
   joints.join();
-  const auto contact_at = [&](const ContactPoint& c) {
-    return ImpulseContact{slot_a,           slot_b, c.normal,          c.point, contact.restitution,
-                          contact.friction, 0,      contact.impact_law};
-  };
   thread_local std::vector<ImpulseContact> contacts;
   contacts.clear();
-  double worst = 0;
+  for (const ContactPoint& c : at.points)
+    contacts.push_back({slot_a, slot_b, c.normal, c.point, at.law->restitution, at.law->friction, 0,
+                        at.law->impact_law});
+  const double threshold = answer::residual_approach * at.speed;
+  if (contacts.size() > 1)
+    for (const ImpulseContact& middle : centroids(at.points, contacts))
+      if (solver.approach(middle) < -threshold) solver.strike(middle);
+  const ImpulseResult result = solver.solve(contacts, threshold, guard::most_impulses);
+  joints.take();
+  if (a.body->dynamic()) take_velocities(a, solver.slot(slot_a));
+  if (b.body->dynamic()) take_velocities(b, solver.slot(slot_b));
+  Blow blow;
+  blow.largest = solver.largest();
+  blow.approach = solver.largest_approach();
+  blow.impulse = solver.normal_impulse();
+  blow.held_work = solver.work_of_held();
+  blow.left_over = blow.given_up = result.left_over > 0;
+  return blow;
+}
+
+}  // namespace
+
+std::variant<Impact, Waits> compute_impact(const Before& before, const Surroundings& surroundings,
+                                           const Known& known, const Wanted& wanted,
+                                           std::vector<Successor>& successors) {
+  const Scene& scene = before.scene();
+  const Key& key = before.key();
+  Successor &a = successors[0], &b = successors[1];
+  // scratch: a gas has no time for the heap
+  thread_local std::vector<ContactPoint> points;
+  find_impact_points(scene, a, b, points);
+  Impact impact;
+  // nothing to hit: the two are followed as a contact while they pass the seam
+  impact.soft =
+      drop_low_sides(scene, key, a, b, points) || drop_ghosts(scene, surroundings, a, b, points);
+  if (impact.soft) return impact;
+  BlowAt at{points, &scene.contacts.between(a.body->id(), b.body->id())};
+  // what is told once stands on the first state that enters the graph
+  Tally& tally = (a.enters() ? a : b).data.tally;
   for (const ContactPoint& c : points) {
-    contacts.push_back(contact_at(c));
-    worst = std::min(worst, solver.approach(contacts.back()));
+    at.speed = std::max(
+        at.speed, -(b.point.velocity_at(c.point) - a.point.velocity_at(c.point)).dot(c.normal));
     tally.note_gap(c.gap);
   }
-  const ContactPoint first = points.front();
-  const auto describe = [&](CollisionKind kind, const Vec3& point, const Vec3& normal, double speed,
-                            double impulse) {
-    impact.told =
-        Collision{kind, key, a.body->id(), b.body->id(), key.time, point, normal, speed, impulse};
-  };
-  if (is_soft(scene, key, first.normal, -worst, a, b)) {
-    if (wanted.fusion) describe(CollisionKind::fusion, first.point, first.normal, -worst, 0);
+  const ContactPoint& first = points.front();
+  if (is_soft(scene, key, first.normal, at.speed, a, b)) {
+    if (wanted.fusion)
+      impact.told =
+          collision(CollisionKind::fusion, key, successors, first.point, first.normal, at.speed, 0);
     impact.soft = true;
     return impact;
   }
 
-  // impulses
-  const double threshold = answer::residual_approach * -worst;
-  if (points.size() > 1) {
-    for (const ContactPoint& c : centroids(points))
-      if (const ImpulseContact at = contact_at(c); solver.approach(at) < -threshold)
-        solver.strike(at);
+  Blow blow;
+  if (touches_groups(successors)) {
+    std::variant<Blow, Waits> taken = take_up(before, known, at, successors);
+    if (const Waits* waits = std::get_if<Waits>(&taken)) return *waits;
+    blow = std::get<Blow>(taken);
+  } else {
+    blow = strike_alone(key, at, a, b);
   }
-  const ImpulseResult result = solver.solve(contacts, threshold, guard::most_impulses);
-  if (result.left_over > 0) tally.impulses_given_up = 1;
+  // successors may have been added
+  Successor& noted = successors[0].enters() ? successors[0] : successors[1];
+  if (blow.given_up) noted.data.tally.impulses_given_up = 1;
+  noted.data.tally.kinematic_work = blow.held_work;
   if (key.microstep > guard::most_microsteps) {
     const UserError error("more than " + std::to_string(guard::most_microsteps) + " impacts at " +
-                          show(key.time) + " s between " + a.body->info.name + " and " +
-                          b.body->info.name + "; expected them to part");
-    a.data.error = b.data.error = std::make_exception_ptr(error);
+                          show(key.time) + " s between " + successors[0].body->info.name + " and " +
+                          successors[1].body->info.name + "; expected them to part");
+    successors[0].data.error = successors[1].data.error = std::make_exception_ptr(error);
   }
-
-  // new arcs
-  joints.take();
-  if (a.body->dynamic()) take_velocities(a, solver.slot(slot_a));
-  if (b.body->dynamic()) take_velocities(b, solver.slot(slot_b));
-  tally.kinematic_work = solver.work_of_held();
   if (wanted.collision)
-    describe(CollisionKind::collision, solver.largest().point, solver.largest().normal,
-             solver.largest_approach(), solver.normal_impulse());
-  if (a.body->dynamic() && b.body->dynamic() && (a.data.group || b.data.group))
-    impact.points = points;
+    impact.told = collision(CollisionKind::collision, key, successors, blow.largest.point,
+                            blow.largest.normal, blow.approach, blow.impulse);
   // what still approaches after so many impulses stays in contact
-  impact.soft = result.left_over > 0;
+  impact.soft = blow.left_over;
   return impact;
 }
 

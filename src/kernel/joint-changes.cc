@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "base/limits.h"
 #include "groups/joints.h"
 #include "multibody/impulses.h"
@@ -17,19 +18,17 @@ using namespace multibody;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::string joint_of(const Multibody& multibody, const Link& link) {
-  return "joint " + link.name + " of " + multibody.name;
+  return "joint " + link.joint_name + " of " + multibody.name;
 }
 
 void require_finite(const Multibody& multibody, const MultibodyState& state) {
   const auto require = [&](const Link& link, const std::vector<double>& values, int begin,
                            int count, const char* what) {
     for (int i = begin; i < begin + count; ++i)
-      TW_REQUIRE(std::isfinite(values[at(i)]),
+      TW_REQUIRE(std::isfinite(values[index(i)]),
                  std::string(what) + " of " + joint_of(multibody, link) + " is " +
-                     show(values[at(i)]) + "; expected finite numbers");
+                     show(values[index(i)]) + "; expected finite numbers");
   };
   for (const Link& link : multibody.tree.links()) {
     require(link, state.q, link.q, link.coordinates, "the position");
@@ -37,11 +36,37 @@ void require_finite(const Multibody& multibody, const MultibodyState& state) {
   }
 }
 
+// Joints that follow others go where these are put; to put them elsewhere is an error.
+void follow_leaders(const Multibody& multibody, const MultibodyState& before,
+                    MultibodyState& after) {
+  const auto set = [&](const Coupling& c, const std::vector<double>& old, std::vector<double>& row,
+                       int leader, int follower, double offset, const char* what) {
+    double& own = row[index(follower)];
+    const bool was_put = own != old[index(follower)];
+    if (!was_put && row[index(leader)] == old[index(leader)]) return;
+    const double follows = c.ratio * row[index(leader)] + offset;
+    const auto name = [&](int dof) {
+      for (const Link& link : multibody.tree.links())
+        if (link.u == dof && link.dofs == 1) return link.joint_name;
+      return std::string();
+    };
+    TW_REQUIRE(!was_put || std::abs(own - follows) <= 1e-9 * (1 + std::abs(follows)),
+               std::string(what) + " of joint " + name(c.follower) + " of " + multibody.name +
+                   " is " + show(own) + "; expected " + show(follows) + ", as it follows " +
+                   name(c.leader) + ": set that one");
+    own = follows;
+  };
+  for (const Coupling& c : multibody.tree.couplings()) {
+    set(c, before.q, after.q, c.leader_q, c.follower_q, c.offset, "the position");
+    set(c, before.u, after.u, c.leader, c.follower, 0, "the velocity");
+  }
+}
+
 void require_quaternions(const Multibody& multibody, const MultibodyState& state) {
   for (const Link& link : multibody.tree.links()) {
     if (link.joint != JointKind::spherical && link.joint != JointKind::free) continue;
     const int begin = link.joint == JointKind::free ? link.q + 3 : link.q;
-    const double norm = quaternion_at(&state.q[at(begin)]).norm();
+    const double norm = quaternion_at(&state.q[index(begin)]).norm();
     TW_REQUIRE(norm > 1e-100 && std::isfinite(norm),
                "the position of " + joint_of(multibody, link) +
                    " has a quaternion that is zero or not finite; expected #(w x y z)");
@@ -63,7 +88,7 @@ void check_positions(const Multibody& multibody, const MultibodyState& before, b
                    "set there");
   }
   for (int i = 0; i < tree.axis_count(); ++i) {
-    const Axis& axis = tree.axes()[at(i)];
+    const Axis& axis = tree.axes()[index(i)];
     const auto first = after.q.begin() + axis.q;
     if (std::equal(first, first + (axis.ball ? 4 : 1), before.q.begin() + axis.q)) continue;
     const double q = multibody::limited(axis, after.q);
@@ -72,7 +97,7 @@ void check_positions(const Multibody& multibody, const MultibodyState& before, b
                what + joint_of(multibody, tree.link(axis.link)) + " is " + show(q) +
                    "; expected one within its limits, " + show(axis.ball ? 0 : axis.law.lower) +
                    " to " + show(axis.law.upper));
-    if (!after.stops.empty()) after.stops[at(i)] = Stop::none;
+    if (!after.stops.empty()) after.stops[index(i)] = Stop::none;
   }
 }
 
@@ -99,11 +124,12 @@ void check_torques(const Multibody& multibody, const PlacedJoints& placed,
   velocity_change({tree, placed.kinematics(), factors}, {}, after.torques, work, rate);
   for (const Link& link : tree.links())
     for (int k = link.u; k < link.u + link.dofs; ++k)
-      TW_REQUIRE(std::abs(rate[at(k)]) <= greatest_angular_acceleration,
+      TW_REQUIRE(std::abs(rate[index(k)]) <= greatest_angular_acceleration,
                  "the torques at the joints of " + multibody.name + " accelerate joint " +
-                     link.name + " by " + show(rate[at(k)]) + "; expected at most " +
+                     link.joint_name + " by " + show(rate[index(k)]) + "; expected at most " +
                      show(greatest_angular_acceleration) +
-                     " rad/s^2 or m/s^2 (the torque there is " + show(after.torques[at(k)]) + ")");
+                     " rad/s^2 or m/s^2 (the torque there is " + show(after.torques[index(k)]) +
+                     ")");
 }
 
 void check_gains(const Multibody& multibody, const MultibodyState& after) {
@@ -122,6 +148,7 @@ void check_gains(const Multibody& multibody, const MultibodyState& after) {
 void check_joints(const Multibody& multibody, const MultibodyState& before, double time,
                   bool may_place, MultibodyState& after) {
   require_finite(multibody, after);
+  follow_leaders(multibody, before, after);
   check_positions(multibody, before, may_place, after);
   require_inputs(multibody.tree, after.inputs());
   check_gains(multibody, after);

@@ -17,16 +17,6 @@ namespace tw {
 
 // ---- between runs ----
 
-void Kernel::set_contact(const ContactSide& a, const ContactSide& b,
-                         const ContactSettings& settings) {
-  simulation.require_between_runs("contact parameters were set");
-  if (simulation.present.begun) bodies.check_enabled(a, b, settings);
-  simulation.scene.contacts.add(a, b, settings);
-  if (!simulation.present.begun) return;
-  discontinuities.restart_future();
-  editing.renew_groups();
-}
-
 std::uint64_t Kernel::add_callback(const CallbackDef& def) {
   simulation.require_between_runs("a callback was added");
   callbacks.require_possible(def);
@@ -40,23 +30,57 @@ void Kernel::add_collision_callback(const CollisionCallbackDef& def) {
   if (simulation.present.begun) discontinuities.restart_future();
 }
 
-void Kernel::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
+void Kernel::remove_callback(const Callback* callback) {
+  simulation.require_between_runs("a callback was removed");
+  TW_REQUIRE(callbacks.end(callback),
+             "the callback is not called any more; expected one that was "
+             "not removed, nor restored away");
+  if (simulation.present.begun) discontinuities.restart_future();
+}
+
+void Kernel::remove_callback(const CollisionCallback* callback) {
+  simulation.require_between_runs("a collision callback was removed");
+  TW_REQUIRE(impacts.remove(callback),
+             "the callback is not called any more; expected one that was "
+             "not removed, nor restored away");
+  if (simulation.present.begun) discontinuities.restart_future();
+}
+
+CollisionObserverPtr Kernel::add_collision_observer(CollisionObserver observer, CollisionKind kind,
+                                                    Watch watch) {
   simulation.require_between_runs("an observer was added");
   if (simulation.present.begun && !delivery.observed(kind)) discontinuities.restart_future();
-  delivery.add_observer(std::move(observer), kind);
+  return delivery.add_observer(std::move(observer), kind, watch);
 }
 
-void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
+void Kernel::remove_observer(const CollisionObserver* observer) {
+  simulation.require_between_runs("an observer was removed");
+  TW_REQUIRE(delivery.remove_observer(observer),
+             "the observer looks no more; expected one that was "
+             "not removed, nor restored away");
+}
+
+void Kernel::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch) {
   simulation.require_between_runs("a frame sink was added");
-  delivery.add_sink(std::move(sink), fps);
+  delivery.add_sink(std::move(sink), fps, watch);
 }
 
+// Where who was placed elsewhere overlaps another, it is back where it was.
 void Kernel::edit(BodyId id, const std::function<void(StateView&)>& change) {
-  for (const BodyId placed : editing.edit(id, change))
-    if (simulation.present.begun) {
+  const Editing::Edited edited = editing.edit(id, change);
+  if (!simulation.present.begun || edited.placed.empty()) return;
+  const PlacedTogether together = simulation.present.together;
+  try {
+    for (const BodyId placed : edited.placed) {
       simulation.present.together.forget(placed);
       bodies.check_overlaps(simulation.body(placed));
     }
+  } catch (...) {
+    editing.take_back(edited);
+    simulation.present.together = together;
+    for (const BodyId placed : edited.placed) claims.forget_box(placed);
+    throw;
+  }
 }
 
 // ---- the loop ----
@@ -79,8 +103,9 @@ Progress Kernel::process(const Event& event) {
   return Progress::done;
 }
 
-void Kernel::process_next() {
-  const Event event = simulation.policy->next(simulation.queue);
+void Kernel::process_next() { take(Event(simulation.policy->next(simulation.queue))); }
+
+void Kernel::take(const Event& event) {
   Counters& counters = simulation.present.counters;
   const std::uint64_t claims_before = counters.claims;
   if (process(event) == Progress::try_again) ++counters.events_postponed;
@@ -107,7 +132,7 @@ void Kernel::begin_run() {
     bodies.claim_newborn();
   }
   present.begun = true;
-  present.together.settle();
+  bodies.meet_overlapping();
   if (!present.counters.energy_known) {
     present.counters.energy_start = total_energy(simulation, present.time);
     present.counters.energy_known = true;
@@ -160,18 +185,33 @@ RunStatus Kernel::advance(double until, double slice) {
   return delivery.deliver(wall_end) ? RunStatus::finished : RunStatus::slice_over;
 }
 
-bool Kernel::step(double until) {
+StepReport Kernel::describe(const Event& event) const {
+  const double time = event.key.time;
+  switch (event.kind) {
+    case EventKind::advance: return {"advance", time, {BodyId{event.subject}}};
+    case EventKind::callback: return {"callback", time, callbacks[event.subject].def.targets};
+    case EventKind::group_check:
+      return {"group-check", time, simulation.processes[event.subject].bodies};
+    case EventKind::pair: break;
+  }
+  const Pair& pair = pairs[event.subject];
+  return {pair.pending ? "impact" : "check", time, {BodyId{pair.a}, BodyId{pair.b}}};
+}
+
+std::optional<StepReport> Kernel::step(double until) {
   TW_REQUIRE(!simulation.running,
              "a step was made inside a callback or observer; expected to be between runs");
   const RunGuard guard(simulation);
   const ForgetAtEnd forget(groups, impacts);
   begin_run();
   commit.begin_run(until, never);
-  if (commit.finished()) return false;
-  process_next();
+  if (commit.finished()) return std::nullopt;
+  const Event event = simulation.policy->next(simulation.queue);
+  const StepReport report = describe(event);
+  take(event);
   commit.update_gvt();
   delivery.deliver(never);
-  return true;
+  return report;
 }
 
 // ---- looking ----

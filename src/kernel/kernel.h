@@ -18,6 +18,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "base/work-count.h"
 #include "kernel/active-pairs.h"
@@ -42,18 +43,21 @@ namespace tw {
 class Kernel {
  public:
   // ---- between runs; what concerns the future forgets and finds it anew ----
-  void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
-  void add_collision_observer(CollisionObserver observer, CollisionKind kind);
-  void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
+  void remove_callback(const Callback* callback);
+  void remove_callback(const CollisionCallback* callback);
+  CollisionObserverPtr add_collision_observer(CollisionObserver observer, CollisionKind kind,
+                                              Watch watch);
+  void remove_observer(const CollisionObserver* observer);
+  void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch);
   void edit(BodyId id, const std::function<void(StateView&)>& change);
   std::shared_ptr<const Checkpoint> checkpoint();  // checkpoint.cc
   void restore(const Checkpoint& checkpoint);
 
   // ---- the loop ----
   RunStatus advance(double until, double slice);
-  bool step(double until);
+  std::optional<StepReport> step(double until);
   void begin_run();
   void process_next();  // the event that the policy chooses
 
@@ -78,6 +82,8 @@ class Kernel {
 
  private:
   Progress process(const Event& event);
+  void take(const Event& event);  // processes, counts and validates
+  StepReport describe(const Event& event) const;
 
   WorkCount before_ = work_count;  // of other worlds in this thread
 };

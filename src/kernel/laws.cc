@@ -8,6 +8,7 @@
 #include "base/limits.h"
 #include "kernel/kernel.h"
 #include "kernel/reading.h"
+#include "kernel/state-view.h"
 
 namespace tw {
 namespace {
@@ -38,8 +39,9 @@ class ProcedureLaw final : public ForceLaw {
   std::shared_ptr<ForceProcedure> procedure_;
 };
 
-void add_law(Kernel& kernel, BodyId id, const ForceLawPtr& law) {
+ForceHandle add_law(Kernel& kernel, BodyId id, const ForceLawPtr& law) {
   kernel.edit(id, [&](StateView& view) { view.add_force(law); });
+  return {id, id, law};
 }
 
 }  // namespace
@@ -50,21 +52,41 @@ void require_constant(double value, const std::string& what, const char* unit) {
                  show(greatest_force_constant));
 }
 
-void add_drag(Kernel& kernel, BodyId id, double linear, double quadratic) {
+ForceHandle add_drag(Kernel& kernel, BodyId id, double linear, double quadratic) {
   const std::string& name = kernel.simulation.body(id).info.name;
   require_constant(linear, "linear drag of " + name, "N s/m");
   require_constant(quadratic, "quadratic drag of " + name, "N s^2/m^2");
-  add_law(kernel, id, make_drag(linear, quadratic));
+  return add_law(kernel, id, make_drag(linear, quadratic));
 }
 
-void add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure) {
+ForceHandle add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure) {
   const Body& body = kernel.simulation.body(id);
   TW_REQUIRE(body.dynamic(),
              "a force on " + body.info.name + " cannot move it; expected a dynamic body");
-  add_law(kernel, id,
-          std::make_shared<ProcedureLaw>(body, kernel.simulation.scene.gravity_scale(),
-                                         std::move(procedure)));
+  const auto law = std::make_shared<ProcedureLaw>(body, kernel.simulation.scene.gravity_scale(),
+                                                  std::move(procedure));
+  const ForceHandle force = add_law(kernel, id, law);
   kernel.simulation.calls_out = true;
+  return force;
+}
+
+bool acts(const Simulation& simulation, const ForceHandle& force) {
+  for (const BodyId id : {force.a, force.b}) {
+    if (id >= simulation.scene.bodies.size()) return false;
+    if (has(state_at(simulation, id, simulation.present.time)->forces, force.law.get()))
+      return true;
+  }
+  return false;
+}
+
+void remove_force(Kernel& kernel, const ForceHandle& force, const std::string& what) {
+  kernel.simulation.require_between_runs("a force was removed");
+  TW_REQUIRE(acts(kernel.simulation, force),
+             what + " does not act any more; expected one that was not removed, nor restored away");
+  kernel.editing.edit_pair(force.a, force.b, [&](SuccessorView& a, SuccessorView& b) {
+    a.let_go(force.law.get());
+    b.let_go(force.law.get());
+  });
 }
 
 }  // namespace tw

@@ -3,18 +3,22 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "kernel/definitions.h"
 
 namespace tw {
 
 class Kernel;
+struct Simulation;
 
 // UserError where a constant of a force is negative or not finite.
 void require_constant(double value, const std::string& what, const char* unit);
 
 // As of World (world.h); all are edits at the present time.
-void add_drag(Kernel& kernel, BodyId id, double linear, double quadratic);
-void add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure);
+ForceHandle add_drag(Kernel& kernel, BodyId id, double linear, double quadratic);
+ForceHandle add_force(Kernel& kernel, BodyId id, std::shared_ptr<ForceProcedure> procedure);
+bool acts(const Simulation& simulation, const ForceHandle& force);
+void remove_force(Kernel& kernel, const ForceHandle& force, const std::string& what);
 
 }  // namespace tw

@@ -81,7 +81,7 @@ std::unique_ptr<Body> make_body(const BodyDef& def, BodyId id, const std::string
   validate(def, name);
   auto body = std::make_unique<Body>();
   body->info = {id, name,      def.material, BodyKind::dynamic, def.shape,
-                0,  def.color, def.visible,  def.place};
+                0,  def.color, def.visible,  def.place,         def.visual};
   body->contact = {id, def.material};
   if (def.fixed || def.motion) {
     body->info.kind = def.fixed ? BodyKind::fixed : BodyKind::kinematic;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "integrate/moving-base.h"
+#include "multibody/couplings.h"
 #include "multibody/kinematics.h"
 
 namespace tw {
@@ -71,6 +72,7 @@ MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef
   for (const Axis& axis : tree.axes())
     if (!axis.ball)
       joints->q[static_cast<std::size_t>(axis.q)] = std::clamp(0.0, axis.law.lower, axis.law.upper);
+  follow_positions(tree, joints->q);
   if (def.free) {
     set_vector(joints->q.data(), def.position);
     set_quaternion(joints->q.data() + 3, def.orientation.normalized());
@@ -81,7 +83,7 @@ MultibodyStatePtr joints_at_birth(const Multibody& multibody, const MultibodyDef
 std::vector<BodyDef> link_bodies(const Multibody& multibody, const MultibodyDef& def,
                                  const MultibodyState& joints) {
   Kinematics k(multibody.tree);
-  multibody::Surroundings around;
+  multibody::BaseMotion around;
   around.base = multibody.base;
   place(multibody.tree, joints.q, joints.u, around, k);
   std::vector<BodyDef> bodies;

@@ -32,7 +32,7 @@ struct Present {
   bool begun = false;                     // the first run has begun
   std::vector<BodyId> newborn;            // came since the last run: nobody has met them yet
   PlacedTogether together;                // who touched whom where they were put last
-  SceneOptions settings;                  // gravity changes, the others only before the first run
+  SceneOptions settings;                  // accuracy and methods only before the first run
   std::uint64_t edits = 0, removals = 0;  // number the edits; bodies taken out
   HistorySum history;
   Counters counters;

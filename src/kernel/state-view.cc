@@ -22,10 +22,16 @@ void require_near(const Vec3& position, const std::string& name) {
 }
 
 void SuccessorView::require_dynamic(const char* what) const {
-  TW_REQUIRE(successor_.body->dynamic(),
-             std::string(what) + " of " + successor_.body->info.name +
-                 " cannot be changed; expected a dynamic body (this one is " +
-                 (successor_.body->fixed() ? "fixed)" : "kinematic)"));
+  const Body& body = *successor_.body;
+  const char* const why =
+      body.fixed()
+          ? "fixed; expected a dynamic body (remove-body!, and add-body! where it is to stand, "
+            "puts a fixed one elsewhere)"
+          : "kinematic: its #:motion says where it is at every time; expected a dynamic body, or a "
+            "#:motion (keyframes or a procedure) that goes there, given by add-body! after "
+            "remove-body!";
+  TW_REQUIRE(body.dynamic(),
+             std::string(what) + " of " + body.info.name + " cannot be changed, which is " + why);
 }
 
 void SuccessorView::require_no_link(const char* what) const {
@@ -41,7 +47,7 @@ void SuccessorView::change_joints(const std::function<void(MultibodyState&)>& ch
   MultibodyState changed = *successor_.joints;
   change(changed);
   if (changed == *successor_.joints) return;
-  check_joints(*successor_.body->multibody, *successor_.joints, key_.time, may_place_, changed);
+  check_joints(*successor_.body->multibody, *successor_.joints, key_.time, is_edit_, changed);
   start_arc();
   const bool placed = changed.q != successor_.joints->q;
   const bool moved = placed || changed.u != successor_.joints->u;
@@ -70,6 +76,7 @@ void SuccessorView::set_velocity(const Vec3& v) {
   TW_REQUIRE(v.norm() <= speed_limit, "the speed of " + successor_.body->info.name + " is " +
                                           show(v.norm()) + " m/s; expected at most " +
                                           show(speed_limit));
+  if (is_edit_ && v == state_.velocity) return;
   start_arc();
   successor_.data.v = successor_.point.v = state_.velocity = v;
 }
@@ -81,6 +88,7 @@ void SuccessorView::set_angular_velocity(const Vec3& w) {
   TW_REQUIRE(w.norm() <= greatest_angular_speed,
              "the angular velocity of " + successor_.body->info.name + " is " + show(w.norm()) +
                  " rad/s; expected at most " + show(greatest_angular_speed));
+  if (is_edit_ && w == state_.angular_velocity) return;
   start_arc();
   successor_.point.w = state_.angular_velocity = w;
   successor_.data.L = angular_momentum(*successor_.body, successor_.data.q, w);
@@ -128,10 +136,11 @@ void SuccessorView::add_force(ForceLawPtr law) {
   successor_.data.forces = with_law(successor_.data.forces, std::move(law));
 }
 
-void SuccessorView::tie(SuccessorView& other, const Bond& bond) {
+std::shared_ptr<const void> SuccessorView::tie(SuccessorView& other, const Bond& bond) {
   const Body &mine = *successor_.body, &theirs = *other.successor_.body;
   const bool both = mine.dynamic() && theirs.dynamic();
   const BondPtr shared = both ? std::make_shared<Bond>(bond) : nullptr;
+  std::shared_ptr<const void> tied = shared;
   for (SuccessorView* view : {this, &other}) {
     if (!view->successor_.body->dynamic()) continue;
     view->start_arc();
@@ -141,8 +150,17 @@ void SuccessorView::tie(SuccessorView& other, const Bond& bond) {
       continue;
     }
     const Body& anchor = mine.dynamic() ? theirs : mine;
-    forces = with_law(forces, make_anchored_bond(bond, anchor.motion, anchor.fixed()));
+    const ForceLawPtr law = make_anchored_bond(bond, anchor.motion, anchor.fixed());
+    forces = with_law(forces, law);
+    tied = law;
   }
+  return tied;
+}
+
+void SuccessorView::let_go(const void* law_or_bond) {
+  if (!has(successor_.data.forces, law_or_bond)) return;
+  start_arc();
+  successor_.data.forces = without(successor_.data.forces, law_or_bond);
 }
 
 void SuccessorView::attach(StateView& view, const HoldDef& hold) {
@@ -193,13 +211,14 @@ Wrench SuccessorView::joint_load(int link) const {
 void SuccessorView::set_slots(SlotsPtr slots) { successor_.data.slots = std::move(slots); }
 
 void SuccessorView::set_pose(const Vec3& position, const Quat& orientation) {
-  TW_ASSERT(may_place_, "set_pose is for edits");
-  require_dynamic("position");
+  TW_ASSERT(is_edit_, "set_pose is for edits");
+  require_dynamic("position or orientation");
   require_no_link("position or orientation");
   TW_REQUIRE(is_finite(position), "position of " + successor_.body->info.name + " is not finite");
   require_near(position, successor_.body->info.name);
   TW_REQUIRE(is_finite(orientation) && orientation.squaredNorm() > 0,
              "orientation of " + successor_.body->info.name + " is zero or not finite");
+  if (position == state_.position && orientation.coeffs() == state_.orientation.coeffs()) return;
   start_arc();
   successor_.placed = true;
   const Quat q = orientation.normalized();

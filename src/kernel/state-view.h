@@ -20,12 +20,12 @@ class SuccessorView : public StateView {
  public:
   // `before`: the state that it succeeds; outlives the view.
   SuccessorView(const Scene& scene, const State& before, Successor& successor, const Key& key,
-                bool may_place)
+                bool is_edit)
       : scene_(scene),
         before_(before),
         successor_(successor),
         key_(key),
-        may_place_(may_place),
+        is_edit_(is_edit),
         state_(body_state(*successor.body, successor.point)) {}
 
   BodyId body() const override { return successor_.body->id(); }
@@ -51,8 +51,10 @@ class SuccessorView : public StateView {
   void attach(StateView& other, const HoldDef& hold) override;
   void detach(StateView& other) override;
   bool attached(const StateView& other) const override;
-  // Ties the two from here on.
-  void tie(SuccessorView& other, const Bond& bond);
+  // Ties the two from here on, by the bond or law that it returns.
+  std::shared_ptr<const void> tie(SuccessorView& other, const Bond& bond);
+  // Without that law or bond from here on, if it has it.
+  void let_go(const void* law_or_bond);
   void set_pose(const Vec3& position, const Quat& orientation) override;
   double draw_random() override;
 
@@ -65,7 +67,7 @@ class SuccessorView : public StateView {
   const State& before_;
   Successor& successor_;
   Key key_;
-  bool may_place_;
+  bool is_edit_;  // it may be placed elsewhere, and what changes nothing starts no arc
   BodyState state_;
 };
 

@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "groups/joints.h"
 #include "kernel/bonds.h"
+#include "kernel/contact-edits.h"
 #include "kernel/kernel.h"
 #include "kernel/laws.h"
 #include "kernel/reading.h"
@@ -20,26 +21,57 @@ World::~World() = default;
 const WorldOptions& World::options() const { return kernel_->simulation.options; }
 const Vec3& World::gravity() const { return kernel_->simulation.present.settings.gravity; }
 
-void World::set_gravity(const Vec3& gravity) {
-  TW_REQUIRE(gravity.norm() <= greatest_acceleration, "gravity is " + show(gravity.norm()) +
-                                                          " m/s^2; expected at most " +
-                                                          show(greatest_acceleration));
-  kernel_->editing.set_gravity(gravity);
+void World::set(const SettingChanges& changes) {
+  Simulation& simulation = kernel_->simulation;
+  // all is looked at before anything is set
+  simulation.require_between_runs("a setting was changed");
+  if (const auto& gravity = changes.gravity) {
+    TW_REQUIRE(is_finite(*gravity), "gravity is not finite; expected #(x y z) in m/s^2");
+    TW_REQUIRE(gravity->norm() <= greatest_acceleration, "gravity is " + show(gravity->norm()) +
+                                                             " m/s^2; expected at most " +
+                                                             show(greatest_acceleration));
+  }
+  if (const auto& accuracy = changes.accuracy) {
+    simulation.require_before_first_run("accuracy was set");
+    TW_REQUIRE(*accuracy >= 1e-12 && *accuracy <= 1e-1,
+               "accuracy is " + show(*accuracy) + "; expected a relative error from 1e-12 to 0.1");
+  }
+  if (const auto& seed = changes.seed) {
+    simulation.require_before_first_run("the seed was set");
+    TW_REQUIRE(simulation.scene.bodies.empty() || simulation.options.seed == *seed,
+               "the seed was set after bodies were added; expected it before them");
+  }
+  if (const auto& rate = changes.group_check_rate) {
+    TW_REQUIRE(*rate > 0 && std::isfinite(*rate),
+               "group-check-rate is " + show(*rate) + " Hz; expected a positive number");
+    TW_REQUIRE(*rate >= 1 && *rate <= greatest_rate, "group-check-rate is " + show(*rate) +
+                                                         " Hz; expected a rate from 1 to " +
+                                                         show(greatest_rate) + " Hz");
+    simulation.require_before_first_run("group-check-rate was set");
+  }
+  std::unique_ptr<Policy> policy;
+  if (changes.policy) {
+    policy = make_policy(*changes.policy);
+    simulation.require_before_first_run("the policy was set");
+  }
+
+  SceneOptions& settings = simulation.present.settings;
+  if (changes.push_overlaps && *changes.push_overlaps != settings.push_overlaps) {
+    if (simulation.present.begun) kernel_->discontinuities.restart_future();
+    settings.push_overlaps = *changes.push_overlaps;
+  }
+  if (changes.accuracy) settings.accuracy = *changes.accuracy;
+  if (changes.seed) simulation.options.seed = *changes.seed;
+  if (changes.group_check_rate) settings.group_check_rate = *changes.group_check_rate;
+  if (policy) simulation.policy = std::move(policy);
+  if (changes.gravity) kernel_->editing.set_gravity(*changes.gravity);
 }
 
-void World::set_accuracy(double accuracy) {
-  kernel_->simulation.require_before_first_run("accuracy was set");
-  TW_REQUIRE(accuracy >= 1e-12 && accuracy <= 1e-1,
-             "accuracy is " + show(accuracy) + "; expected a relative error from 1e-12 to 0.1");
-  kernel_->simulation.present.settings.accuracy = accuracy;
-}
-
-void World::set_seed(std::uint64_t seed) {
-  kernel_->simulation.require_before_first_run("the seed was set");
-  TW_REQUIRE(kernel_->simulation.scene.bodies.empty() || kernel_->simulation.options.seed == seed,
-             "the seed was set after bodies were added; expected it before them");
-  kernel_->simulation.options.seed = seed;
-}
+void World::set_gravity(const Vec3& gravity) { set({.gravity = gravity}); }
+void World::set_accuracy(double accuracy) { set({.accuracy = accuracy}); }
+void World::set_seed(std::uint64_t seed) { set({.seed = seed}); }
+void World::set_group_check_rate(double rate) { set({.group_check_rate = rate}); }
+void World::set_policy(const std::string& policy) { set({.policy = policy}); }
 
 void World::set_hash(bool on) {
   kernel_->simulation.require_before_first_run("the hash was turned on or off");
@@ -72,16 +104,6 @@ void World::set_window_cells(double cells) {
   kernel_->simulation.options.window_cells = cells;
 }
 
-void World::set_group_check_rate(double rate) {
-  TW_REQUIRE(rate > 0 && std::isfinite(rate),
-             "group-check-rate is " + show(rate) + " Hz; expected a positive number");
-  TW_REQUIRE(rate >= 1 && rate <= greatest_rate, "group-check-rate is " + show(rate) +
-                                                     " Hz; expected a rate from 1 to " +
-                                                     show(greatest_rate) + " Hz");
-  kernel_->simulation.require_before_first_run("group-check-rate was set");
-  kernel_->simulation.present.settings.group_check_rate = rate;
-}
-
 void World::set_adversary(std::optional<AdversaryOptions> adversary) {
   kernel_->simulation.require_before_first_run("the adversary scheduler was set");
   kernel_->simulation.options.adversary = adversary;
@@ -94,8 +116,6 @@ void World::set_integrator(const std::string& integrator) {
              "the integrator was set when there were bodies; expected it before the first");
   kernel_->simulation.present.settings.cash_karp = integrator == "rk45";
 }
-
-void World::set_policy(const std::string& policy) { set_policy(make_policy(policy)); }
 
 void World::set_policy(std::unique_ptr<Policy> policy) {
   kernel_->simulation.require_before_first_run("the policy was set");
@@ -144,28 +164,47 @@ std::optional<BodyId> World::find_body(const std::string& name) const {
 
 void World::set_contact(const ContactSide& a, const ContactSide& b,
                         const ContactSettings& settings) {
-  kernel_->set_contact(a, b, settings);
+  const std::pair<ContactSide, ContactSide> sides[] = {{a, b}};
+  set_contact(sides, settings);
+}
+void World::set_contact(std::span<const std::pair<ContactSide, ContactSide>> sides,
+                        const ContactSettings& settings) {
+  tw::set_contact(*kernel_, sides, settings);
 }
 
 ContactParameters World::contact_parameters(BodyId a, BodyId b) const {
-  return kernel_->simulation.scene.contacts.between(a, b);
+  const Scene& scene = kernel_->simulation.scene;
+  const Body &one = scene.body(a), &other = scene.body(b);
+  ContactParameters parameters = scene.contacts.between(a, b);
+  parameters.collide = a != b && one.shape_P && other.shape_P &&
+                       (one.dynamic() || other.dynamic()) && scene.may_collide(one, other);
+  return parameters;
 }
 
-void World::add_drag(BodyId id, double linear, double quadratic) {
-  tw::add_drag(*kernel_, id, linear, quadratic);
+bool World::joined(BodyId a, BodyId b) const {
+  const Scene& scene = kernel_->simulation.scene;
+  return Scene::are_neighbours(scene.body(a), scene.body(b));
 }
-void World::add_spring(const SpringDef& def) { tw::add_spring(*kernel_, def); }
+
+ForceHandle World::add_drag(BodyId id, double linear, double quadratic) {
+  return tw::add_drag(*kernel_, id, linear, quadratic);
+}
+ForceHandle World::add_spring(const SpringDef& def) { return tw::add_spring(*kernel_, def); }
 void World::attach(BodyId a, BodyId b, const HoldDef& def) { tw::attach(*kernel_, a, b, def); }
 void World::detach(BodyId a, BodyId b) { tw::detach(*kernel_, a, b); }
 bool World::attached(BodyId a, BodyId b) const { return attached(a, b, time()); }
 bool World::attached(BodyId a, BodyId b, double when) const {
   return tw::attached(kernel_->simulation, a, b, when);
 }
-void World::add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure) {
-  tw::add_force(*kernel_, id, std::move(procedure));
+ForceHandle World::add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure) {
+  return tw::add_force(*kernel_, id, std::move(procedure));
+}
+bool World::acts(const ForceHandle& force) const { return tw::acts(kernel_->simulation, force); }
+void World::remove_force(const ForceHandle& force, const std::string& what) {
+  tw::remove_force(*kernel_, force, what);
 }
 
-std::uint64_t World::removals() const { return kernel_->simulation.present.removals; }
+std::uint64_t World::serial(BodyId id) const { return kernel_->bodies.serial(id); }
 void World::remove_body(BodyId id) { kernel_->bodies.remove(id); }
 
 std::uint64_t World::add_callback(const CallbackDef& def) { return kernel_->add_callback(def); }
@@ -174,15 +213,32 @@ void World::add_collision_callback(const CollisionCallbackDef& def) {
   kernel_->add_collision_callback(def);
 }
 
-void World::add_collision_observer(CollisionObserver observer, CollisionKind kind) {
-  kernel_->add_collision_observer(std::move(observer), kind);
+void World::remove_callback(const Callback* callback) { kernel_->remove_callback(callback); }
+void World::remove_callback(const CollisionCallback* callback) {
+  kernel_->remove_callback(callback);
 }
 
-void World::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps) {
-  kernel_->add_frame_sink(std::move(sink), fps);
+CollisionObserverPtr World::add_collision_observer(CollisionObserver observer, CollisionKind kind,
+                                                   Watch watch) {
+  return kernel_->add_collision_observer(std::move(observer), kind, watch);
+}
+void World::remove_observer(const CollisionObserver* observer) {
+  kernel_->remove_observer(observer);
 }
 
-void World::remove_frame_sink(const FrameSink* sink) { kernel_->delivery.remove_sink(sink); }
+void World::add_frame_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch) {
+  kernel_->add_frame_sink(std::move(sink), fps, watch);
+}
+
+bool World::remove_frame_sink(const FrameSink* sink) { return kernel_->delivery.remove_sink(sink); }
+std::vector<double> World::frame_rates() const { return kernel_->delivery.rates(); }
+
+bool World::has(const Callback* callback) const { return kernel_->callbacks.is_called(callback); }
+bool World::has(const CollisionCallback* callback) const {
+  return kernel_->impacts.is_called(callback);
+}
+bool World::has(const CollisionObserver* observer) const { return kernel_->delivery.has(observer); }
+bool World::has(const FrameSink* sink) const { return kernel_->delivery.has(sink); }
 
 double World::time() const { return kernel_->simulation.present.time; }
 
@@ -192,7 +248,7 @@ RunStatus World::advance(double until, double slice) {
   return kernel_->advance(until, slice);
 }
 
-bool World::step(double until) { return kernel_->step(until); }
+std::optional<StepReport> World::step(double until) { return kernel_->step(until); }
 bool World::running() const { return kernel_->simulation.running; }
 
 BodyState World::state(BodyId id) const {

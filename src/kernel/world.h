@@ -8,7 +8,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -27,9 +29,26 @@ class Kernel;
 class Policy;
 struct Checkpoint;
 
+// Settings that scenes make; absent: as it is.
+struct SettingChanges {
+  std::optional<Vec3> gravity = {};             // m/s^2
+  std::optional<double> accuracy = {};          // this and the others before the first run
+  std::optional<std::uint64_t> seed = {};       // and before the first body
+  std::optional<double> group_check_rate = {};  // Hz
+  std::optional<std::string> policy = {};
+  std::optional<bool> push_overlaps = {};  // what overlaps deeply where it is put is pushed apart
+};
+
 enum class RunStatus {
   finished,   // everything up to and including `until` is committed and observed
   slice_over  // the slice's time is up; call again
+};
+
+// An event that a step has processed, for the curious.
+struct StepReport {
+  const char* kind = "";  // advance, check, impact, callback or group-check
+  double time = 0;        // s
+  std::vector<BodyId> bodies;
 };
 
 // One state kept in a body's queue, for the curious.
@@ -47,6 +66,8 @@ class World {
   World& operator=(const World&) = delete;
 
   // ---- settings; most only before the first run ----
+  // All that are given or, where one is refused, none.
+  void set(const SettingChanges& changes);
   const WorldOptions& options() const;
   const Vec3& gravity() const;            // m/s^2, at time()
   void set_gravity(const Vec3& gravity);  // from now on
@@ -84,18 +105,29 @@ class World {
   // removed before.
   void remove_body(BodyId id);
   std::size_t body_count() const;  // removed ones, too
-  std::uint64_t removals() const;  // how many were removed
+  // Tells the body from all others that this world ever had, also from one that had its number
+  // before a restore.
+  std::uint64_t serial(BodyId id) const;
   const BodyInfo& body(BodyId id) const;
   std::optional<BodyId> find_body(const std::string& name) const;
 
   void set_contact(const ContactSide& a, const ContactSide& b, const ContactSettings& settings);
+  // The same for several pairs of sides, for all or none.
+  void set_contact(std::span<const std::pair<ContactSide, ContactSide>> sides,
+                   const ContactSettings& settings);
+  // `collide`: whether they do.
   ContactParameters contact_parameters(BodyId a, BodyId b) const;
+  // Whether a joint joins them: they collide only by a rule that names both.
+  bool joined(BodyId a, BodyId b) const;
 
   // ---- forces, from time() on, beside those that act already ----
   // -(linear + quadratic |v|) v at the centre of mass, N s/m and N s^2/m^2.
-  void add_drag(BodyId id, double linear, double quadratic);
-  void add_spring(const SpringDef& def);
-  void add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure);
+  ForceHandle add_drag(BodyId id, double linear, double quadratic);
+  ForceHandle add_spring(const SpringDef& def);
+  ForceHandle add_force(BodyId id, std::shared_ptr<ForceProcedure> procedure);
+  // Whether it acts at time(); takes it away.  Errors: it does not act; `what` it is.
+  bool acts(const ForceHandle& force) const;
+  void remove_force(const ForceHandle& force, const std::string& what);
 
   // Holds the two as they are; lets go of them; whether they are held.  Errors: as of make_hold
   // (kernel/bonds.h); what is not held cannot be detached.
@@ -107,14 +139,27 @@ class World {
   // Number of the callback, counted from 0 in order of registration.
   std::uint64_t add_callback(const CallbackDef& def);
   void add_collision_callback(const CollisionCallbackDef& def);
+  // Between runs: no more calls from time() on.  Errors: it is not there.
+  void remove_callback(const Callback* callback);
+  void remove_callback(const CollisionCallback* callback);
   // Called at commit, once each, in time order, for what is of this kind.
-  void add_collision_observer(CollisionObserver observer,
-                              CollisionKind kind = CollisionKind::collision);
+  CollisionObserverPtr add_collision_observer(CollisionObserver observer,
+                                              CollisionKind kind = CollisionKind::collision,
+                                              Watch watch = Watch::outside);
+  // Between runs.  Errors: it is not there.
+  void remove_observer(const CollisionObserver* observer);
   // fps > 0.  Several sinks with different rates are served in time order.  Frames before time()
   // are not delivered again.
-  void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps);
-  // Removes a sink added before.
-  void remove_frame_sink(const FrameSink* sink);
+  void add_frame_sink(std::shared_ptr<FrameSink> sink, double fps, Watch watch = Watch::outside);
+  // Removes a sink added before; false: there is no such one.
+  bool remove_frame_sink(const FrameSink* sink);
+  // The rates of those that there are, frames per second.
+  std::vector<double> frame_rates() const;
+  // Whether they are there.
+  bool has(const Callback* callback) const;
+  bool has(const CollisionCallback* callback) const;
+  bool has(const CollisionObserver* observer) const;
+  bool has(const FrameSink* sink) const;
 
   // ---- running ----
   double time() const;  // last committed time
@@ -122,8 +167,8 @@ class World {
   // Raises what a callback raised, once it is final, and UserError; the world stays usable, at its
   // last committed time.  Interrupted passes through.
   RunStatus advance(double until, double slice = never);
-  // Processes one event; false if there is none before `until`.
-  bool step(double until = never);
+  // Processes one event and tells which; nothing if there is none before `until`.
+  std::optional<StepReport> step(double until = never);
   // Before the run and after it nobody is inside the kernel; during an advance this is true.
   bool running() const;
 
@@ -145,7 +190,8 @@ class World {
   // A discontinuity of kind `edit` at time(): `change` gets a view of the body.
   void edit(BodyId id, const std::function<void(StateView&)>& change);
   // The committed present, to come back to; delivers first what an interrupt or an observer's error
-  // has left. Bodies and callbacks must be the same at restore.  Frames go on where they stood.
+  // has left.  Bodies, rules of contact, callbacks and observers of the scene are part of it: what
+  // came since is gone after restore, what was removed is back.  Frames go on where they stood.
   std::shared_ptr<const Checkpoint> checkpoint();
   void restore(const Checkpoint& checkpoint);
   std::vector<QueuedState> state_queue(BodyId id) const;

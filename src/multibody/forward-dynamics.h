@@ -7,9 +7,10 @@
 // is that of one instant.  Nothing is transformed on the way: all is about one point, in world
 // axes.
 //
-// U and D are kept: they are M = L D L^T, and serve impulses (impulses.h).
+// U and D are kept: they are M = L D L^T, and serve impulses (impulses.h).  Joints that follow
+// others (couplings.h) have their part taken out at the end.
 //
-// Cost: O(nodes).
+// Cost: O(nodes), so many times more as there are joints that follow, and one.
 //
 // Source: R. Featherstone, Rigid Body Dynamics Algorithms (2008), section 7.3; the bias forces from
 // accelerations at u' = 0 instead of those of one joint at a time.
@@ -17,6 +18,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include "multibody/couplings.h"
 #include "multibody/kinematics.h"
 
 namespace tw::multibody {
@@ -36,6 +38,8 @@ class Articulation {
     double inverse_D = 0, t = 0;
   };
   std::vector<Dof> dofs;
+
+  CouplingFactors couplings;  // of joints that follow others
 
   ArticulatedInertia& inertia_of(int node) { return inertia[static_cast<std::size_t>(node)]; }
   Force& bias_of(int node) { return bias[static_cast<std::size_t>(node)]; }

@@ -42,14 +42,38 @@ Eigen::Matrix<double, n, n> gather(const Factored& f, int link, const Vec3& poin
   return K;
 }
 
+// Velocities of a point of the link, and its turns where n is 6, by the columns of W: n rows.
+template <int n>
+Eigen::Matrix<double, n, Eigen::Dynamic> moved_by_couplings(const Factored& f, int link,
+                                                            const Vec3& point) {
+  const CouplingFactors& c = f.a.couplings;
+  Eigen::Matrix<double, n, Eigen::Dynamic> B(n, c.W.cols());
+  for (Eigen::Index g = 0; g < B.cols(); ++g) {
+    const Motion& motion =
+        c.moved[static_cast<std::size_t>(g)][static_cast<std::size_t>(f.tree.link(link).node)];
+    B.template block<3, 1>(0, g) = motion.v + motion.w.cross(point - f.k.origin);
+    if constexpr (n == 6) B.template block<3, 1>(3, g) = motion.w;
+  }
+  return B;
+}
+
+template <int n>
+Eigen::Matrix<double, n, n> answer_of(const Factored& f, int link, const Vec3& point) {
+  Eigen::Matrix<double, n, n> K = gather<n>(f, link, point);
+  if (f.tree.couplings().empty()) return K;
+  const auto B = moved_by_couplings<n>(f, link, point);
+  K -= B * f.a.couplings.inverse * B.transpose();
+  return K;
+}
+
 }  // namespace
 
 Mat3 inverse_inertia(const Factored& f, int link, const Vec3& point) {
-  return gather<3>(f, link, point);
+  return answer_of<3>(f, link, point);
 }
 
 Mat6 spatial_inverse_inertia(const Factored& f, int link, const Vec3& point) {
-  return gather<6>(f, link, point);
+  return answer_of<6>(f, link, point);
 }
 
 InverseInertias inverse_inertias(const Factored& f, int a, const Vec3& point_a, int b,
@@ -62,7 +86,7 @@ InverseInertias inverse_inertias(const Factored& f, int a, const Vec3& point_a, 
     const int d = da > db ? da : db;
     const bool of_a = d == da, of_b = d == db;
     const Articulation::Dof& dof = f.a.dof(d);
-    Vec3 ya, yb;
+    Vec3 ya = Vec3::Zero(), yb = Vec3::Zero();
     if (of_a) ya = pass<3>(f.k.axis(d), dof, Fa);
     if (of_b) yb = pass<3>(f.k.axis(d), dof, Fb);
     if (of_a) K.aa += (dof.inverse_D * ya) * ya.transpose();
@@ -71,6 +95,12 @@ InverseInertias inverse_inertias(const Factored& f, int a, const Vec3& point_a, 
     if (of_a) da = f.tree.dof_parent(da);
     if (of_b) db = f.tree.dof_parent(db);
   }
+  if (f.tree.couplings().empty()) return K;
+  const auto Ba = moved_by_couplings<3>(f, a, point_a), Bb = moved_by_couplings<3>(f, b, point_b);
+  const Eigen::MatrixXd& inverse = f.a.couplings.inverse;
+  K.aa -= Ba * inverse * Ba.transpose();
+  K.ab -= Ba * inverse * Bb.transpose();
+  K.bb -= Bb * inverse * Bb.transpose();
   return K;
 }
 
@@ -83,7 +113,9 @@ double inverse_inertia_of_dof(const Factored& f, int dof) {
     sum += y * y * inverse;
     F.add(f.a.dof(d).U, -y * inverse);
   }
-  return sum;
+  if (f.tree.couplings().empty()) return sum;
+  const Eigen::RowVectorXd w = f.a.couplings.W.row(dof);
+  return sum - (w * f.a.couplings.inverse * w.transpose()).value();
 }
 
 ImpulseWork::ImpulseWork(const Tree& tree)
@@ -118,6 +150,7 @@ void velocity_change(const Factored& f, std::span<const LinkImpulse> impulses, I
     }
     work.change[static_cast<std::size_t>(i)] = change;
   }
+  if (!f.tree.couplings().empty()) take_excess(f.tree, f.a.couplings, du, work.change);
 }
 
 }  // namespace tw::multibody

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "math/rotation-vector.h"
+#include "multibody/couplings.h"
 #include "multibody/jacobian.h"
 #include "multibody/limits.h"
 
@@ -43,7 +44,7 @@ double reach_of(const Tree& tree, const Target& target, In q) {
 
 class Search {
  public:
-  Search(const Tree& tree, const Surroundings& around, const Target& target, In start,
+  Search(const Tree& tree, const BaseMotion& around, const Target& target, In start,
          double tolerance)
       : tree_(tree),
         around_(around),
@@ -81,7 +82,7 @@ class Search {
                 std::vector<double>& trial);
 
   const Tree& tree_;
-  const Surroundings& around_;
+  const BaseMotion& around_;
   const Target& target_;
   double reach_, tolerance_;
   Kinematics k_;
@@ -118,6 +119,10 @@ void Search::set_jacobian() {
     column.head<3>() += w.cross(arm);
     column.tail<3>() *= target_.attitude ? turn_weight * reach_ : 0;
   }
+  for (const Coupling& c : tree_.couplings()) {
+    J_.col(c.leader) += c.ratio * J_.col(c.follower);
+    J_.col(c.follower).setZero();
+  }
 }
 
 // Takes out what is at a limit and pushed against it.
@@ -150,6 +155,7 @@ void Search::cut(std::vector<double>& q) const {
     double* at = &q[static_cast<std::size_t>(axis->q)];
     set_quaternion(at, within_limit(*axis, quaternion_at(at)));
   }
+  follow_positions(tree_, q);
 }
 
 // z is the damped step of the joints that are free, given how far those at their limits go; who
@@ -186,6 +192,7 @@ void Search::try_step(const Vec6& e, double damping, const std::vector<double>& 
   }
   if (longest > longest_step)
     for (double& x : z_) x *= longest_step / longest;
+  follow(tree_, z_);
   displace(tree_, q, z_, trial);
   cut(trial);
 }
@@ -244,7 +251,7 @@ void Search::draw(Random& random, In given, std::vector<double>& q) const {
 
 }  // namespace
 
-Reached inverse_kinematics(const Tree& tree, const Surroundings& around, const Target& target,
+Reached inverse_kinematics(const Tree& tree, const BaseMotion& around, const Target& target,
                            In start, const SearchOptions& options) {
   TW_REQUIRE(target.link >= 0 && target.link < tree.link_count(),
              "link is " + std::to_string(target.link) + "; expected a number from 0 to " +

@@ -48,7 +48,7 @@ struct Reached {
 
 // `start` (nq): where to begin, and where free links are.  Errors: an unknown link, numbers that
 // are not finite, a tolerance that is not positive, no starts.
-Reached inverse_kinematics(const Tree& tree, const Surroundings& around, const Target& target,
+Reached inverse_kinematics(const Tree& tree, const BaseMotion& around, const Target& target,
                            In start, const SearchOptions& options = {});
 
 }  // namespace tw::multibody

@@ -7,6 +7,7 @@
 
 #include "base/constants.h"
 #include "base/error.h"
+#include "dynamics/second-hardening.h"
 #include "multibody/limits.h"
 
 namespace tw::multibody {
@@ -53,13 +54,22 @@ Scalar servo(const AxisInputs& in, const Inputs& inputs, double q, double u) {
   return {torque, -gains.stiffness, -gains.damping, 1};
 }
 
+// A stiffness that was given is all there is.
+SecondHardening firm_stop(const Axis& axis) {
+  if (axis.law.stop_stiffness) return {};
+  return SecondHardening::of(answer::stop_limit * axis.unit, answer::stop_depth * axis.unit);
+}
+
 // Of what is limited and its rate; `side` is +1 at the lower limit: the way out.
 Scalar stop(const Axis& axis, double side, double q, double u) {
   const double limit = side > 0 ? axis.law.lower : axis.law.upper;
   const double depth = side * (limit - q), rate = -side * u;
   const double k = axis.stop_stiffness, b = stop_damping(axis);
   if (!(depth > 0 && 1 + b * rate > 0)) return {};
-  return {side * k * depth * (1 + b * rate), -k * (1 + b * rate), -k * depth * b, 1};
+  const SecondHardening firm = firm_stop(axis);
+  const double hard = k * (1 + firm.hardness(depth));
+  const double by_depth = hard + k * depth * firm.slope(depth);
+  return {side * hard * depth * (1 + b * rate), -by_depth * (1 + b * rate), -hard * depth * b, 1};
 }
 
 Scalar stop(const Axis& axis, const AxisInputs& in, double q, double u) {
@@ -181,6 +191,15 @@ void require_gain(double value, bool may_be_infinite, const std::string& what) {
 }
 
 }  // namespace
+
+double stop_rigidity(const Axis& axis, Stop stop, In q) {
+  if (stop == Stop::none) return 0;
+  const double at = limited(axis, q);
+  const double depth = stop == Stop::lower ? axis.law.lower - at : at - axis.law.upper;
+  const SecondHardening firm = firm_stop(axis);
+  const double more = firm.hardness(depth) + depth * firm.slope(depth);
+  return axis.stop_stiffness * (1 + more);
+}
 
 double friction_speed(const Axis& axis) { return answer::joint_friction_speed * axis.slow; }
 

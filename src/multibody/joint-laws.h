@@ -6,7 +6,8 @@
 //   friction     -f u / sqrt(u^2 + v0^2), v0 its friction_speed
 //   spring       -k (q - rest)
 //   servo        kp (target - q) + kd (target velocity - u), cut to +-max torque
-//   stop         k d (1 + b d') where positive, else 0; d the depth beyond the limit
+//   stop         k d (1 + H s^4) (1 + b d') where positive, else 0; d the depth beyond the limit
+//                (H s^4: dynamics/second-hardening.h)
 // Of a spherical joint the same with vectors in the link's frame: of the angle, the vector
 // 2 e.w e.vec() of the quaternion e from rest (target) to the joint's position, sin(angle) axis,
 // whose potential k (1 - cos angle) is smooth everywhere; friction and the cut by length; the stop
@@ -73,6 +74,8 @@ bool unforeseen_torques(const Tree& tree, const JointMotion& from, const JointMo
 // The largest error of a joint with friction against how fast it moves, or slides at least: beyond
 // 1 it is nothing but error which way friction acts.
 double friction_doubt(const Tree& tree, In u, In error);
+// dT/dd of the stop that it leans on, or would begin to, at positions q and rest, N m/rad or N/m.
+double stop_rigidity(const Axis& axis, Stop stop, In q);
 // b, s/rad or s/m, of an axis' stop: restitution e at stop_speed.
 double stop_damping(const Axis& axis);
 // What is slower than this at its stop leans on it, rad/s or m/s.

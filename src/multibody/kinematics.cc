@@ -50,13 +50,13 @@ void place_floating(const NodeMotion& world, const Vec3& origin, const double* q
   node.A.v -= w.cross(v);
 }
 
-Vec3 default_origin(const Tree& tree, In q, const Surroundings& around) {
+Vec3 default_origin(const Tree& tree, In q, const BaseMotion& around) {
   const bool free =
       tree.node_count() > first_node && tree.node(first_node).kind == NodeKind::floating;
   return free ? vector_at(q.data()) : around.base.p;
 }
 
-void place_base(const Surroundings& around, Kinematics& k) {
+void place_base(const BaseMotion& around, Kinematics& k) {
   NodeMotion& world = k.node(world_node);
   world.R = Mat3::Identity();
   world.r = -k.origin;
@@ -81,7 +81,7 @@ Kinematics::Kinematics(const Tree& tree)
     : nodes(static_cast<std::size_t>(tree.node_count())),
       axes(static_cast<std::size_t>(tree.nv())) {}
 
-void place(const Tree& tree, In q, In u, const Surroundings& around, const Vec3& origin,
+void place(const Tree& tree, In q, In u, const BaseMotion& around, const Vec3& origin,
            Kinematics& k) {
   k.origin = origin;
   place_base(around, k);
@@ -116,7 +116,7 @@ void place(const Tree& tree, In q, In u, const Surroundings& around, const Vec3&
   }
 }
 
-void place(const Tree& tree, In q, In u, const Surroundings& around, Kinematics& k) {
+void place(const Tree& tree, In q, In u, const BaseMotion& around, Kinematics& k) {
   place(tree, q, u, around, default_origin(tree, q, around), k);
 }
 

@@ -21,7 +21,7 @@
 namespace tw::multibody {
 
 // Gravity, and the base with its motion; all in the world.
-struct Surroundings {
+struct BaseMotion {
   Vec3 gravity = Vec3::Zero();                  // m/s^2
   Frame base;                                   // m
   Vec3 v = Vec3::Zero(), w = Vec3::Zero();      // of the base's origin, m/s; rad/s
@@ -60,9 +60,9 @@ class Kinematics {
 
 // Fills `k` from q (nq, unit quaternions) and u (nv); wrenches are 0 then.  Base and gravity stand
 // still or move as they are given.
-void place(const Tree& tree, In q, In u, const Surroundings& around, Kinematics& k);
+void place(const Tree& tree, In q, In u, const BaseMotion& around, Kinematics& k);
 // The same about a given origin.
-void place(const Tree& tree, In q, In u, const Surroundings& around, const Vec3& origin,
+void place(const Tree& tree, In q, In u, const BaseMotion& around, const Vec3& origin,
            Kinematics& k);
 
 // Of a link's frame, in the world: m; m/s of its origin, rad/s.

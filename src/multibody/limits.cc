@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "math/rotation-vector.h"
 
 namespace tw::multibody {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 LimitedAngle limited_angle(const Axis& axis, const Quat& q) {
   LimitedAngle result;
   Vec3 direction;
@@ -37,22 +32,22 @@ LimitedAngle limited_angle(const Axis& axis, const Quat& q) {
 }
 
 double limited(const Axis& axis, In q) {
-  return axis.ball ? limited_angle(axis, quaternion_at(&q[at(axis.q)])).angle : q[at(axis.q)];
+  return axis.ball ? limited_angle(axis, quaternion_at(&q[index(axis.q)])).angle : q[index(axis.q)];
 }
 
 double limited_rate(const Axis& axis, In q, In u) {
-  if (!axis.ball) return u[at(axis.u)];
-  const Vec3 n = limited_angle(axis, quaternion_at(&q[at(axis.q)])).direction;
-  return n.dot(vector_at(&u[at(axis.u)]));
+  if (!axis.ball) return u[index(axis.u)];
+  const Vec3 n = limited_angle(axis, quaternion_at(&q[index(axis.q)])).direction;
+  return n.dot(vector_at(&u[index(axis.u)]));
 }
 
 void set_along_limited(const Axis& axis, In q, double magnitude, Out force) {
   std::fill(force.begin(), force.end(), 0.0);
   if (axis.ball) {
-    const Vec3 n = limited_angle(axis, quaternion_at(&q[at(axis.q)])).direction;
-    set_vector(&force[at(axis.u)], magnitude * n);
+    const Vec3 n = limited_angle(axis, quaternion_at(&q[index(axis.q)])).direction;
+    set_vector(&force[index(axis.u)], magnitude * n);
   } else {
-    force[at(axis.u)] = magnitude;
+    force[index(axis.u)] = magnitude;
   }
 }
 

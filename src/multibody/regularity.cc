@@ -55,7 +55,7 @@ int undetermined_dof(const Tree& tree) {
     neutral_position(tree, q);
     for (double& x : z) x = random.real(-1, 1);
     displace(tree, q, z, q);
-    place(tree, q, u, Surroundings(), k);
+    place(tree, q, u, BaseMotion(), k);
     lost = lost_dof(tree, k, a);
     if (lost < 0) break;
   }

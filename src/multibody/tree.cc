@@ -68,6 +68,8 @@ Tree::Tree(const std::vector<LinkSpec>& links) {
     require_earlier_parent(links, i);
     add_link(links[i]);
   }
+  for (const LinkSpec& link : links)
+    if (link.joint.follows) add_coupling(link);
   require_regular();
   set_gravity(answer::standard_gravity);
 }
@@ -76,6 +78,38 @@ int Tree::find(const std::string& name) const {
   for (std::size_t i = 0; i < links_.size(); ++i)
     if (links_[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+int Tree::find_joint(const std::string& name) const {
+  // one that has a name of its own goes before a link that is called so
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (links_[i].joint_name == name && links_[i].name != name) return static_cast<int>(i);
+  return find(name);
+}
+
+void Tree::add_coupling(const LinkSpec& spec) {
+  const FollowSpec& given = *spec.joint.follows;
+  const Link& own = link(find(spec.name));
+  const std::string of = "the joint " + own.joint_name + ", which follows " + given.joint;
+  const int found = find_joint(given.joint);
+  TW_REQUIRE(found >= 0, of + ", follows no joint; expected one of the multibody's");
+  const Link& leads = link(found);
+  for (const Link* l : {&own, &leads})
+    TW_REQUIRE(l->dofs == 1, of + ", has to do with one, " + l->joint_name + ", that has " +
+                                 std::to_string(l->dofs) +
+                                 " freedoms; expected two joints with one each");
+  TW_REQUIRE(std::isfinite(given.ratio) && std::isfinite(given.offset),
+             of + ", does so by " + show(given.ratio) + " and " + show(given.offset) +
+                 "; expected finite numbers");
+  const auto follower = [](const Link& l) {
+    return [&l](const Coupling& c) { return c.follower == l.u; };
+  };
+  TW_REQUIRE(&own != &leads &&
+                 std::none_of(couplings_.begin(), couplings_.end(), follower(leads)) &&
+                 std::none_of(couplings_.begin(), couplings_.end(),
+                              [&](const Coupling& c) { return c.leader == own.u; }),
+             of + ", is in a chain of such; expected a leader that follows none");
+  couplings_.push_back({leads.u, own.u, leads.q, own.q, given.ratio, given.offset});
 }
 
 int Tree::add_node(NodeKind kind, int parent, const Frame& X_PF) {
@@ -127,6 +161,7 @@ void Tree::add_link(const LinkSpec& spec) {
   const JointSpec& joint = spec.joint;
   Link link;
   link.name = spec.name;
+  link.joint_name = joint.name.empty() ? spec.name : joint.name;
   link.parent = spec.parent.empty() ? -1 : find(spec.parent);
   link.joint = joint.kind;
   link.placement = Frame(Pose{joint.placement.p, joint.placement.q.normalized()});
@@ -198,7 +233,7 @@ void Tree::set_gravity(double magnitude) {
   Kinematics k(*this);
   std::vector<double> q(static_cast<std::size_t>(nq_)), u(static_cast<std::size_t>(nv_));
   neutral_position(*this, q);
-  place(*this, q, u, Surroundings(), k);
+  place(*this, q, u, BaseMotion(), k);
   for (Axis& axis : axes_) {
     const int at = dof_node(axis.u);
     const Beyond all = beyond(*this, k, at);

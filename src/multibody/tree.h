@@ -46,9 +46,20 @@ struct AxisSpec {
   double upper = std::numeric_limits<double>::infinity();
   double restitution = 0;                // of the stops at the limits, 0 to 1
   std::optional<double> stop_stiffness;  // default: the subtree's weight bends it by stop_depth
+  // what drives it has: the most that a servo gives unless it says more, and the fastest that it is
+  // meant to go, which nothing enforces; N m and rad/s, or N and m/s
+  double effort = std::numeric_limits<double>::infinity();
+  double speed = std::numeric_limits<double>::infinity();
+};
+
+// A joint of one coordinate follows another: its position is ratio times that one's, plus offset.
+struct FollowSpec {
+  std::string joint;  // its name, or its link's
+  double ratio = 1, offset = 0;
 };
 
 struct JointSpec {
+  std::string name;  // empty: that of the link that it moves
   JointKind kind = JointKind::revolute;
   Pose placement;                // joint frame in the parent link's frame (of roots: in the base's)
   Vec3 axis = Vec3::UnitZ();     // in the joint frame; need not be a unit vector
@@ -56,6 +67,7 @@ struct JointSpec {
   std::array<AxisSpec, 2> axes;  // the second: universal joints alone
   // of a spherical joint
   Quat rest_attitude = Quat::Identity();  // where its spring is relaxed
+  std::optional<FollowSpec> follows;
   std::optional<Vec3> swinging;  // whose swing is limited, in the joint frame; none: all turning
 };
 
@@ -86,6 +98,7 @@ struct Node {
 
 struct Link {
   std::string name;
+  std::string joint_name;
   int parent = -1;  // link; -1: the base
   JointKind joint = JointKind::weld;
   int node = base_node;
@@ -112,6 +125,12 @@ struct Axis {
   bool passive = false;          // damping, friction or a spring
 };
 
+// q_f = ratio q_l + offset (couplings.h): dofs, and where their coordinates are.
+struct Coupling {
+  int leader = 0, follower = 0, leader_q = 0, follower_q = 0;
+  double ratio = 1, offset = 0;
+};
+
 class Tree {
  public:
   // Errors (TW_REQUIRE), with the link's name: no or a repeated name, a parent that is unknown,
@@ -119,7 +138,8 @@ class Tree {
   // not square, limits that are reversed or, of a spherical joint, out of range, numbers that are
   // not finite, negative mass, damping, friction or stiffness, restitution outside 0 to 1, inertia
   // that is not symmetric or that no body has, massless parts that leave the acceleration of a
-  // joint undetermined.
+  // joint undetermined, joints that follow one that is not there, has not one coordinate, or
+  // follows itself.
   explicit Tree(const std::vector<LinkSpec>& links);
   // m/s^2, > 0: sets what is slow at the joints and how stiff stops are (Axis), the standard one at
   // first.
@@ -128,6 +148,7 @@ class Tree {
   const std::vector<Link>& links() const { return links_; }
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Axis>& axes() const { return axes_; }
+  const std::vector<Coupling>& couplings() const { return couplings_; }
   const Link& link(int i) const { return links_[static_cast<std::size_t>(i)]; }
   const Node& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   int link_count() const { return static_cast<int>(links_.size()); }
@@ -145,17 +166,21 @@ class Tree {
   int dof_node(int k) const { return dof_node_[static_cast<std::size_t>(k)]; }
   // A link by its name, -1: none.
   int find(const std::string& name) const;
+  // The link that a joint moves, by the joint's name, or else by its own; -1: none.
+  int find_joint(const std::string& name) const;
 
  private:
   void add_link(const LinkSpec& spec);
   int add_node(NodeKind kind, int parent, const Frame& X_PF);
   void add_axis(const AxisSpec& law);
   void add_mass(Node& node, const LinkSpec& spec, const Frame& X_NL);
+  void add_coupling(const LinkSpec& spec);
   void require_regular() const;
 
   std::vector<Link> links_;
   std::vector<Node> nodes_;
   std::vector<Axis> axes_;
+  std::vector<Coupling> couplings_;
   std::vector<int> dof_parent_, last_dof_, dof_node_;
   int nq_ = 0, nv_ = 0;
   double mass_ = 0;

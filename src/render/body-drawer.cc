@@ -4,6 +4,7 @@
 
 #include "geometry/height-field.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,9 +13,12 @@ namespace tw {
 
 namespace {
 
-// Ground and rocks are, made things aren't.
-bool has_grain(const ConvexPart& part, const DrawBody& body) {
-  return body.fixed && part.kind == PartKind::polyhedron && !part.is_box;
+// Ground and rocks have one, made things haven't: all parts of a body or none.
+bool has_grain(const DrawBody& body) {
+  const auto& parts = body.shape->parts();
+  return body.fixed && std::any_of(parts.begin(), parts.end(), [](const ConvexPart& part) {
+           return part.kind == PartKind::polyhedron && !part.is_box;
+         });
 }
 
 // What stands fixed is dull; 0.1 tells the light (picture-shaders.cc) that it has a grain, too.
@@ -54,8 +58,34 @@ BodyDrawer::BodyDrawer(const GlApi& gl) : gl_(&gl) {
   declare_input(gl, 2, 4, sizeof(BallInstance), offsetof(BallInstance, color), 1);
 }
 
+void BodyDrawer::add_visual(const DrawBody& body, std::size_t index) {
+  visuals_.push_back(body.visual);
+  for (const VisualPart& part : *body.visual) {
+    const Vec3 own = part.color.value_or(body.color.value_or(default_color(index, body.fixed)));
+    Part record;
+    record.body = index;
+    record.color << linear_color(own).cast<float>(), gloss_of(body.fixed, false);
+    if (part.mesh) {
+      if (part.mesh->colored && !part.color) record.color.head<3>().setOnes();
+      record.placement = Frame(part.pose);
+      const bool tinted = part.mesh->colored && !part.color;
+      const auto [found, fresh] =
+          group_index_.emplace(MeshKey(part.mesh.get(), tinted, 0, 0), groups_.size());
+      if (fresh) groups_.push_back(make_group(surface_mesh(*part.mesh, tinted)));
+      groups_[found->second].parts.push_back(record);
+      continue;
+    }
+    for (const ConvexPart& piece : part.shape->parts()) {
+      record.placement = Frame(part.pose) * piece.placement();
+      add_part(piece, body, record);
+    }
+  }
+}
+
 void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
-  if (!body.shape || !body.visible) return;
+  if (!body.visible) return;
+  if (body.visual) return add_visual(body, index);
+  if (!body.shape) return;
   shapes_.push_back(body.shape);
   const Vec3 color = linear_color(body.color.value_or(default_color(index, body.fixed)));
   Part record;
@@ -66,10 +96,11 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     record.color << shown.cast<float>(), gloss_of(body.fixed, body.fixed);
     return add_height_field(body, record);
   }
+  const bool grain = has_grain(body);
+  record.color << color.cast<float>(), gloss_of(body.fixed, grain);
   for (const ConvexPart& part : body.shape->parts()) {
     record.placement = part.placement();
-    record.color << color.cast<float>(), gloss_of(body.fixed, has_grain(part, body));
-    if (has_grain(part, body)) ++grainy_parts_;
+    if (grain) ++grainy_parts_;
     add_part(part, body, record);
   }
 }

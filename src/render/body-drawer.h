@@ -60,6 +60,7 @@ class BodyDrawer {
   // keys of their own.
   using MeshKey = std::tuple<const void*, bool, double, double>;
 
+  void add_visual(const DrawBody& body, std::size_t index);
   void add_part(const ConvexPart& part, const DrawBody& body, Part record);
   void add_height_field(const DrawBody& body, Part record);
   MeshGroup& group_of(const ConvexPart& part, bool smooth);
@@ -72,6 +73,7 @@ class BodyDrawer {
   std::map<MeshKey, std::size_t> group_index_;
   // keeps the cores alive whose addresses are keys
   std::vector<ShapePtr> shapes_;
+  std::vector<VisualPtr> visuals_;
   std::vector<Part> balls_;
   std::vector<BallInstance> ball_instances_;
   GLuint ball_vertex_array_ = 0, ball_buffer_ = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "render/draw-list.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -26,6 +27,44 @@ void check_finite(const Vec3& v, const char* what) {
 }
 
 }  // namespace
+
+namespace {
+
+bool is_bounded(const VisualPart& part) {
+  return part.mesh ? !part.mesh->bounds.empty() : part.shape->bounded();
+}
+
+}  // namespace
+
+bool has_bounds(const DrawBody& body) {
+  if (!body.visible) return false;
+  if (!body.visual) return body.shape && body.shape->bounded();
+  return std::any_of(body.visual->begin(), body.visual->end(), is_bounded);
+}
+
+Aabb bounds_of(const DrawBody& body, const Frame& frame) {
+  if (!body.visual) return body.shape->bounds(frame);
+  Aabb box;
+  for (const VisualPart& part : *body.visual) {
+    if (!is_bounded(part)) continue;
+    const Frame at = frame * Frame(part.pose);
+    if (part.shape) box.add(part.shape->bounds(at));
+    for (int corner = 0; part.mesh && corner < 8; ++corner)
+      box.add(at * part.mesh->bounds.corner(corner));
+  }
+  return box;
+}
+
+double radius_of(const DrawBody& body) {
+  if (!body.visual) return body.shape->radius_about_origin();
+  double radius = 0;
+  for (const VisualPart& part : *body.visual)
+    if (is_bounded(part))
+      radius =
+          std::max(radius, part.pose.p.norm() +
+                               (part.mesh ? part.mesh->radius : part.shape->radius_about_origin()));
+  return radius;
+}
 
 Vec3 default_color(std::size_t body, bool fixed) {
   if (fixed) return {0.78, 0.76, 0.72};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "geometry/shape.h"
+#include "geometry/visual.h"
 #include "math/aabb.h"
 #include "math/vec.h"
 #include "render/hud.h"
@@ -19,7 +20,8 @@ namespace tw {
 
 // A body is known by its index in the order of registration.
 struct DrawBody {
-  ShapePtr shape;              // null: nothing to see
+  ShapePtr shape;              // null: nothing to see but the visual
+  VisualPtr visual;            // null: that of the shape
   Pose pose;                   // where it is as long as no frame says otherwise
   std::optional<Vec3> color;   // absent: default_color()
   std::optional<bool> smooth;  // absent: spheres are smooth, all else has facets
@@ -77,10 +79,11 @@ struct DrawContact {
 
 struct DrawFrame {
   double time = 0;
-  std::vector<Pose> poses;           // by body; bodies past its end keep the pose they had
-  std::vector<DrawBody> added;       // registered before this frame is drawn
-  std::vector<std::size_t> removed;  // bodies that are not seen any more
-  std::optional<Camera> camera;      // from this frame on; so are light and sky
+  std::vector<Pose> poses;      // by body; bodies past its end keep the pose they had
+  std::vector<DrawBody> added;  // registered before this frame is drawn
+  // Bodies that are not seen from this frame on, others are; absent: as before.
+  std::optional<std::vector<std::size_t>> removed;
+  std::optional<Camera> camera;  // from this frame on; so are light and sky
   std::optional<Light> light;
   std::optional<Sky> sky;
   std::vector<HudLine> hud;           // lines below the time, UTF-8 (Latin-1 is drawn)
@@ -92,6 +95,12 @@ enum class Quality {
   normal,  // soft shadows, ambient occlusion, edges smoothed by FXAA
   best     // the same, softer, with four samples per pixel
 };
+
+// Whether there is something of it to see that has bounds; then these, and the radius of a ball
+// about the origin of its frame.
+bool has_bounds(const DrawBody& body);
+Aabb bounds_of(const DrawBody& body, const Frame& frame);
+double radius_of(const DrawBody& body);
 
 // Width and height of the picture, each 1..16384.
 struct ImageSize {

@@ -155,6 +155,16 @@ bool FramePipeline::wait(std::size_t most, double seconds) {
   return reached;
 }
 
+bool FramePipeline::finish(double seconds) {
+  std::unique_lock lock(mutex_);
+  closing_ = true;
+  changed_.notify_all();
+  const bool finished =
+      changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return all_written_; });
+  raise_error(lock);
+  return finished;
+}
+
 void FramePipeline::finish() {
   join();
   std::unique_lock lock(mutex_);
@@ -213,6 +223,9 @@ void FramePipeline::write_all() {
   });
   // also after an error: what was written is to be whole
   for (const auto& output : outputs) guarded([&] { output->close(); });
+  const std::lock_guard lock(mutex_);
+  all_written_ = true;
+  changed_.notify_all();
 }
 
 void FramePipeline::write_pictures(Outputs& outputs) {

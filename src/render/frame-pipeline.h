@@ -55,7 +55,10 @@ class FramePipeline {
   // Waits until at most `most` of the frames submitted are not written, but no longer than
   // `seconds`; tells whether it is so.  Raises as submit() does.
   bool wait(std::size_t most, double seconds);
-  // Waits until all frames are written.  Raises the first error, once.  No submit() afterwards.
+  // No submit() afterwards.  Waits until all frames are written and a movie is whole, but no longer
+  // than `seconds`; tells whether it is so.  Raises as submit() does.
+  bool finish(double seconds);
+  // The same for as long as it takes.
   void finish();
   // Waits until the frame in hand and those drawn before are written, and drops those queued.  A
   // movie is whole up to there.  No submit() afterwards.
@@ -93,7 +96,7 @@ class FramePipeline {
   std::size_t unwritten_ = 0;    // frames submitted, not written
   std::exception_ptr error_;     // the first, until it is raised
   bool closing_ = false, failed_ = false;
-  bool all_drawn_ = false;
+  bool all_drawn_ = false, all_written_ = false;
   long written_ = 0, skipped_ = 0;
   double drawing_seconds_ = 0, writing_seconds_ = 0;
   std::thread drawing_, writing_;

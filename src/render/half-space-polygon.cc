@@ -34,7 +34,7 @@ Face make_face(std::size_t body, const Frame& frame, const ConvexPart& part, boo
 std::vector<Face> all_faces(std::span<const DrawBody> bodies, std::span<const Pose> poses) {
   std::vector<Face> faces;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].shape || bodies[i].shape->bounded()) continue;
+    if (!bodies[i].shape || bodies[i].visual || bodies[i].shape->bounded()) continue;
     if (!is_finite(poses[i].p) || !is_finite(poses[i].q)) continue;
     for (const ConvexPart& part : bodies[i].shape->parts())
       if (part.kind == PartKind::half_space)

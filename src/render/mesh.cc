@@ -101,6 +101,16 @@ Mesh smooth_mesh(const Polyhedron& polyhedron) {
   return mesh;
 }
 
+Mesh surface_mesh(const SurfaceMesh& surface, bool tinted) {
+  Mesh mesh;
+  for (const SurfaceMesh::Vertex& v : surface.vertices) {
+    mesh.vertices.push_back({v.position, v.normal});
+    if (tinted) mesh.vertices.back().tint = linear_color(v.color.cast<double>()).cast<float>();
+  }
+  mesh.indices = surface.indices;
+  return mesh;
+}
+
 Mesh height_field_mesh(const HeightField& field, bool smooth) {
   Mesh mesh;
   const std::size_t rows = field.rows(), columns = field.columns();
@@ -148,16 +158,27 @@ Mesh height_field_mesh(const HeightField& field, bool smooth) {
       }
   }
 
+  // the underside, as deep below the top everywhere as the ground reaches below its lowest corners
+  const Vec3 down = -field.depth() * Vec3::UnitZ();
+  const auto first_below = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column)
+      add(row * columns + column, field.corner(row, column) + down, -slope_normal(row, column));
+  for (std::size_t row = 0; row + 1 < rows; ++row)
+    for (std::size_t column = 0; column + 1 < columns; ++column) {
+      const auto a = first_below + static_cast<std::uint32_t>(row * columns + column);
+      const auto d = static_cast<std::uint32_t>(a + columns);
+      mesh.indices.insert(mesh.indices.end(), {a, d + 1, a + 1, a, d, d + 1});
+    }
+
   // the rim, from one corner of the grid to the next
   const auto add_wall = [&](std::size_t from, std::size_t to) {
     const Vec3 p = field.corner(from), q = field.corner(to);
-    const Vec3 down = (std::min(p.z(), q.z()) - field.depth()) * Vec3::UnitZ();
-    const Vec3 flat_p(p.x(), p.y(), 0), flat_q(q.x(), q.y(), 0);
     const Vec3 outward = (q - p).cross(Vec3::UnitZ()).normalized();
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     add(from, p, outward);
-    add(from, flat_p + down, outward);
-    add(to, flat_q + down, outward);
+    add(from, p + down, outward);
+    add(to, q + down, outward);
     add(to, q, outward);
     add_fan(mesh, first, 4);
   };

@@ -7,6 +7,7 @@
 
 #include "geometry/height-field.h"
 #include "geometry/polyhedron.h"
+#include "geometry/visual.h"
 
 namespace tw {
 
@@ -24,9 +25,11 @@ struct Mesh {
 Mesh facet_mesh(const Polyhedron& polyhedron);
 // Rounded looks: a vertex's normal is the mean of its faces' normals, weighted by their angles.
 Mesh smooth_mesh(const Polyhedron& polyhedron);
-// The ground with its rim, without a bottom.  Smooth: the normals of what the heights are samples
+// The ground with its rim and its underside.  Smooth: the normals of what the heights are samples
 // of.  Tints are the ground's colours, where it has some.
 Mesh height_field_mesh(const HeightField& field, bool smooth);
+// Tints are the surface's own colours, where it has some and they are wanted.
+Mesh surface_mesh(const SurfaceMesh& surface, bool tinted);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.
 Mesh facet_sphere_mesh();
 // What follows is turned about z in 48 facets or, smooth, round.

@@ -55,18 +55,12 @@ std::string spiral_points(int count) {
   return text + "\n";
 }
 
-Ball ball_around(const DrawBody& body, const Pose& pose) {
-  return {pose.p, body.shape->radius_about_origin()};
-}
-
-bool casts_shadow(const DrawBody& body) {
-  return body.visible && body.shape && body.shape->bounded();
-}
+Ball ball_around(const DrawBody& body, const Pose& pose) { return {pose.p, radius_of(body)}; }
 
 double median_radius(const std::vector<DrawBody>& bodies) {
   std::vector<double> radii;
   for (const DrawBody& body : bodies)
-    if (casts_shadow(body) && !body.fixed) radii.push_back(body.shape->radius_about_origin());
+    if (has_bounds(body) && !body.fixed) radii.push_back(radius_of(body));
   if (radii.empty()) return 0.5;
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
@@ -186,8 +180,10 @@ void Renderer::set_poses(const DrawFrame& frame) {
   for (const DrawBody& body : frame.added) register_body(body);
   TW_ASSERT(frame.poses.size() <= scene_.bodies.size(), "more poses than bodies");
   std::copy(frame.poses.begin(), frame.poses.end(), poses_.begin());
+  if (frame.removed) removed_.clear();
   removed_.resize(poses_.size(), false);
-  for (const std::size_t body : frame.removed) removed_[body] = true;
+  if (frame.removed)
+    for (const std::size_t body : *frame.removed) removed_[body] = true;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     Pose& pose = poses_[i];
     if (!removed_[i]) {
@@ -215,7 +211,7 @@ void Renderer::set_view(double time) {
 void Renderer::fit_shadows() {
   std::vector<Ball> casters;
   for (std::size_t i = 0; i < poses_.size(); ++i)
-    if (casts_shadow(scene_.bodies[i]) && is_finite(poses_[i].p))
+    if (has_bounds(scene_.bodies[i]) && is_finite(poses_[i].p))
       casters.push_back(ball_around(scene_.bodies[i], poses_[i]));
   const Vec3 target = view_.eye + view_.focus_distance * view_.forward;
   const double reach = 5 * view_.focus_distance;

@@ -13,8 +13,10 @@ namespace tw {
 inline void* open_shared_library(const char* name, std::string& reason) {
   void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
   if (!library) {
-    const char* error = dlerror();
-    reason = error ? error : std::string(name) + " cannot be opened";
+    if (const char* error = dlerror())
+      reason = error;
+    else
+      (reason = name) += " cannot be opened";
   }
   return library;
 }

@@ -102,9 +102,9 @@ Aabb scene_bounds(std::span<const DrawBody> bodies, std::span<const Pose> poses)
   Aabb bounds;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const DrawBody& body = bodies[i];
-    if (!body.visible || !body.shape || !body.shape->bounded()) continue;
+    if (!has_bounds(body)) continue;
     if (!is_finite(poses[i].p) || !is_finite(poses[i].q)) continue;
-    bounds.add(body.shape->bounds(Frame(poses[i])));
+    bounds.add(bounds_of(body, Frame(poses[i])));
   }
   add_enclosed_room(bodies, poses, bounds);
   if (bounds.empty()) {

@@ -26,6 +26,7 @@ constexpr Property properties[] = {
      [](BodyDef& d, SCM v, const char* n) {
        if (scm_is_true(v)) d.shape = to_shape(v, n);
      }},
+    {"visual", [](BodyDef& d, SCM v, const char* n) { d.visual = to_visual(v, n); }},
     {"density", [](BodyDef& d, SCM v, const char* n) { d.density = to_real(v, n); }},
     {"mass", [](BodyDef& d, SCM v, const char* n) { d.mass = to_real(v, n); }},
     {"inertia", [](BodyDef& d, SCM v, const char* n) { d.inertia = to_inertia(v, n); }},
@@ -91,7 +92,7 @@ TW_PRIMITIVE(remove_body, "%remove-body!", (SCM world, SCM body), "Take a body o
 }
 
 TW_PRIMITIVE(is_removed, "%removed?", (SCM body), "Was the body removed?") {
-  return scm_from_bool(info_of(body).removed);
+  return scm_from_bool(!is_known(body) || info_of(body).removed);
 }
 
 TW_PRIMITIVE(world_bodies, "%world-bodies", (SCM world), "Return all bodies in order.") {
@@ -110,7 +111,7 @@ TW_PRIMITIVE(find_body, "%find-body", (SCM world, SCM name),
 }
 
 TW_PRIMITIVE(body_name, "%body-name", (SCM body), "Return the name of a body or view.") {
-  if (is_multibody(body)) return from_string(to_own_multibody(body).name);
+  if (stands_for_body(body)) return body_name_of(body);
   return from_string(info_of(body).name);
 }
 

@@ -24,7 +24,7 @@ namespace {
 // Scheme procedures that errors.scm and guarded-call.scm install
 SCM raise_hook = SCM_BOOL_F;     // (message name value place backtrace) -> never returns
 SCM describe_hook = SCM_BOOL_F;  // (key args places) -> #(message place backtrace)
-SCM call_hook = SCM_BOOL_F;      // (procedure argument ...) -> what the procedure returns
+SCM caller = SCM_BOOL_F;         // (procedure argument ...) -> what the procedure returns
 SCM escape_hook = SCM_BOOL_F;    // () -> never returns: raises what stands for an escape
 
 int call_depth = 0;
@@ -82,11 +82,11 @@ SCM call_by_hook(const CallState& state) {
   if (count <= most) {
     SCM all[1 + most] = {state.procedure};
     std::copy_n(state.arguments.data(), count, all + 1);
-    return scm_call_n(call_hook, all, count + 1);
+    return scm_call_n(caller, all, count + 1);
   }
   SCM list = SCM_EOL;
   for (std::size_t i = count; i-- > 0;) list = scm_cons(state.arguments[i], list);
-  return scm_apply_1(call_hook, state.procedure, list);
+  return scm_apply_1(caller, state.procedure, list);
 }
 
 SCM call_body(void* data) {
@@ -269,7 +269,7 @@ TW_PRIMITIVE(set_raise_hook, "%set-raise-hook!", (SCM raise),
 
 TW_PRIMITIVE(set_call_hooks, "%set-call-hooks!", (SCM call, SCM escape, SCM describe),
              "Install the procedures that call the user's, stop escapes and describe errors.") {
-  call_hook = scm_gc_protect_object(call);
+  caller = scm_gc_protect_object(call);
   escape_hook = scm_gc_protect_object(escape);
   describe_hook = scm_gc_protect_object(describe);
   return SCM_UNSPECIFIED;

@@ -196,7 +196,7 @@ void ScmFrameObserver::frame(long index, double frame_time, std::span<const Body
 
 TW_PRIMITIVE(add_callback, "%add-callback!",
              (SCM world, SCM targets, SCM procedure, SCM start, SCM period, SCM place),
-             "Register a callback on a list of bodies.") {
+             "Register a callback on a list of bodies; return (NUMBER . ADDITION).") {
   CallbackDef def;
   Hook hook = make_hook(world, procedure, "callback", "add-callback!", place);
   hook.timed = true;
@@ -206,27 +206,28 @@ TW_PRIMITIVE(add_callback, "%add-callback!",
   def.callback = std::make_shared<ScmCallback>(hook, def.period.has_value());
   def.name = "of " + body_names(to_world(world), def.targets);
   def.place = hook.place;
-  return scm_from_uint64(to_world(world).add_callback(def));
+  const std::uint64_t number = to_world(world).add_callback(def);
+  return scm_cons(scm_from_uint64(number), from_addition({def.callback}, world));
 }
 
 TW_PRIMITIVE(add_collision_callback, "%on-collision!",
              (SCM world, SCM a, SCM b, SCM procedure, SCM place),
-             "Register a callback on collisions.") {
+             "Register a callback on collisions; return its addition.") {
   CollisionCallbackDef def;
   Hook hook = make_hook(world, procedure, "collision callback", "on-collision!", place);
   hook.timed = true;
-  def.a = to_side(world, a, "the first side");
-  def.b = to_side(world, b, "the second side");
+  def.sides = to_sides(world, a, b);
   def.callback = std::make_shared<ScmCollisionCallback>(hook);
   def.name = "collision callback";
   def.place = hook.place;
   to_world(world).add_collision_callback(def);
-  return SCM_UNSPECIFIED;
+  return from_addition({def.callback}, world);
 }
 
-TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
-             (SCM world, SCM kind, SCM procedure, SCM place),
-             "Call a procedure with every committed collision, fusion, fission or squeezing.") {
+TW_PRIMITIVE(
+    observe_collisions, "%observe-collisions!", (SCM world, SCM kind, SCM procedure, SCM place),
+    "Call a procedure with every committed collision, fusion, fission or squeezing; return "
+    "its addition.") {
   const std::string name = to_symbol_name(kind, "what to observe");
   const CollisionKind wanted = name == "fusion"     ? CollisionKind::fusion
                                : name == "fission"  ? CollisionKind::fission
@@ -234,7 +235,7 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
                                                     : CollisionKind::collision;
   const auto hook =
       std::make_shared<Hook>(make_hook(world, procedure, "observer", "observe!", place));
-  to_world(world).add_collision_observer(
+  const CollisionObserverPtr observer = to_world(world).add_collision_observer(
       [hook](const Collision& told) {
         const SCM handle = hook->box->handle;
         const bool squeezed = told.kind == CollisionKind::squeezed;
@@ -245,14 +246,77 @@ TW_PRIMITIVE(observe_collisions, "%observe-collisions!",
                  body_names(hook->box->world, std::array{told.body1, told.body2});
         });
       },
-      wanted);
+      wanted, Watch::of_scene);
+  return from_addition({observer}, world);
+}
+
+TW_PRIMITIVE(
+    frame_observer, "%frame-observer", (SCM world, SCM procedure, SCM place),
+    "The addition that calls a procedure with every committed frame, once it is attached.") {
+  const Hook hook = make_hook(world, procedure, "observer", "observe!", place);
+  const std::shared_ptr<FrameSink> sink = std::make_shared<ScmFrameObserver>(hook);
+  return from_addition({sink}, world);
+}
+
+TW_PRIMITIVE(observe_frames, "%observe-frames!", (SCM addition, SCM fps),
+             "Attach what %frame-observer returned.") {
+  const auto* const sink = std::get_if<std::shared_ptr<FrameSink>>(&to_addition(addition).what);
+  if (!sink) throw BadValue{"the observer", addition, "one of frames"};
+  to_world(addition_world(addition)).add_frame_sink(*sink, to_real(fps, "fps"), Watch::of_scene);
   return SCM_UNSPECIFIED;
 }
 
-TW_PRIMITIVE(observe_frames, "%observe-frames!", (SCM world, SCM procedure, SCM fps, SCM place),
-             "Call a procedure with every committed frame.") {
-  const Hook hook = make_hook(world, procedure, "observer", "observe!", place);
-  to_world(world).add_frame_sink(std::make_shared<ScmFrameObserver>(hook), to_real(fps, "fps"));
+// ---- taking away ----
+
+TW_PRIMITIVE(world_of_addition, "%addition-world", (SCM addition),
+             "The world that it was added to.") {
+  to_addition(addition);
+  return addition_world(addition);
+}
+
+TW_PRIMITIVE(is_there, "%there?", (SCM addition), "Is what was added still in its world?") {
+  const World& world = to_world(addition_world(addition));
+  return scm_from_bool(std::visit(
+      [&world](const auto& what) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(what)>, ForceHandle>)
+          return world.acts(what);
+        else
+          return world.has(what.get());
+      },
+      to_addition(addition).what));
+}
+
+namespace {
+
+struct Remove {
+  World& world;
+  std::string what;
+
+  void operator()(const std::shared_ptr<Callback>& callback) const {
+    world.remove_callback(callback.get());
+  }
+  void operator()(const std::shared_ptr<CollisionCallback>& callback) const {
+    world.remove_callback(callback.get());
+  }
+  void operator()(const CollisionObserverPtr& observer) const {
+    world.remove_observer(observer.get());
+  }
+  void operator()(const std::shared_ptr<FrameSink>& sink) const {
+    world.remove_frame_sink(sink.get());
+  }
+  void operator()(const ForceHandle& force) const { world.remove_force(force, what); }
+};
+
+}  // namespace
+
+TW_PRIMITIVE(remove_addition, "%remove!", (SCM world, SCM addition, SCM who, SCM what),
+             "Take away what was added; WHO is asked to, WHAT it is, strings.") {
+  require_outside_callbacks(text_of(who).c_str());
+  const Addition& known = to_addition(addition);
+  if (!scm_is_eq(addition_world(addition), world))
+    throw UserError(text_of(what) +
+                    " belongs to another world; expected what was added to the current one");
+  std::visit(Remove{to_world(world), text_of(what)}, known.what);
   return SCM_UNSPECIFIED;
 }
 

@@ -32,8 +32,8 @@ TW_PRIMITIVE(collision_impulse, "%collision-impulse", (SCM c), "Normal impulse, 
 TW_PRIMITIVE(collision_bodies, "%collision-bodies", (SCM c), "List of the handles of A and B.") {
   const CollisionCopy& copy = to_collision(c);
   const SCM world = collision_world(c);
-  const SCM one = from_body(world, copy.collision.body1);
-  const SCM two = from_body(world, copy.collision.body2);
+  const SCM one = from_past_body(world, copy.collision.body1, copy.serial1);
+  const SCM two = from_past_body(world, copy.collision.body2, copy.serial2);
   return copy.reversed ? scm_list_2(two, one) : scm_list_2(one, two);
 }
 

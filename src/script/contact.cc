@@ -23,6 +23,29 @@ ContactSide to_side(SCM world, SCM value, const char* name) {
   return side;
 }
 
+std::vector<std::pair<ContactSide, ContactSide>> to_sides(SCM world, SCM a, SCM b) {
+  const auto sides = [world](SCM value, const char* name) {
+    if (!is_multibody(value)) return std::vector{to_side(world, value, name)};
+    std::vector<ContactSide> links;
+    for (const BodyId link : to_multibody(world, value, name).links) {
+      ContactSide& side = links.emplace_back();
+      side.kind = ContactSide::Kind::body;
+      side.body = link;
+    }
+    return links;
+  };
+  std::vector<std::pair<ContactSide, ContactSide>> pairs;
+  const std::vector<ContactSide> others = sides(b, "the second side");
+  const bool several = is_multibody(a) || is_multibody(b);
+  for (const ContactSide& one : sides(a, "the first side"))
+    for (const ContactSide& other : others) {
+      using enum ContactSide::Kind;
+      const bool same = one.kind == body && other.kind == body && one.body == other.body;
+      if (!several || !same) pairs.emplace_back(one, other);
+    }
+  return pairs;
+}
+
 namespace {
 
 template <class Law>
@@ -82,8 +105,16 @@ TW_PRIMITIVE(set_contact, "%set-contact!", (SCM world, SCM a, SCM b, SCM alist),
   ContactSettings settings;
   for (; scm_is_pair(alist); alist = SCM_CDR(alist))
     read_setting(settings, SCM_CAAR(alist), SCM_CDAR(alist));
-  to_world(world).set_contact(to_side(world, a, "the first side"),
-                              to_side(world, b, "the second side"), settings);
+  World& w = to_world(world);
+  std::vector<std::pair<ContactSide, ContactSide>> sides = to_sides(world, a, b);
+  // links that a joint joins must both be named: who means a multibody means the others
+  if (settings.collide.value_or(false) && (is_multibody(a) || is_multibody(b)))
+    std::erase_if(sides, [&w](const auto& pair) {
+      using enum ContactSide::Kind;
+      return pair.first.kind == body && pair.second.kind == body &&
+             w.joined(pair.first.body, pair.second.body);
+    });
+  w.set_contact(sides, settings);
   return SCM_UNSPECIFIED;
 }
 

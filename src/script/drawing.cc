@@ -199,6 +199,15 @@ TW_PRIMITIVE(await_frames, "%await-frames", (SCM object, SCM most, SCM seconds),
   return scm_from_bool(box.drawer->pipeline().wait(left, to_real(seconds, "the time to wait")));
 }
 
+TW_PRIMITIVE(finish_frames, "%finish-frames!", (SCM world, SCM object, SCM seconds),
+             "Take no more frames and wait until all are on disk and a movie is whole, or that "
+             "long; tell whether they are.") {
+  const DrawerBox& box = to_drawer(object);
+  if (!box.drawer) return SCM_BOOL_T;
+  to_world(world).remove_frame_sink(box.drawer.get());
+  return scm_from_bool(box.drawer->pipeline().finish(to_real(seconds, "the time to wait")));
+}
+
 TW_PRIMITIVE(close_frames, "%close-frames!", (SCM world, SCM object, SCM all),
              "Stop drawing, when all frames are written or only the one in hand.") {
   DrawerBox& box = to_drawer(object);

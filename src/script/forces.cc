@@ -123,17 +123,18 @@ TW_PRIMITIVE(set_applied_torque, "%set-applied-torque!", (SCM object, SCM value)
 }
 
 TW_PRIMITIVE(add_drag, "%add-drag!", (SCM world, SCM body, SCM linear, SCM quadratic),
-             "Let a body feel drag.") {
+             "Let a body feel drag; return its addition.") {
   require_outside_callbacks("add-drag!");
   const BodyId id = to_body(world, body, "the body");
-  to_world(world).add_drag(id, optional_real(linear, "linear").value_or(0),
-                           optional_real(quadratic, "quadratic").value_or(0));
-  return SCM_UNSPECIFIED;
+  const ForceHandle drag =
+      to_world(world).add_drag(id, optional_real(linear, "linear").value_or(0),
+                               optional_real(quadratic, "quadratic").value_or(0));
+  return from_addition({drag}, world);
 }
 
 TW_PRIMITIVE(add_spring, "%add-spring!",
              (SCM world, SCM a, SCM b, SCM at_a, SCM at_b, SCM stiffness, SCM damping, SCM rest),
-             "Hold two bodies together by a spring.") {
+             "Hold two bodies together by a spring; return its addition.") {
   require_outside_callbacks("add-spring!");
   SpringDef spring;
   spring.a = to_body(world, a, "the first body");
@@ -143,8 +144,7 @@ TW_PRIMITIVE(add_spring, "%add-spring!",
   spring.stiffness = to_real(stiffness, "stiffness");
   spring.damping = optional_real(damping, "damping").value_or(0);
   spring.rest = optional_real(rest, "rest");
-  to_world(world).add_spring(spring);
-  return SCM_UNSPECIFIED;
+  return from_addition({to_world(world).add_spring(spring)}, world);
 }
 
 namespace {
@@ -198,17 +198,18 @@ TW_PRIMITIVE(attached, "%attached?", (SCM world, SCM a, SCM b), "Whether two are
 }
 
 TW_PRIMITIVE(add_force, "%add-force!", (SCM world, SCM body, SCM procedure, SCM place),
-             "Let a procedure act on a body.") {
+             "Let a procedure act on a body; return its addition.") {
   require_outside_callbacks("add-force!");
   const BodyId id = to_body(world, body, "the body");
   if (scm_is_false(scm_procedure_p(procedure)))
     throw BadValue{"the force", procedure, "a procedure of the time and a view"};
   keep_with_world(world, procedure);
   WorldBox& box = to_world_box(world);
-  box.world.add_force(
+  const ForceHandle force = box.world.add_force(
       id, std::make_shared<ScmForce>(box, id, procedure,
-                                     is_place(place) ? to_place(place) : Place{}, ++box.forces));
-  return SCM_UNSPECIFIED;
+                                     is_place(place) ? to_place(place) : Place{}, box.forces + 1));
+  ++box.forces;
+  return from_addition({force}, world);
 }
 
 }  // namespace tw

@@ -12,6 +12,7 @@ DrawBody draw_body(const World& world, BodyId id) {
   const BodyState state = world.state(id);
   DrawBody body;
   body.shape = info.shape;
+  body.visual = info.visual;
   body.pose = {state.position, state.orientation};
   body.color = info.color;
   body.fixed = info.kind == BodyKind::fixed;
@@ -26,6 +27,8 @@ DrawScene draw_scene(const World& world) {
   return scene;
 }
 
+constexpr std::size_t nowhere = ~std::size_t{0};  // place of a body that was removed
+
 static std::vector<Pose> poses_of(const DrawScene& scene) {
   std::vector<Pose> poses;
   for (const DrawBody& body : scene.bodies) poses.push_back(body.pose);
@@ -39,33 +42,46 @@ FrameDrawer::FrameDrawer(const World& world, const FrameSettings& settings, cons
       poses_(poses_of(scene)),
       hud_(std::move(hud)),
       contacts_(contacts),
-      pipeline_(settings, scene) {}
+      pipeline_(settings, scene) {
+  for (BodyId id = 0; id < poses_.size(); ++id) places_.emplace(world.serial(id), id);
+}
 
 // Also where the frame is not drawn: the next one that is must know who came and went.
-void FrameDrawer::note_bodies(std::span<const BodyPose> poses) {
-  for (auto id = static_cast<BodyId>(poses_.size()); id < world_.body_count(); ++id) {
-    next_.added.push_back(draw_body(world_, id));
-    poses_.push_back(next_.added.back().pose);
+void FrameDrawer::note_roster() {
+  std::vector<std::size_t> places;
+  for (BodyId id = 0; id < world_.body_count(); ++id) {
+    const auto [known, is_new] = places_.try_emplace(world_.serial(id), poses_.size());
+    if (is_new) {
+      next_.added.push_back(draw_body(world_, id));
+      poses_.push_back(next_.added.back().pose);
+    }
+    places.push_back(world_.body(id).removed ? nowhere : known->second);
   }
-  if (world_.removals() > removals_) {
-    next_.removed.clear();
-    for (BodyId id = 0; id < poses_.size(); ++id)
-      if (world_.body(id).removed) next_.removed.push_back(id);
-  }
-  removals_ = world_.removals();
-  for (const BodyPose& pose : poses)
-    poses_[pose.body] = {pose.state.position, pose.state.orientation};
+  if (places == place_of_) return;
+  place_of_ = std::move(places);
+  std::vector<bool> seen(poses_.size(), false);
+  for (const std::size_t place : place_of_)
+    if (place != nowhere) seen[place] = true;
+  next_.removed.emplace();
+  for (std::size_t place = 0; place < seen.size(); ++place)
+    if (!seen[place]) next_.removed->push_back(place);
 }
 
 void FrameDrawer::set_looks(const Camera& camera, const Light& light, const Sky& sky) {
   next_.camera = camera;
+  // the body is there, but may have come since the last frame
+  note_roster();
+  if (camera.follow) next_.camera->follow = place_of_[*camera.follow];
   next_.light = light;
   next_.sky = sky;
 }
 
 void FrameDrawer::frame(long index, double frame_time, std::span<const BodyPose> poses) {
   ++frames_;
-  note_bodies(poses);
+  note_roster();
+  for (const BodyPose& pose : poses)
+    if (const std::size_t place = place_of_[pose.body]; place != nowhere)
+      poses_[place] = {pose.state.position, pose.state.orientation};
   if (!share_.includes(index)) return;
   DrawFrame frame = std::exchange(next_, {});
   frame.time = frame_time;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "kernel/world.h"
@@ -32,16 +33,19 @@ class FrameDrawer : public FrameSink {
   long frames() const { return frames_; }
 
  private:
-  void note_bodies(std::span<const BodyPose> poses);
+  void note_roster();
 
   const World& world_;
   FrameShare share_;
   DrawFrame next_;           // what has changed since the last frame that was drawn
-  std::vector<Pose> poses_;  // by body, as last known
+  std::vector<Pose> poses_;  // by place in the picture's list, as last known
   std::vector<HudLine> hud_;
   bool contacts_;
   long frames_ = 0;
-  std::uint64_t removals_ = 0;  // that it has seen
+  // A body that was ever drawn has a place of its own, which is its number where no restore gave
+  // that to another.
+  std::unordered_map<std::uint64_t, std::size_t> places_;  // by serial number
+  std::vector<std::size_t> place_of_;                      // by body, of those there are
   FramePipeline pipeline_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/index.h"
 #include "script/primitive.h"
 #include "script/types.h"
 #include "script/values.h"
@@ -16,8 +17,6 @@ using multibody::JointKind;
 using multibody::Link;
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // What a joint's position, or its velocity and torque, look like.
 const char* shape_of(JointKind kind, bool position) {
@@ -48,7 +47,7 @@ Part part_of(const Multibody& multibody, int link, bool position) {
   const Link& l = multibody.tree.link(link);
   TW_REQUIRE(l.dofs > 0, "link " + l.name + " of " + multibody.name +
                              " is welded; expected a joint that moves");
-  return {at(position ? l.q : l.u), at(position ? l.coordinates : l.dofs),
+  return {index(position ? l.q : l.u), index(position ? l.coordinates : l.dofs),
           shape_of(l.joint, position)};
 }
 
@@ -68,20 +67,28 @@ void write_part(std::vector<double>& row, std::size_t length, const Part& part,
 using Row = std::vector<double> MultibodyState::*;
 
 std::size_t length_of(const Multibody& multibody, Row row) {
-  return at(row == &MultibodyState::q ? multibody.tree.nq() : multibody.tree.nv());
+  return index(row == &MultibodyState::q ? multibody.tree.nq() : multibody.tree.nv());
 }
 
 SCM read_joint(SCM object, SCM name, Row row, const char* what) {
   const Jointed of = to_jointed(object, what);
-  const Part part = part_of(of.multibody, to_link(of.multibody, name), row == &MultibodyState::q);
+  const Part part = part_of(of.multibody, to_joint(of.multibody, name), row == &MultibodyState::q);
   return read_part(read_joints(of, what).*row, part);
+}
+
+// An edit of what drives joints by which nothing drives them, as before.
+bool is_nothing(const Jointed& of, const std::vector<double>& row,
+                const std::vector<double>& numbers) {
+  return !is_view(of.object) && row.empty() &&
+         std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == 0; });
 }
 
 SCM write_joint(SCM object, SCM name, SCM value, Row row, const char* what) {
   const Jointed of = to_jointed(object, what);
-  const Part part = part_of(of.multibody, to_link(of.multibody, name), row == &MultibodyState::q);
+  const Part part = part_of(of.multibody, to_joint(of.multibody, name), row == &MultibodyState::q);
   const std::vector<double> numbers = to_reals(value, part.count, what, part.expected);
   change_joints(of, what, [&](MultibodyState& joints) {
+    if (is_nothing(of, joints.*row, numbers)) return;
     write_part(joints.*row, length_of(of.multibody, row), part, numbers);
   });
   return SCM_UNSPECIFIED;
@@ -99,21 +106,23 @@ SCM write_row(SCM object, SCM value, Row row, const char* what) {
   const std::size_t length = length_of(of.multibody, row);
   const std::vector<double> numbers =
       to_reals(value, length, what, "a vector with the numbers of all joints, one after the other");
-  change_joints(of, what, [&](MultibodyState& joints) { joints.*row = numbers; });
+  change_joints(of, what, [&](MultibodyState& joints) {
+    if (!is_nothing(of, joints.*row, numbers)) joints.*row = numbers;
+  });
   return SCM_UNSPECIFIED;
 }
 
 // Rows for servos, all of which rest.
 void make_room_for_servos(const Multibody& multibody, MultibodyState& joints) {
   if (!joints.servos.empty()) return;
-  joints.servos.resize(at(multibody.tree.axis_count()));
-  joints.targets.resize(at(multibody.tree.nq()));
+  joints.servos.resize(index(multibody.tree.axis_count()));
+  joints.targets.resize(index(multibody.tree.nq()));
   neutral_position(multibody.tree, joints.targets);
-  joints.target_velocities.resize(at(multibody.tree.nv()));
+  joints.target_velocities.resize(index(multibody.tree.nv()));
 }
 
 const Link& servo_link(const Jointed& of, SCM name) {
-  const Link& link = of.multibody.tree.link(to_link(of.multibody, name));
+  const Link& link = of.multibody.tree.link(to_joint(of.multibody, name));
   TW_REQUIRE(link.axes > 0, "link " + link.name + " of " + of.multibody.name + " is " +
                                 (link.dofs > 0 ? "free" : "welded") +
                                 "; expected one with a joint that a servo can drive");
@@ -143,13 +152,29 @@ std::string to_link_name(SCM name, const char* what) {
   return to_string(name, what);
 }
 
-int to_link(const Multibody& multibody, SCM name) {
-  const std::string text = to_link_name(name, "the name of a joint");
-  const int link = multibody.tree.find(text);
-  if (link >= 0) return link;
+namespace {
+
+[[noreturn]] void refuse_name(const Multibody& multibody, const char* what, const std::string& name,
+                              std::string Link::*which) {
   std::string known;
-  for (const Link& l : multibody.tree.links()) known += (known.empty() ? "" : ", ") + l.name;
-  throw UserError(multibody.name + " has no link or joint " + text + "; expected one of " + known);
+  for (const Link& l : multibody.tree.links()) known += (known.empty() ? "" : ", ") + l.*which;
+  throw UserError(multibody.name + " has no " + what + " " + name + "; expected one of " + known);
+}
+
+}  // namespace
+
+int to_link(const Multibody& multibody, SCM name) {
+  const std::string text = to_link_name(name, "the name of a link");
+  const int link = multibody.tree.find(text);
+  if (link < 0) refuse_name(multibody, "link", text, &Link::name);
+  return link;
+}
+
+int to_joint(const Multibody& multibody, SCM name) {
+  const std::string text = to_link_name(name, "the name of a joint");
+  const int link = multibody.tree.find_joint(text);
+  if (link < 0) refuse_name(multibody, "link or joint", text, &Link::joint_name);
+  return link;
 }
 
 MultibodyState read_joints(const Jointed& of, const char* what) {
@@ -233,11 +258,11 @@ TW_PRIMITIVE(joint_servo, "%joint-servo", (SCM object, SCM name),
   const Link& link = servo_link(of, name);
   const MultibodyState joints = read_joints(of, "joint-servo");
   if (joints.servos.empty()) return SCM_BOOL_F;
-  const multibody::ServoGains& gains = joints.servos[at(link.first_axis)];
+  const multibody::ServoGains& gains = joints.servos[index(link.first_axis)];
   if (gains == multibody::ServoGains()) return SCM_BOOL_F;
-  const int index = to_link(of.multibody, name);
-  return scm_list_5(read_part(joints.targets, part_of(of.multibody, index, true)),
-                    read_part(joints.target_velocities, part_of(of.multibody, index, false)),
+  const int number = to_joint(of.multibody, name);
+  return scm_list_5(read_part(joints.targets, part_of(of.multibody, number, true)),
+                    read_part(joints.target_velocities, part_of(of.multibody, number, false)),
                     scm_from_double(gains.stiffness), scm_from_double(gains.damping),
                     scm_from_double(gains.max_torque));
 }
@@ -246,11 +271,11 @@ TW_PRIMITIVE(set_joint_servo, "%set-joint-servo!", (SCM object, SCM name, SCM se
              "Give a joint a servo, a list as %joint-servo returns, or none, #f.") {
   const Jointed of = to_jointed(object, "joint-servo");
   const Link& link = servo_link(of, name);
-  const int index = to_link(of.multibody, name);
-  const Part position = part_of(of.multibody, index, true);
-  const Part velocity = part_of(of.multibody, index, false);
+  const int number = to_joint(of.multibody, name);
+  const Part position = part_of(of.multibody, number, true);
+  const Part velocity = part_of(of.multibody, number, false);
   multibody::ServoGains gains;
-  std::vector<double> target(at(of.multibody.tree.nq())), speed(velocity.count);
+  std::vector<double> target(index(of.multibody.tree.nq())), speed(velocity.count);
   neutral_position(of.multibody.tree, target);
   target = {target.begin() + static_cast<std::ptrdiff_t>(position.begin),
             target.begin() + static_cast<std::ptrdiff_t>(position.begin + position.count)};
@@ -263,8 +288,8 @@ TW_PRIMITIVE(set_joint_servo, "%set-joint-servo!", (SCM object, SCM name, SCM se
           to_reals(given[1], velocity.count, "the target-velocity of a servo", velocity.expected);
     gains.stiffness = to_optional_real(given[2], "the stiffness of a servo").value_or(0);
     gains.damping = to_optional_real(given[3], "the damping of a servo").value_or(0);
-    gains.max_torque =
-        to_optional_real(given[4], "the max-torque of a servo").value_or(gains.max_torque);
+    gains.max_torque = to_optional_real(given[4], "the max-torque of a servo")
+                           .value_or(of.multibody.tree.axes()[index(link.first_axis)].law.effort);
   }
   if (link.joint == JointKind::spherical) {
     const double norm = multibody::quaternion_at(target.data()).norm();
@@ -274,11 +299,12 @@ TW_PRIMITIVE(set_joint_servo, "%set-joint-servo!", (SCM object, SCM name, SCM se
     for (double& x : target) x /= norm;
   }
   change_joints(of, "joint-servo", [&](MultibodyState& joints) {
+    if (!is_view(of.object) && joints.servos.empty() && gains == multibody::ServoGains()) return;
     make_room_for_servos(of.multibody, joints);
     write_part(joints.targets, 0, position, target);
     write_part(joints.target_velocities, 0, velocity, speed);
     for (int i = link.first_axis; i < link.first_axis + link.axes; ++i)
-      joints.servos[at(i)] = gains;
+      joints.servos[index(i)] = gains;
   });
   return SCM_UNSPECIFIED;
 }

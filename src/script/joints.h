@@ -21,9 +21,10 @@ struct Jointed {
 // BadValue where the object is none of these; `what` was asked for.
 Jointed to_jointed(SCM object, const char* what);
 
-// The link that hangs on the joint of this name, a symbol or a string.  UserError with the names
-// there are.
+// The link of this name, a symbol or a string; and the one that the joint of this name moves, which
+// may be called by the link's as well.  UserError with the names there are.
 int to_link(const Multibody& multibody, SCM name);
+int to_joint(const Multibody& multibody, SCM name);
 // A name given as a symbol or a string.
 std::string to_link_name(SCM name, const char* what);
 

@@ -16,6 +16,7 @@ namespace tw {
 enum class LiveKind {
   world,
   shape,
+  visual,
   motion,
   slots,
   callback,
@@ -25,9 +26,9 @@ enum class LiveKind {
   recorder,
   checkpoint
 };
-inline constexpr int live_kinds = 10;
+inline constexpr int live_kinds = 11;
 inline constexpr std::array<const char*, live_kinds> live_names{
-    "worlds", "shapes", "motions", "slots",     "callbacks",
+    "worlds", "shapes", "visuals", "motions",   "slots",      "callbacks",
     "views",  "errors", "calls",   "recorders", "checkpoints"};
 
 inline std::array<std::atomic<std::int64_t>, live_kinds> live_counts{};

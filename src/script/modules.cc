@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
+#include <iterator>
 #include <string>
 
 #include "script/file-names.h"
@@ -21,6 +23,7 @@ constexpr const char* first_module = "timewarp/command-line.scm";
 
 struct Folders {
   std::string sources, compiled;
+  std::string made = sources;  // modules that are made when timewarp is built
   bool have_modules() const {
     std::error_code error;
     return fs::exists(fs::path(sources) / first_module, error);
@@ -29,11 +32,19 @@ struct Folders {
 
 Folders configured_folders() { return {TW_GUILE_SITE_DIR, TW_GUILE_SITE_CCACHE_DIR}; }
 
-// The configured folders, seen from where the executable is rather than from BINDIR.
+bool in_build_folder(const fs::path& folder) {
+  std::error_code error;
+  return fs::equivalent(folder, TW_BUILD_DIR, error);
+}
+
+// In the build folder: the sources' own.  Elsewhere: the configured folders, seen from where the
+// executable is rather than from BINDIR.
 Folders folders_beside_executable() {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return configured_folders();
+  if (in_build_folder(folder))
+    return {TW_SOURCE_DIR "/scheme", TW_BUILD_DIR "/scheme", TW_BUILD_DIR "/scheme"};
   const auto moved = [&folder](const char* configured) {
     return (folder / fs::path(configured).lexically_relative(TW_BIN_DIR))
         .lexically_normal()
@@ -42,16 +53,17 @@ Folders folders_beside_executable() {
   return {moved(TW_GUILE_SITE_DIR), moved(TW_GUILE_SITE_CCACHE_DIR)};
 }
 
-// One of Guile's paths and a folder that goes to its beginning or its end.  No destructor: errors
+// One of Guile's paths and folders that go to its beginning or its end.  No destructor: errors
 // of Guile leave by longjmp.
 struct PathEntry {
-  PathEntry(const char* path_name, const std::string& folder)
-      : path(scm_c_lookup(path_name)),
-        others(scm_variable_ref(path)),
-        entry(scm_list_1(from_argument(folder.c_str()))) {}
-  void put_first() const { scm_variable_set_x(path, scm_append(scm_list_2(entry, others))); }
-  void put_last() const { scm_variable_set_x(path, scm_append(scm_list_2(others, entry))); }
-  SCM path, others, entry;
+  PathEntry(const char* path_name, std::initializer_list<const char*> folders)
+      : path(scm_c_lookup(path_name)), others(scm_variable_ref(path)), entries(SCM_EOL) {
+    for (auto folder = std::rbegin(folders); folder != std::rend(folders); ++folder)
+      entries = scm_cons(from_argument(*folder), entries);
+  }
+  void put_first() const { scm_variable_set_x(path, scm_append(scm_list_2(entries, others))); }
+  void put_last() const { scm_variable_set_x(path, scm_append(scm_list_2(others, entries))); }
+  SCM path, others, entries;
 };
 
 [[noreturn]] void complain(const Folders& beside, const Folders& configured) {
@@ -69,11 +81,14 @@ struct PathEntry {
 void load_modules() {
   const Folders beside = folders_beside_executable();
   const Folders configured = configured_folders();
-  const bool installed = beside.have_modules();
-  const Folders& folders = installed ? beside : configured;
-  const PathEntry sources("%load-path", folders.sources);
-  const PathEntry compiled("%load-compiled-path", folders.compiled);
-  if (installed) {
+  const bool own = beside.have_modules();
+  const Folders& folders = own ? beside : configured;
+  const PathEntry sources("%load-path", {folders.sources.c_str(), folders.made.c_str()});
+  const PathEntry compiled("%load-compiled-path", {folders.compiled.c_str()});
+  if (own) {
+    // who changes a module compiles it by make
+    if (folders.sources != folders.made)
+      scm_variable_set_x(scm_c_lookup("%load-should-auto-compile"), SCM_BOOL_F);
     sources.put_first();
     compiled.put_first();
     // all that would otherwise be looked for later, when other folders come first

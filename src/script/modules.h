@@ -1,8 +1,9 @@
 // Where the program finds its Scheme modules.
 //
 // An installed program takes those that were installed with it, beside itself, wherever the whole
-// tree has been moved; no GUILE_LOAD_PATH can mix versions then.  Otherwise Guile's load path
-// decides, at whose end the folders known from `configure` stand.
+// tree has been moved, and one in its build folder those of its sources; no GUILE_LOAD_PATH can mix
+// versions then.  Otherwise Guile's load path decides, at whose end the folders known from
+// `configure` stand.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -1,6 +1,8 @@
 // Scheme primitives: making multibodies and asking about them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "base/index.h"
 #include "integrate/moving-base.h"
+#include "multibody/couplings.h"
 #include "multibody/inverse-dynamics.h"
 #include "multibody/inverse-kinematics.h"
 #include "multibody/jacobian.h"
@@ -17,8 +19,6 @@ TW_PRIMITIVES(define_multibodies)
 using namespace multibody;
 
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // ---- joints and links of a definition ----
 
@@ -140,8 +140,8 @@ LinkDef to_link_def(SCM value) {
 
 // ---- kinematics ----
 
-multibody::Surroundings around(const Jointed& of) {
-  multibody::Surroundings result;
+multibody::BaseMotion around(const Jointed& of) {
+  multibody::BaseMotion result;
   result.gravity = of.world.gravity();
   const double now = is_view(of.object) ? to_view(of.object).joints_time() : of.world.time();
   MovingBase(of.multibody).set(now, result);
@@ -155,14 +155,15 @@ constexpr const char* u_expected = "a vector with one number for each freedom of
 std::vector<double> to_row(const Jointed& of, SCM value, bool positions, const char* name) {
   const Tree& tree = of.multibody.tree;
   const char* expected = positions ? q_expected : u_expected;
-  std::vector<double> row = to_reals(value, at(positions ? tree.nq() : tree.nv()), name, expected);
+  std::vector<double> row =
+      to_reals(value, index(positions ? tree.nq() : tree.nv()), name, expected);
   for (const double x : row)
     if (!std::isfinite(x)) throw BadValue{name, value, "finite numbers"};
   if (!positions) return row;
   for (const Link& link : tree.links()) {
     if (link.joint != JointKind::spherical && link.joint != JointKind::free) continue;
     const int q = link.joint == JointKind::free ? link.q + 3 : link.q;
-    if (!(quaternion_at(&row[at(q)]).norm() > 1e-100))
+    if (!(quaternion_at(&row[index(q)]).norm() > 1e-100))
       throw BadValue{name, value, "quaternions that are not zero"};
   }
   normalize(tree, row);
@@ -258,30 +259,36 @@ TW_PRIMITIVE(multibody_links, "%multibody-links", (SCM multibody), "Its links, b
 
 TW_PRIMITIVE(link_body, "%link-body", (SCM multibody, SCM name), "The body of a link.") {
   const Multibody& m = to_own_multibody(multibody);
-  return from_body(body_world(multibody), m.links[at(to_link(m, name))]);
+  return from_body(body_world(multibody), m.links[index(to_link(m, name))]);
 }
 
-TW_PRIMITIVE(
-    multibody_joints, "%multibody-joints", (SCM object),
-    "((NAME KIND LIMITS) ...) of all links; limits: (LOWER UPPER), two such, ANGLE or #f.") {
+TW_PRIMITIVE(multibody_joints, "%multibody-joints", (SCM object),
+             "((NAME KIND LIMITS TORQUE VELOCITY) ...) of all links; limits: (LOWER UPPER), two "
+             "such, ANGLE or "
+             "#f; the most of both, or #f.") {
   const Multibody& m = to_jointed(object, "the multibody").multibody;
   SCM list = SCM_EOL;
   for (int i = m.tree.link_count(); i-- > 0;) {
     const Link& link = m.tree.link(i);
-    SCM limits = SCM_BOOL_F;
-    if (link.axes == 1) limits = from_limits(m.tree.axes()[at(link.first_axis)]);
+    SCM limits = SCM_BOOL_F, torque = SCM_BOOL_F, speed = SCM_BOOL_F;
+    if (link.axes > 0) {
+      const AxisSpec& law = m.tree.axes()[index(link.first_axis)].law;
+      torque = scm_from_double(law.effort), speed = scm_from_double(law.speed);
+    }
+    if (link.axes == 1) limits = from_limits(m.tree.axes()[index(link.first_axis)]);
     if (link.axes == 2)
-      limits = scm_list_2(from_limits(m.tree.axes()[at(link.first_axis)]),
-                          from_limits(m.tree.axes()[at(link.first_axis + 1)]));
-    list = scm_cons(
-        scm_list_3(from_string(link.name), scm_from_utf8_symbol(name_of(link.joint)), limits),
-        list);
+      limits = scm_list_2(from_limits(m.tree.axes()[index(link.first_axis)]),
+                          from_limits(m.tree.axes()[index(link.first_axis + 1)]));
+    list = scm_cons(scm_list_5(from_string(link.joint_name),
+                               scm_from_utf8_symbol(name_of(link.joint)), limits, torque, speed),
+                    list);
   }
   return list;
 }
 
-TW_PRIMITIVE(joint_index, "%joint-index", (SCM object, SCM name), "Number of a link, from 0.") {
-  return scm_from_int(to_link(to_jointed(object, "the multibody").multibody, name));
+TW_PRIMITIVE(joint_index, "%joint-index", (SCM object, SCM name),
+             "Number of the link that a joint moves, from 0.") {
+  return scm_from_int(to_joint(to_jointed(object, "the multibody").multibody, name));
 }
 
 // ---- kinematics and dynamics ----
@@ -293,7 +300,7 @@ TW_PRIMITIVE(jacobian, "%jacobian", (SCM object, SCM name, SCM positions),
   const int link = to_link(of.multibody, name);
   const std::vector<double> q = scm_is_true(positions) ? to_row(of, positions, true, "positions")
                                                        : read_joints(of, "jacobian").q;
-  const std::vector<double> u(at(tree.nv()));
+  const std::vector<double> u(index(tree.nv()));
   Kinematics k(tree);
   place(tree, q, u, around(of), k);
   std::vector<double> J(6 * u.size());
@@ -307,7 +314,7 @@ TW_PRIMITIVE(forward_kinematics, "%forward-kinematics", (SCM object, SCM positio
   const Tree& tree = of.multibody.tree;
   const int link = to_link(of.multibody, name);
   const std::vector<double> q = to_row(of, positions, true, "positions");
-  const std::vector<double> u(at(tree.nv()));
+  const std::vector<double> u(index(tree.nv()));
   Kinematics k(tree);
   place(tree, q, u, around(of), k);
   const Frame frame = link_frame(tree, k, link);
@@ -344,9 +351,12 @@ TW_PRIMITIVE(torques_needed, "%inverse-dynamics",
              "The torques that a motion needs, beyond those of damping, friction and springs.") {
   const Jointed of = to_jointed(object, "inverse-dynamics");
   const Tree& tree = of.multibody.tree;
-  const std::vector<double> q = to_row(of, positions, true, "positions"),
-                            u = to_row(of, velocities, false, "velocities"),
-                            rate = to_row(of, rates, false, "accelerations");
+  std::vector<double> q = to_row(of, positions, true, "positions"),
+                      u = to_row(of, velocities, false, "velocities"),
+                      rate = to_row(of, rates, false, "accelerations");
+  follow_positions(tree, q);
+  follow(tree, u);
+  follow(tree, rate);
   Kinematics k(tree);
   place(tree, q, u, around(of), k);
   InverseDynamics work(tree);
@@ -354,6 +364,7 @@ TW_PRIMITIVE(torques_needed, "%inverse-dynamics",
   multibody::inverse_dynamics(tree, k, rate, work, needed);
   joint_torques(tree, q, u, {}, passive);
   for (std::size_t i = 0; i < needed.size(); ++i) needed[i] -= passive[i];
+  fold(tree, needed);
   return from_reals(needed);
 }
 

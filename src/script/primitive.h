@@ -30,14 +30,19 @@ struct Primitive {
 
 class PrimitiveList {
  public:
-  bool add(const Primitive& primitive) {
-    list_.push_back(primitive);
+  // What is added from here on is of this list.
+  PrimitiveList() { current_ = this; }
+  PrimitiveList(const PrimitiveList&) = delete;
+  PrimitiveList& operator=(const PrimitiveList&) = delete;
+  static bool add(const Primitive& primitive) {
+    current_->list_.push_back(primitive);
     return true;
   }
   // Defines and exports all in Guile's current module, with their docstrings.
   void define() const;
 
  private:
+  static inline PrimitiveList* current_ = nullptr;
   std::vector<Primitive> list_;
 };
 
@@ -54,16 +59,15 @@ struct Guarded<body> {
 
 }  // namespace tw
 
-#define TW_PRIMITIVES(define_function)           \
-  static ::tw::PrimitiveList& primitive_list() { \
-    static ::tw::PrimitiveList list;             \
-    return list;                                 \
-  }                                              \
-  void define_function() { primitive_list().define(); }
+// Static objects of a file begin in the order in which they stand there: a list is that of what
+// follows it.
+#define TW_PRIMITIVES(define_function)               \
+  static ::tw::PrimitiveList define_function##_list; \
+  void define_function() { define_function##_list.define(); }
 
-#define TW_PRIMITIVE(function, scheme_name, arguments, doc)                                      \
-  static SCM function arguments;                                                                 \
-  [[maybe_unused]] static const bool function##_is_listed =                                      \
-      primitive_list().add({scheme_name, ::tw::Guarded<function>::count,                         \
-                            reinterpret_cast<scm_t_subr>(&::tw::Guarded<function>::call), doc}); \
+#define TW_PRIMITIVE(function, scheme_name, arguments, doc)                           \
+  static SCM function arguments;                                                      \
+  [[maybe_unused]] static const bool function##_is_listed = ::tw::PrimitiveList::add( \
+      {scheme_name, ::tw::Guarded<function>::count,                                   \
+       reinterpret_cast<scm_t_subr>(&::tw::Guarded<function>::call), doc});           \
   static SCM function arguments

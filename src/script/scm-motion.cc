@@ -129,8 +129,10 @@ void ScmMotion::require_speed(double from, const Pose& before, double to, const 
   const double time_spacing = 0x1p-50 * std::max(std::abs(from), std::abs(to));
   const double slack = 1e-9 * allowed + 1e-12 * (1 + after.p.norm()) + time_spacing * max_speed_;
   TW_REQUIRE(moved <= allowed + slack,
-             name_ + " moved a point by " + show(moved) + " m between " + show(from) + " s and " +
-                 show(to) + " s; expected at most max-speed, " + show(max_speed_) + " m/s");
+             name_ + " is faster than its #:max-speed: it moves a point by " + show(moved) +
+                 " m between " + show(from) + " s and " + show(to) + " s, at " +
+                 show(moved / (to - from)) + " m/s; expected at most " + show(max_speed_) +
+                 " m/s, or a larger #:max-speed");
 }
 
 TW_PRIMITIVE(procedure_motion, "%procedure-motion",

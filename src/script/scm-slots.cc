@@ -154,6 +154,27 @@ SlotsPtr ScmSlots::with(int index, SCM value) const {
   return copy;
 }
 
+namespace {
+
+// Of values that were frozen: they end, and hold nothing that equal? would call a procedure for.
+bool are_same(SCM a, SCM b) {
+  for (; scm_is_pair(a) && scm_is_pair(b); a = SCM_CDR(a), b = SCM_CDR(b))
+    if (!are_same(SCM_CAR(a), SCM_CAR(b))) return false;
+  if (scm_is_string(a) && scm_is_string(b)) return scm_is_true(scm_string_equal_p(a, b));
+  if (!scm_is_vector(a) || !scm_is_vector(b)) return scm_is_true(scm_eqv_p(a, b));
+  const std::size_t size = SCM_SIMPLE_VECTOR_LENGTH(a);
+  if (SCM_SIMPLE_VECTOR_LENGTH(b) != size) return false;
+  for (std::size_t i = 0; i < size; ++i)
+    if (!are_same(SCM_SIMPLE_VECTOR_REF(a, i), SCM_SIMPLE_VECTOR_REF(b, i))) return false;
+  return true;
+}
+
+}  // namespace
+
+bool ScmSlots::has_same(int index, const ScmSlots& other) const {
+  return are_same(values_[index], other.values_[index]);
+}
+
 std::uint64_t ScmSlots::hash() const {
   std::uint64_t hash = names_->size();
   for (std::size_t i = 0; i < names_->size(); ++i) hash = hash_value(mix(hash, i), values_[i]);

@@ -35,6 +35,8 @@ class ScmSlots : public Slots, Live<LiveKind::slots> {
   int find(SCM name) const;
   SCM value(int index) const { return values_[index]; }
   SlotsPtr with(int index, SCM value) const;
+  // Whether the other has an equal value there.
+  bool has_same(int index, const ScmSlots& other) const;
   // Over the numbers, also those inside pairs and vectors; other values don't count.
   std::uint64_t hash() const override;
   // "bounces, energy": for messages.

@@ -25,7 +25,7 @@ Vec3 to_point(SCM at) { return scm_is_true(at) ? to_vec3(at, "at") : Vec3(Vec3::
 
 Wrench read_joint_load(SCM object, SCM name, const char* what) {
   const Jointed of = to_jointed(object, what);
-  const int link = to_link(of.multibody, name);
+  const int link = to_joint(of.multibody, name);
   if (is_view(object)) return to_view(object).joint_load(link);
   require_outside_callbacks(what);
   return of.world.joint_load(of.multibody.number, link, of.world.time());

@@ -3,6 +3,7 @@
 #include "geometry/shape.h"
 
 #include "import/solid-file.h"
+#include "import/surface-file.h"
 #include "script/file-names.h"
 #include "script/primitive.h"
 #include "script/types.h"
@@ -117,12 +118,43 @@ TW_PRIMITIVE(height_field, "%height-field", (SCM heights, SCM spacing, SCM color
   return from_shape(make_height_field(std::move(numbers), columns, x, y, std::move(painted)));
 }
 
-TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls),
-             "Return the shape of a mesh file.") {
+namespace {
+
+Vec3 to_scale(SCM scale) {
   const Vec3 factors = scm_is_real(scale) ? Vec3(Vec3::Constant(to_finite(scale, "scale")))
                                           : to_vec3(scale, "scale");
   if (!(factors.cwiseAbs().minCoeff() > 0)) throw BadValue{"scale", scale, "no factor of 0"};
-  return from_shape(read_solid(to_file_name(file, "the file"), factors, scm_is_true(hulls)));
+  return factors;
+}
+
+}  // namespace
+
+TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls, SCM y_up, SCM strict),
+             "Return (SHAPE . NOTES) of a mesh file.") {
+  SolidOptions options;
+  options.hulls = scm_is_true(hulls);
+  options.y_up = scm_is_true(y_up);
+  options.scale = to_scale(scale);
+  Mending mending(scm_is_true(strict));
+  const ShapePtr shape = read_solid(to_file_name(file, "the file"), options, mending);
+  return scm_cons(from_shape(shape), from_strings(mending.take_notes()));
+}
+
+TW_PRIMITIVE(load_visual, "%load-visual",
+             (SCM file, SCM scale, SCM y_up, SCM color, SCM position, SCM orientation),
+             "Return what is seen of a mesh file.") {
+  const Vec3 factors = to_scale(scale);
+  VisualPart part;
+  if (scm_is_true(color)) part.color = to_vec3(color, "color");
+  if (scm_is_true(position)) part.pose.p = to_vec3(position, "position");
+  if (scm_is_true(orientation)) {
+    part.pose.q = to_quat(orientation, "orientation");
+    if (!(part.pose.q.norm() > 0))
+      throw BadValue{"orientation", orientation, "a quaternion #(w x y z) that is not zero"};
+    part.pose.q.normalize();
+  }
+  part.mesh = read_surface(to_file_name(file, "the file"), factors, scm_is_true(y_up));
+  return from_visual(std::make_shared<const Visual>(Visual{part}));
 }
 
 TW_PRIMITIVE(half_space, "%half-space", (SCM normal, SCM offset),

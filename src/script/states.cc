@@ -167,7 +167,10 @@ TW_PRIMITIVE(set_slot, "%set-slot!", (SCM object, SCM name, SCM value), "Set a s
   return change_state(object, "slot", [&](StateView& view) {
     const SlotsPtr slots = view.slots();
     const int index = find_slot(slots, object, name);
-    view.set_slots(as_scm_slots(slots)->with(index, value));
+    SlotsPtr changed = as_scm_slots(slots)->with(index, value);
+    // an edit of nothing is none; what a callback sets is told by its record
+    if (!is_view(object) && as_scm_slots(slots)->has_same(index, *as_scm_slots(changed))) return;
+    view.set_slots(std::move(changed));
   });
 }
 

@@ -3,7 +3,9 @@
 // Values are copies, identities are handles.  A *world* owns its tw::World; a *body* is a handle
 // that keeps its world alive (one handle per body, so `eq?` works); a *shape* and a *motion* hold
 // counted references; a *view* points into the kernel during one call and is dead afterwards; a
-// *collision* and a *frame* are copies.  Procedures registered with a world are kept alive by the
+// *collision* and a *frame* are copies; an *addition* stands for what was added and can be taken
+// away: a callback, an observer, a force.  A body's number may be given to another after a restore:
+// handles know the serial number, too.  Procedures registered with a world are kept alive by the
 // world's table, in Guile's heap, so that a world nobody refers to is collected.
 //
 // Invariants: finalizers only drop references: Guile may run them in another thread.
@@ -13,6 +15,8 @@
 #pragma once
 
 #include <libguile.h>
+
+#include <variant>
 
 #include "geometry/shape.h"
 #include "integrate/trajectory.h"
@@ -48,16 +52,23 @@ void keep_with_world(SCM world, SCM object);
 bool is_body(SCM object);
 // The world that a body or multibody belongs to.
 SCM body_world(SCM body);
-// The number of a body of `world`.  BadValue for what is no body, and for a body of another world.
+// The number of a body of `world`.  BadValue for what is no body, for a body of another world, and
+// for one that is not there: removed, or restored away.
 BodyId to_body(SCM world, SCM object, const char* name);
 // What the Scheme parameter of that name holds.
 SCM current_world();
-// Of one that may have been removed, for what its handle alone can tell.
+// Of one that may have been removed, but not restored away (BadValue).
 BodyId body_number(SCM body);
+// Whether the world has it now, or has removed it.
+bool is_known(SCM body);
+// The name that it has, or had.
+SCM body_name_of(SCM body);
 // The number of a body of the current world.
 inline BodyId to_own_body(SCM body) { return to_body(current_world(), body, "the body"); }
 // The handle of a body, always the same object.
 SCM from_body(SCM world, BodyId id);
+// Of one that may not be there any more.
+SCM from_past_body(SCM world, BodyId id, std::uint64_t serial);
 
 // ---- multibodies ----
 bool is_multibody(SCM object);
@@ -81,6 +92,9 @@ void kill_view(SCM view);
 bool is_shape(SCM object);
 ShapePtr to_shape(SCM object, const char* name);
 SCM from_shape(ShapePtr shape);
+// A visual, as load-visual returns, a shape, or a list of them.
+VisualPtr to_visual(SCM object, const char* name);
+SCM from_visual(VisualPtr visual);
 bool is_motion(SCM object);
 TrajectoryPtr to_motion(SCM object, const char* name);
 // `kept`: a Scheme object that the motion needs.
@@ -92,16 +106,36 @@ bool is_collision(SCM object);
 struct CollisionCopy {
   Collision collision;
   bool reversed = false;
+  std::uint64_t serial1 = 0, serial2 = 0;  // of its bodies
 };
 const CollisionCopy& to_collision(SCM object);
 SCM collision_world(SCM object);
 SCM from_collision(const Collision& collision, bool reversed, SCM world);
 
+// ---- additions ----
+// What was added to a world and can be taken away, by its address.
+struct Addition {
+  std::variant<std::shared_ptr<Callback>, std::shared_ptr<CollisionCallback>, CollisionObserverPtr,
+               std::shared_ptr<FrameSink>, ForceHandle>
+      what;
+};
+SCM from_addition(Addition addition, SCM world);
+const Addition& to_addition(SCM object);
+SCM addition_world(SCM object);
+
 // ---- checkpoints ----
-// The world they belong to is kept alive.
-SCM from_checkpoint(std::shared_ptr<const Checkpoint> checkpoint, SCM world);
-const Checkpoint& to_checkpoint(SCM object);
+// What it brings back, and what the binding does: `extra` belongs to Scheme.
+struct ScmCheckpoint {
+  std::shared_ptr<const Checkpoint> checkpoint;
+  std::uint64_t forces = 0;
+};
+// The world they belong to is kept alive, and what it kept then.
+SCM from_checkpoint(ScmCheckpoint checkpoint, SCM world, SCM extra);
+const ScmCheckpoint& to_checkpoint(SCM object);
 SCM checkpoint_world(SCM object);
+SCM checkpoint_extra(SCM object);
+// Its world keeps what it kept then, and no more.
+void keep_as_then(SCM checkpoint);
 
 // Makes the types and defines <world> and its like in the current module.
 void define_types();

@@ -192,6 +192,12 @@ SCM from_string(const std::string& text) {
   return scm_from_stringn(text.data(), text.size(), "UTF-8", SCM_FAILED_CONVERSION_QUESTION_MARK);
 }
 
+SCM from_strings(const std::vector<std::string>& texts) {
+  SCM list = SCM_EOL;
+  for (std::size_t i = texts.size(); i-- > 0;) list = scm_cons(from_string(texts[i]), list);
+  return list;
+}
+
 SCM from_place(const Place& place) {
   if (!place.known()) return SCM_BOOL_F;
   return scm_list_3(from_string(place.file), scm_from_int(place.line), scm_from_int(place.column));

@@ -59,6 +59,7 @@ SCM from_vec3(const Vec3& v);
 SCM from_quat(const Quat& q);
 SCM from_matrix(const Mat3& m);
 SCM from_string(const std::string& text);
+SCM from_strings(const std::vector<std::string>& texts);  // a list
 // (FILE LINE COLUMN), or #f where the place is unknown.
 SCM from_place(const Place& place);
 

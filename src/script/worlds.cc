@@ -86,13 +86,7 @@ struct WorldSetting {
 
 // Settings of a world by name, the test modes among them.
 constexpr WorldSetting world_settings[] = {
-    {"gravity", [](World& w, SCM v, const char* n) { w.set_gravity(to_vec3(v, n)); }},
-    {"group-check-rate",
-     [](World& w, SCM v, const char* n) { w.set_group_check_rate(to_real(v, n)); }},
-    {"accuracy", [](World& w, SCM v, const char* n) { w.set_accuracy(to_real(v, n)); }},
-    {"seed", [](World& w, SCM v, const char* n) { w.set_seed(to_seed(v, n)); }},
     {"integrator", [](World& w, SCM v, const char* n) { w.set_integrator(to_string(v, n)); }},
-    {"policy", [](World& w, SCM v, const char* n) { w.set_policy(to_string(v, n)); }},
     {"hash", [](World& w, SCM v, const char*) { w.set_hash(to_bool(v)); }},
     {"check", [](World& w, SCM v, const char*) { w.set_check(to_bool(v)); }},
     {"undo-redo", [](World& w, SCM v, const char*) { w.set_undo_redo(to_bool(v)); }},
@@ -105,6 +99,35 @@ constexpr WorldSetting world_settings[] = {
      [](World& w, SCM v, const char* n) { w.set_threads(static_cast<int>(to_integer(v, n))); }},
     {"window", [](World& w, SCM v, const char* n) { w.set_window_cells(to_real(v, n)); }},
 };
+
+struct SceneSetting {
+  const char* name;
+  void (*read)(SettingChanges&, SCM value, const char* name);
+};
+
+// Those that scenes make, too.
+constexpr SceneSetting scene_settings[] = {
+    {"gravity", [](SettingChanges& c, SCM v, const char* n) { c.gravity = to_vec3(v, n); }},
+    {"group-check-rate",
+     [](SettingChanges& c, SCM v, const char* n) { c.group_check_rate = to_real(v, n); }},
+    {"accuracy", [](SettingChanges& c, SCM v, const char* n) { c.accuracy = to_real(v, n); }},
+    {"seed", [](SettingChanges& c, SCM v, const char* n) { c.seed = to_seed(v, n); }},
+    {"policy", [](SettingChanges& c, SCM v, const char* n) { c.policy = to_string(v, n); }},
+    {"push-overlaps",
+     [](SettingChanges& c, SCM v, const char*) {
+       c.push_overlaps = to_symbol_name(v, "on-overlap") == "push";
+     }},
+};
+
+bool read_setting(SettingChanges& changes, SCM name, SCM value) {
+  const std::string text = to_symbol_name(name, "the setting");
+  for (const SceneSetting& setting : scene_settings)
+    if (text == setting.name) {
+      setting.read(changes, value, setting.name);
+      return true;
+    }
+  return false;
+}
 
 }  // namespace
 
@@ -123,12 +146,27 @@ TW_PRIMITIVE(world_properties, "%world-table", (SCM world), "Return the world's 
 TW_PRIMITIVE(set_world, "%set-world!", (SCM world, SCM name, SCM value), "Set a world's setting.") {
   const std::string text = to_symbol_name(name, "the setting");
   World& w = quiet_world(world, "a world's setting");
+  SettingChanges changes;
+  if (read_setting(changes, name, value)) {
+    w.set(changes);
+    return SCM_UNSPECIFIED;
+  }
   for (const WorldSetting& option : world_settings)
     if (text == option.name) {
       option.set(w, value, option.name);
       return SCM_UNSPECIFIED;
     }
   throw UserError("a world has no setting " + text);
+}
+
+TW_PRIMITIVE(set_all, "%set-all!", (SCM world, SCM alist),
+             "Make all settings of an alist or, where one is refused, none.") {
+  SettingChanges changes;
+  for (; scm_is_pair(alist); alist = SCM_CDR(alist))
+    TW_REQUIRE(read_setting(changes, SCM_CAAR(alist), SCM_CDAR(alist)),
+               "a scene has no setting " + to_symbol_name(SCM_CAAR(alist), "the setting"));
+  quiet_world(world, "a world's setting").set(changes);
+  return SCM_UNSPECIFIED;
 }
 
 TW_PRIMITIVE(set_adversary, "%set-adversary!", (SCM world, SCM seed, SCM head_start, SCM every),
@@ -156,11 +194,25 @@ TW_PRIMITIVE(advance, "%advance!", (SCM world, SCM until, SCM slice),
                        RunStatus::finished);
 }
 
-TW_PRIMITIVE(step, "%step!", (SCM world), "Process one event; false if there is none.") {
+TW_PRIMITIVE(frame_rates, "%frame-rates", (SCM world),
+             "Return the frames per second of all that take frames.") {
+  SCM list = SCM_EOL;
+  for (const double rate : to_world(world).frame_rates())
+    list = scm_cons(scm_from_double(rate), list);
+  return list;
+}
+
+TW_PRIMITIVE(step, "%step!", (SCM world),
+             "Process one event; return (KIND TIME BODY ...), false if there is none.") {
   WorldBox& box = quiet_box(world, "step!");
   const CallCounter counter(box);
   const InterruptionCheck check(look_for_signals);
-  return scm_from_bool(box.world.step());
+  const std::optional<StepReport> done = box.world.step();
+  if (!done) return SCM_BOOL_F;
+  SCM bodies = SCM_EOL;
+  for (const BodyId id : done->bodies) bodies = scm_cons(from_body(world, id), bodies);
+  return scm_cons2(scm_from_utf8_symbol(done->kind), scm_from_double(done->time),
+                   scm_reverse_x(bodies, SCM_EOL));
 }
 
 TW_PRIMITIVE(world_time, "%world-time", (SCM world), "Return the last committed time, s.") {
@@ -208,20 +260,24 @@ TW_PRIMITIVE(write_statistics, "%write-statistics", (SCM world, SCM path),
   return SCM_UNSPECIFIED;
 }
 
-TW_PRIMITIVE(checkpoint, "%checkpoint", (SCM world), "Return the committed present of a world.") {
+TW_PRIMITIVE(checkpoint, "%checkpoint", (SCM world, SCM extra),
+             "Return the committed present of a world, with what Scheme adds.") {
   WorldBox& box = quiet_box(world, "checkpoint");
   const CallCounter counter(box);
-  return from_checkpoint(box.world.checkpoint(), world);
+  return from_checkpoint({box.world.checkpoint(), box.forces}, world, extra);
 }
 
 TW_PRIMITIVE(restore, "%restore!", (SCM world, SCM checkpoint),
-             "Bring a world back to a checkpoint.") {
-  const Checkpoint& kept = to_checkpoint(checkpoint);
+             "Bring a world back to a checkpoint; return what Scheme added.") {
+  const ScmCheckpoint& kept = to_checkpoint(checkpoint);
   if (!scm_is_eq(checkpoint_world(checkpoint), world))
     throw BadValue{"the checkpoint", checkpoint,
                    "one of the current world (this one belongs to another)"};
-  quiet_world(world, "restore!").restore(kept);
-  return SCM_UNSPECIFIED;
+  WorldBox& box = quiet_box(world, "restore!");
+  box.world.restore(*kept.checkpoint);
+  box.forces = kept.forces;
+  keep_as_then(checkpoint);
+  return checkpoint_extra(checkpoint);
 }
 
 TW_PRIMITIVE(state_queue, "%state-queue", (SCM world, SCM body),

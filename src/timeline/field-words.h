@@ -62,7 +62,6 @@ void each_word(const ImpactRun& run, Put&& put) {
   put(std::uint64_t{run.wall});
   put(std::uint64_t{run.strikes});
   put(run.wall_time);
-  put(run.unsettled_time);
   put(run.wall_speed);
   put(run.last_time);
   put(std::uint64_t{run.partner});

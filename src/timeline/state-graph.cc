@@ -13,6 +13,13 @@ ProcessId StateGraph::add_process() {
   return static_cast<ProcessId>(queues_.size() - 1);
 }
 
+void StateGraph::set_process_count(std::size_t count) {
+  TW_ASSERT(live_ == 0, "queues are not empty");
+  queues_.clear();
+  queues_.resize(count);
+  busy_.clear();
+}
+
 State* StateGraph::allocate() {
   State* state = nullptr;
   if (unused_.empty()) {

@@ -32,6 +32,8 @@ class StateGraph {
   using OnRelease = std::function<void(State&)>;
 
   ProcessId add_process();
+  // So many from here on; all queues must be empty.
+  void set_process_count(std::size_t count);
   std::size_t process_count() const { return queues_.size(); }
   State* head(ProcessId process) const { return queues_[number(process)].head; }
   State* tail(ProcessId process) const { return queues_[number(process)].tail.get(); }

@@ -44,8 +44,6 @@ struct ImpactRun {
   BodyId wall = 0;
   std::uint32_t strikes = 0;
   double wall_time = -never, wall_speed = 0;
-  // when it and its partner still approached after all the impulses that an impact may have
-  double unsettled_time = -never;
 };
 
 // All of a state but its place in the graph.  What every prediction reads stands last, beside the

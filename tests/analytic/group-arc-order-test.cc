@@ -85,6 +85,7 @@ GroupStart wobbling_ball(bool shaken) {
   c.kt = 1600;
   c.ct = 30;
   c.hardening = 0.01;
+  c.firm = {};
   c.b = 0.3;
   GroupMember m = ball(1, 0.1, Vec3::Zero(), slope_gravity(0.1));
   m.moments = Vec3(0.004, 0.005, 0.003);

@@ -79,8 +79,8 @@ TEST(GroupArc, anchored_block_below_the_friction_angle_comes_to_rest) {
   EXPECT_FALSE(arc.contact_force(0, 4).slipping);
 }
 
-// What is pressed to depth d hangs on tangential springs of h(d) kt: it gives way by F/(h kt).  The
-// block is too heavy to turn.
+// What is pressed to depth d hangs on tangential springs of y^2 kt, y its grip: it gives way by
+// F/(y^2 kt).  The block is too heavy to turn.
 TEST(GroupArc, friction_is_as_much_stiffer_as_the_spring_that_presses) {
   for (const double weights : {1.0, 30.0, 1000.0, 1e4}) {
     GroupStart start = cube_on_slope(0, 0.5, 0.2, 4);
@@ -93,7 +93,7 @@ TEST(GroupArc, friction_is_as_much_stiffer_as_the_spring_that_presses) {
     start.position_tolerance = 1e-6 * c.depth;
     start.velocity_tolerance = 1e-6 * std::sqrt(g * c.depth);
     CompleteArc arc(start);
-    const double hardness = weights * g / (c.k * depth), given_way = pull / (hardness * c.kt);
+    const double grip = friction_grip(c, depth), given_way = pull / (grip * grip * c.kt);
     EXPECT_NEAR(arc.evaluate(0, 4).x.x(), given_way, 1e-4 * given_way) << weights;
     EXPECT_FALSE(arc.contact_force(0, 4).slipping);
   }

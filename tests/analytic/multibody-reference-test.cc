@@ -49,7 +49,7 @@ Numbers our_accelerations(const Links& links, const Numbers& q, const Numbers& u
   const Tree tree(links);
   Kinematics k(tree);
   Articulation a(tree);
-  Surroundings around;
+  BaseMotion around;
   around.gravity = gravity;
   place(tree, q, u, around, k);
   Numbers rate(u.size());

@@ -27,7 +27,7 @@
 #include "geometry/polyhedron.h"
 #include "unit/convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 struct Solid {
@@ -280,7 +280,7 @@ int print_tables(int poses, [[maybe_unused]] double tolerance) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test
 
 int main(int count, char** arguments) {
   const int poses = count > 1 ? std::atoi(arguments[1]) : 3000;
@@ -290,5 +290,5 @@ int main(int count, char** arguments) {
                  "distance-bench: expected positive numbers of poses and for FCL's tolerance\n");
     return 2;
   }
-  return tw::testing::print_tables(poses, tolerance);
+  return tw::test::print_tables(poses, tolerance);
 }

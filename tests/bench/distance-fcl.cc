@@ -17,7 +17,7 @@
 #include <cstdlib>
 #include <memory>
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 using Geometry = std::unique_ptr<fcl::CollisionGeometryd>;
@@ -104,4 +104,4 @@ std::vector<FclAnswer> fcl_distances(const std::vector<FclQuery>& queries, FclSo
   return all;
 }
 
-}  // namespace tw::testing
+}  // namespace tw::test

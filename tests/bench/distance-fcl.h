@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace tw::testing {
+namespace tw::test {
 
 // A convex solid about its origin, along z where it has an axis (a cone's tip at +z), placed.  m.
 struct FclSolid {
@@ -39,4 +39,4 @@ struct FclAnswer {
 // In processes of their own, as FCL's assertions end the one they fail in.
 std::vector<FclAnswer> fcl_distances(const std::vector<FclQuery>& queries, FclSolver solver);
 
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -38,7 +38,7 @@ class OwnEngine : public DynamicsEngine {
 
  private:
   Tree tree_;
-  Surroundings around_;
+  BaseMotion around_;
   Kinematics k_{tree_};
   Articulation a_{tree_};
   std::vector<double> total_ = std::vector<double>(static_cast<std::size_t>(tree_.nv()));
@@ -153,7 +153,7 @@ struct Placed {
   Articulation a{tree};
 
   explicit Placed(const Links& links) : tree(links) {
-    place(tree, states.q[0], states.u[0], Surroundings(), k);
+    place(tree, states.q[0], states.u[0], BaseMotion(), k);
     factor(tree, k, a);
   }
 };
@@ -163,7 +163,7 @@ void kinematics(benchmark::State& state, const Links& links) {
   std::size_t at = 0;
   for (auto _ : state) {
     at = (at + 1) % States::count;
-    place(p.tree, p.states.q[at], p.states.u[at], Surroundings(), p.k);
+    place(p.tree, p.states.q[at], p.states.u[at], BaseMotion(), p.k);
     benchmark::DoNotOptimize(p.k.nodes.data());
   }
 }

@@ -12,11 +12,9 @@
 namespace tw::test {
 namespace {
 
-constexpr int seeds = 50;
-
 void expect_same_under_adversaries(const Scene& scene, std::int64_t least_collisions) {
-  const Tally tally = expect_one_history(scene, adversaries(seeds), least_collisions);
-  EXPECT_GT(tally.rollbacks, seeds) << scene.name << ": the adversaries did nothing";
+  const Tally tally = expect_one_history(scene, adversaries(adversary_seeds), least_collisions);
+  EXPECT_GT(tally.rollbacks, adversary_seeds) << scene.name << ": the adversaries did nothing";
 }
 
 TEST(Adversary, gas_of_100) { expect_same_under_adversaries(gas_scene(100), 100); }
@@ -46,7 +44,8 @@ TEST(Adversary, cradle_hit_from_both_sides_at_once) {
 TEST(Adversary, floor_of_36_bouncing_balls) { expect_same_under_adversaries(floor_scene(1.5), 50); }
 
 TEST(Adversary, cubes_that_meet_face_on_at_the_same_instants) {
-  const int most = long_tests() ? seeds : 8;  // cubes that slide past each other cost many checks
+  const int most =
+      long_tests() ? adversary_seeds : 8;  // cubes that slide past each other cost many checks
   expect_one_history(cube_lattice_scene(3, 1, 1), adversaries(most), 40);
 }
 

@@ -9,11 +9,9 @@
 namespace tw::test {
 namespace {
 
-constexpr int seeds = 50;
-
 void expect_same_under_adversaries(const Scene& scene) {
-  const Tally tally = expect_one_history(scene, adversaries(seeds), 20);
-  EXPECT_GT(tally.rollbacks, seeds) << scene.name << ": the adversaries did nothing";
+  const Tally tally = expect_one_history(scene, adversaries(adversary_seeds), 20);
+  EXPECT_GT(tally.rollbacks, adversary_seeds) << scene.name << ": the adversaries did nothing";
 }
 
 TEST(CallbackSchedules, on_every_body) {

@@ -11,6 +11,8 @@
 
 namespace tw::test {
 
+inline constexpr int adversary_seeds = 50;
+
 inline void report(const Scene& scene, const Tally& tally) {
   const double runs = std::max(1, tally.runs);
   std::printf(

@@ -27,7 +27,7 @@ std::vector<Schedule> short_adversaries(int seeds) {
   return schedules;
 }
 
-std::vector<Scene> scenes() {
+std::vector<Scene> heaps() {
   return {heap_scene(long_tests() ? 20 : 12, long_tests() ? 2 : 1.2), tower_scene(4, 1),
           platform_scene(0.8), tiles_scene(0.8)};
 }
@@ -39,7 +39,7 @@ void expect_same_under_adversaries(const Scene& scene, int seeds) {
 }
 
 TEST(Heaps, heap_of_boxes_balls_and_rocks_under_adversaries) {
-  expect_same_under_adversaries(scenes()[0], 50);
+  expect_same_under_adversaries(heaps()[0], 50);
 }
 
 // Large enough that blows divide its groups (groups/region.cc).
@@ -55,12 +55,12 @@ TEST(Heaps, large_heap_in_regions_under_adversaries) {
 }
 
 TEST(Heaps, tower_hit_by_a_ball_under_adversaries) {
-  expect_same_under_adversaries(scenes()[1], 100);
+  expect_same_under_adversaries(heaps()[1], 100);
 }
 
-TEST(Heaps, platform_under_adversaries) { expect_same_under_adversaries(scenes()[2], 100); }
+TEST(Heaps, platform_under_adversaries) { expect_same_under_adversaries(heaps()[2], 100); }
 
-TEST(Heaps, tiles_under_adversaries) { expect_same_under_adversaries(scenes()[3], 100); }
+TEST(Heaps, tiles_under_adversaries) { expect_same_under_adversaries(heaps()[3], 100); }
 
 // GVT intervals, windows, pieces, frames, observers, with and without an adversary.
 TEST(Heaps, settings_of_the_run_have_no_influence) {
@@ -76,25 +76,25 @@ TEST(Heaps, settings_of_the_run_have_no_influence) {
     schedules.push_back(schedules[i]);
     schedules.back().adversary = short_adversary(i + 3).adversary;
   }
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+  for (const Scene& scene : heaps()) expect_one_history(scene, schedules, 5);
 }
 
 TEST(Heaps, validators_find_nothing_and_have_no_influence) {
   std::vector<Schedule> schedules = short_adversaries(long_tests() ? 20 : 3);
   schedules.insert(schedules.begin(), Schedule());
   for (Schedule& s : schedules) s.check = true;
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+  for (const Scene& scene : heaps()) expect_one_history(scene, schedules, 5);
 }
 
 TEST(Heaps, undoing_and_redoing_every_discontinuity_has_no_influence) {
   std::vector<Schedule> schedules = short_adversaries(long_tests() ? 20 : 3);
   schedules.insert(schedules.begin(), Schedule());
   for (Schedule& s : schedules) s.undo_redo = true;
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 5);
+  for (const Scene& scene : heaps()) expect_one_history(scene, schedules, 5);
 }
 
 TEST(Heaps, single_steps_and_slices_have_no_influence) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : heaps()) {
     const Outcome expected = run(scene, Schedule());
     World world;
     apply(world, short_adversary(4));
@@ -152,7 +152,7 @@ TEST(Heaps, fusions_and_fissions_are_told_alike_under_every_schedule) {
     world.advance(scene.duration);
     return rows;
   };
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : heaps()) {
     const auto expected = told(scene, Schedule());
     EXPECT_GT(expected.size(), 10u);
     for (std::uint64_t seed = 0; seed < 4; ++seed) {

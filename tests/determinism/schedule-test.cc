@@ -11,7 +11,7 @@
 namespace tw::test {
 namespace {
 
-std::vector<Scene> scenes() {
+std::vector<Scene> scheduled_scenes() {
   return {gas_scene(100),
           lattice_scene(4, 1, 4),
           lattice_scene(4, 1.1, 4),
@@ -50,7 +50,7 @@ void expect_no_influence(const std::vector<Value>& values,
     set(schedule, value);
     for (const Schedule& s : with_and_without_adversary(schedule, seed++)) schedules.push_back(s);
   }
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 10);
+  for (const Scene& scene : scheduled_scenes()) expect_one_history(scene, schedules, 10);
 }
 
 TEST(Schedule, gvt_interval_has_no_influence) {
@@ -76,14 +76,14 @@ TEST(Schedule, observers_have_no_influence) {
 TEST(Schedule, validators_find_nothing_and_have_no_influence) {
   Schedule checked;
   checked.check = true;
-  for (const Scene& scene : scenes())
+  for (const Scene& scene : scheduled_scenes())
     expect_one_history(scene, with_adversaries(checked, long_tests() ? 20 : 4), 10);
 }
 
 TEST(Schedule, undoing_and_redoing_every_discontinuity_has_no_influence) {
   Schedule undone;
   undone.undo_redo = true;
-  for (const Scene& scene : scenes())
+  for (const Scene& scene : scheduled_scenes())
     expect_one_history(scene, with_adversaries(undone, long_tests() ? 50 : 10), 10);
 }
 
@@ -94,7 +94,7 @@ TEST(Schedule, frames_and_observations_are_the_same_under_adversaries) {
     s.observe = true;
     s.fps = 64;  // frames fall on the impacts of the exact lattice
   }
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 10);
+  for (const Scene& scene : scheduled_scenes()) expect_one_history(scene, schedules, 10);
 }
 
 // All settings drawn at random at once.
@@ -113,12 +113,12 @@ TEST(Schedule, everything_at_once_has_no_influence) {
     s.threads = static_cast<int>(1 + random.below(4));
   }
   schedules.insert(schedules.begin(), Schedule());
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 10);
+  for (const Scene& scene : scheduled_scenes()) expect_one_history(scene, schedules, 10);
 }
 
 // Stepping event by event is a run like any other.
 TEST(Schedule, single_steps_have_no_influence) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : scheduled_scenes()) {
     const Outcome expected = run(scene, Schedule());
     World world;
     apply(world, adversary_schedule(3));
@@ -132,7 +132,7 @@ TEST(Schedule, single_steps_have_no_influence) {
 // The same scene again and again in one process, with the heap in another state each time: no bit
 // may depend on where an object lies (packet instructions, for one, depend on alignment).
 TEST(Schedule, addresses_have_no_influence) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : scheduled_scenes()) {
     const Outcome expected = run(scene, Schedule());
     Random random(4);
     std::vector<std::vector<char>> blocks;
@@ -145,7 +145,7 @@ TEST(Schedule, addresses_have_no_influence) {
 
 // Slices of no time at all: the run goes on where it was.
 TEST(Schedule, slices_have_no_influence) {
-  for (const Scene& scene : scenes()) {
+  for (const Scene& scene : scheduled_scenes()) {
     const Outcome expected = run(scene, Schedule());
     World world;
     apply(world, Schedule());

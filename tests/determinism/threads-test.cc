@@ -10,7 +10,7 @@
 namespace tw::test {
 namespace {
 
-std::vector<Scene> scenes() {
+std::vector<Scene> shared_scenes() {
   return {gas_scene(100),
           mixture_scene(20, 4, 0.3, 1),
           paddle_scene(1.5),
@@ -30,7 +30,7 @@ Schedule with_threads(int threads) {
 
 TEST(Threads, have_no_influence) {
   const std::vector<Schedule> schedules{with_threads(2), with_threads(3), with_threads(8)};
-  for (const Scene& scene : scenes()) expect_one_history(scene, schedules, 3);
+  for (const Scene& scene : shared_scenes()) expect_one_history(scene, schedules, 3);
 }
 
 // Large enough for loops within groups, and for regions.

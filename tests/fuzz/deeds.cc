@@ -70,11 +70,11 @@ Result lean(const DescribedCallback& callback, double, Targets targets) {
 }
 
 // What targets are made of and where.
-struct Placed {
+struct PlacedShape {
   const Shape& shape;
   Frame frame;
 };
-Placed placed_in(const World& world, const StateView& view) {
+PlacedShape placed_in(const World& world, const StateView& view) {
   const BodyState& state = view.state();
   return {*world.body(view.body()).shape, Frame(Pose{state.position, state.orientation})};
 }
@@ -83,7 +83,7 @@ std::optional<RayHit> first_hit(const World& world, Targets among, const Vec3& f
                                 const Vec3& direction, double most) {
   std::optional<RayHit> nearest;
   for (const StateView* view : among) {
-    const Placed at = placed_in(world, *view);
+    const PlacedShape at = placed_in(world, *view);
     const auto hit =
         cast_ray(at.shape, at.frame, from, direction, nearest ? nearest->distance : most);
     if (hit && (!nearest || hit->distance < nearest->distance)) nearest = hit;
@@ -117,7 +117,7 @@ Result scan(const World& world, const DescribedCallback& callback, Targets targe
 
 Result mind(const World& world, const DescribedCallback& callback, Targets targets) {
   StateView& view = *targets[0];
-  const Placed mine = placed_in(world, view), other = placed_in(world, *targets[1]);
+  const PlacedShape mine = placed_in(world, view), other = placed_in(world, *targets[1]);
   const Vec3 position = view.state().position;
   count_up(view);
   const Separation near = separation(mine.shape, mine.frame, other.shape, other.frame);
@@ -126,7 +126,7 @@ Result mind(const World& world, const DescribedCallback& callback, Targets targe
   if (near.distance < callback.reach && length > 0) turn_away(view, apart / length);
   const ShapePtr probe = make_sphere(callback.reach);
   const auto touched = std::count_if(targets.begin() + 1, targets.end(), [&](StateView* against) {
-    const Placed at = placed_in(world, *against);
+    const PlacedShape at = placed_in(world, *against);
     return separation(*probe, Frame(Mat3::Identity(), position), at.shape, at.frame).distance <= 0;
   });
   const bool low = mine.shape.bounds(mine.frame).lo.z() < position.z() - callback.reach;

@@ -40,7 +40,8 @@ void print_help() {
       "beyond 2 % of the smaller body's least width, but of bodies told to be squeezed); energy\n"
       "(above its least so far by 1e-3 of what is at play); slow (more than 0.16 s of CPU per\n"
       "time unit and body, or than the budget); hash (another history in one piece, by 3\n"
-      "threads, by narrow windows, under an adversary, or with undo-redo).  Dear: a schedule\n"
+      "threads, by narrow windows, under an adversary, with undo-redo, or with vain edits).  Dear: "
+      "a schedule\n"
       "that took more than 5 times as long and 1 s, and was not waited for.\n"
       "Status: 0 if no scene has a fault, else 1; 2 for wrong usage.\n"
       "Kinds:");

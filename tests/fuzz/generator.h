@@ -18,6 +18,7 @@ struct Kind {
   const char* name;
   const char* what;
   void (*draw)(class Draft&);
+  bool settles = false;  // it begins as it stands when it has lasted once
 };
 
 std::span<const Kind> kinds();

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "fuzz/overlap.h"
+#include "fuzz/vain-edits.h"
 #include "support/stability.h"
 
 namespace tw::fuzz {
@@ -241,11 +242,17 @@ void run_judged(const DescribedScene& scene, double budget, Findings& findings) 
   catching(findings, [&] { JudgedRun(scene, budget, findings).run(); });
 }
 
-void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, Findings& findings) {
+void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, bool vain_edits,
+                  Findings& findings) {
   catching(findings, [&] {
     World world;
     test::apply(world, schedule);
     fill(world, scene);
+    if (vain_edits)
+      for (int i = 1; i < 4; ++i) {
+        world.advance(scene.duration * (i - 0.37) / 4);
+        edit_in_vain(world);
+      }
     test::advance_in_pieces(world, scene.duration, schedule.pieces);
     set_text(findings.hash, world.history_hash());
     findings.cpu = test::number_of(world.statistics(), "cpu_seconds");

@@ -22,7 +22,9 @@ constexpr double depth_bound = 0.02;
 // Looks at the scene `samples` times; stops when the loop has used `budget` seconds of CPU.
 void run_judged(const DescribedScene& scene, double budget, Findings& findings);
 
-// Runs it under a schedule, for its hash alone.
-void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, Findings& findings);
+// Runs it under a schedule, for its hash alone; with edits in between that leave nothing behind, if
+// asked for.
+void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, bool vain_edits,
+                  Findings& findings);
 
 }  // namespace tw::fuzz

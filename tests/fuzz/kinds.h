@@ -43,4 +43,9 @@ void draw_sensed(Draft& draft);
 void draw_asked(Draft& draft);
 void draw_driven(Draft& draft);
 
+// kinds-loaded.cc
+void draw_struck(Draft& draft);
+void draw_pressed(Draft& draft);
+void draw_rested(Draft& draft);
+
 }  // namespace tw::fuzz

@@ -10,6 +10,7 @@ namespace {
 const KnownFault table[] = {
     // beyond what make check-long runs
     {"drum", 17430, Fault::energy, 0.0026, "a cross of bars tumbles over a box's edge"},
+    {"plates", 190, Fault::deep, 0.048, "a cone in the corner of a trough and a wall"},
     {"plates", 20145, Fault::deep, 0.041, "a cone in the corner of a trough and a wall"},
     {"thin", 5313, Fault::slow, 0.47, "discs of 1:1000 wobble under needles: steps of 0.1 us"},
     {"thin", 14032, Fault::slow, 0.8, "rods under a plate, which takes short steps once it rolls"},
@@ -17,6 +18,13 @@ const KnownFault table[] = {
     {"bonds", 124, Fault::slow, 0.19, "a union of 10 g on a stiff spring turns at 1800 rad/s"},
     {"bonds", 148, Fault::slow, 0.18, "bodies on stiff springs without damping"},
     {"bonds", 234, Fault::slow, 0.23, "bodies on stiff springs without damping"},
+    {"pressed", 507, Fault::energy, 0.031, "a ball wanders over a box with 300 weights, by checks"},
+    {"struck", 3, Fault::slow, 0.63, "thin links whirl about themselves in joints with friction"},
+    {"struck", 38, Fault::slow, 0.28, "thin links whirl about themselves in joints with friction"},
+    {"struck", 233, Fault::slow, 0.77, "thin links whirl about themselves in joints with friction"},
+    {"struck", 238, Fault::slow, 0.17, "thin links whirl about themselves in joints with friction"},
+    {"struck", 188, Fault::slow, 0.27,
+     "a light body is held between two that are 200 times as dense"},
 };
 
 const MendedSeed mended[] = {
@@ -32,9 +40,12 @@ const MendedSeed mended[] = {
     {"cards", 474, "a corner under a tilted face pressed along its own face: sinking as it slid"},
     {"lattice", 3417, "what got deeper while its witness points parted was looked at for ever"},
     {"shaker", 1910, "in the crease between the ball and the bar of a dumbbell nothing held"},
-    {"lattice", 267, "a warm query found what touched apart by its last digit: another history"},
-    {"cards", 1090, "a piece cut before it was looked at had another root than one cut later"},
-    {"lattice", 1289, "an arc found again under its old key was not looked at from its start"},
+    {"lattice", 267, "a warm query found what touched apart by its last digit: another history",
+     true},
+    {"cards", 1090, "a piece cut before it was looked at had another root than one cut later",
+     true},
+    {"lattice", 1289, "an arc found again under its old key was not looked at from its start",
+     true},
     {"thin", 115, "pivots of a rod's rows were chosen in SI units"},
     {"thin", 17, "where rods cross a fixed point missed the gap, and arcs ended for it"},
     {"shaker", 146, "between the slabs of a shaken room the energy rose by 0.8 %"},
@@ -57,7 +68,7 @@ const MendedSeed mended[] = {
     {"shaker", 6756, "the walls of a room were as soft as the room is wide"},
     {"piston", 10031, "a cylinder that whirled on its rim at accuracy 1e-4 gained energy"},
     {"heap", 330, "a heap without friction at accuracy 1e-4 gained energy"},
-    {"called", 110, "a callback that grips was called no more after a commit in a group"},
+    {"called", 110, "a callback that grips was called no more after a commit in a group", true},
     {"called", 103, "of a small cart and what it drove on equations were solved in SI units"},
     {"chains", 123, "a joint came to lean on a stop that it had passed unseen"},
     {"shaker", 14049,
@@ -80,7 +91,6 @@ const MendedSeed mended[] = {
     {"stack", 16122, "a cylinder toppled over its rim, and points left it while it was pressed"},
     {"hills", 87, "a body that rocked on a height field gained 1.9 %"},
     {"plates", 20248, "a tip pressed into the wall where a slit ends fell into the slit"},
-    {"plates", 190, "a cone went 6 % of its width deep between plates"},
     {"corner", 475, "a tip left a room by the corner of three walls"},
     {"corner", 797, "a tip left a room by the corner of three walls"},
     {"corner", 764, "a tip slid into a slit that leans in under the floor"},
@@ -88,7 +98,7 @@ const MendedSeed mended[] = {
     {"corner", 2512, "a tip left a room where two walls that end at a slant meet"},
     {"hills", 21288, "a tip was on the wall beneath the crest that ends a valley"},
     {"cards", 28212,
-     "what touched to its last digits was apart on a piece that was cut: another history"},
+     "what touched to its last digits was apart on a piece that was cut: another history", true},
     {"round", 25349, "of what friction held in a blow a tenth was counted as energy"},
     {"chains", 21212, "in weak gravity stops were thousands of times too stiff"},
 };

@@ -24,6 +24,7 @@ struct MendedSeed {
   std::string kind;
   std::uint64_t seed;
   const char* cause;
+  bool history = false;  // it had another one under some schedule
 };
 
 std::span<const MendedSeed> mended_seeds();

@@ -45,7 +45,8 @@ ShapePtr shape_from_file(const DescribedBody& body) {
   TW_REQUIRE(mkdtemp(folder.data()), "cannot make the folder " + folder);
   const std::string file = folder + "/mesh.obj";
   std::ofstream(file) << obj_text(body);
-  const ShapePtr shape = read_solid(file, Vec3::Ones(), false);
+  Mending mending(true);
+  const ShapePtr shape = read_solid(file, {}, mending);
   fs::remove_all(folder);
   return shape;
 }

@@ -117,7 +117,7 @@ Part part_of(const Solid& solid) {
 }
 
 // A part in the world, in units of `unit` about `origin`.
-struct Placed {
+struct PlacedPart {
   const Part& part;
   const Frame& frame;
   Vec3 origin;
@@ -176,17 +176,18 @@ ccd_vec3_t to_ccd(const Vec3& v) {
 
 void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const Vec3 n(direction->v[0], direction->v[1], direction->v[2]);
-  *point = to_ccd(static_cast<const Placed*>(object)->support(n));
+  *point = to_ccd(static_cast<const PlacedPart*>(object)->support(n));
 }
 
 void ccd_center(const void* object, ccd_vec3_t* point) {
-  *point = to_ccd(static_cast<const Placed*>(object)->center());
+  *point = to_ccd(static_cast<const PlacedPart*>(object)->center());
 }
 
 // The least overlap over the directions that were tried.
 class LeastOverlap {
  public:
-  LeastOverlap(const Placed& a, const Placed& b, double enough) : a_(a), b_(b), enough_(enough) {}
+  LeastOverlap(const PlacedPart& a, const PlacedPart& b, double enough)
+      : a_(a), b_(b), enough_(enough) {}
 
   // Tries a direction and its opposite.
   void try_axis(const Vec3& direction) {
@@ -206,7 +207,7 @@ class LeastOverlap {
   }
 
   // From what is round to corners and edges: the directions of features that the rest lacks.
-  void try_axes_of_round(const Placed& round, const Placed& other) {
+  void try_axes_of_round(const PlacedPart& round, const PlacedPart& other) {
     const SolidKind kind = round.part.solid.kind;
     const bool is_ball = kind == SolidKind::ball || kind == SolidKind::ellipsoid;
     const Vec3 center = round.center();
@@ -272,21 +273,21 @@ class LeastOverlap {
     best_ = n;
   }
   // The normal of the ellipsoid, of that size about its centre, on which x lies (from the centre).
-  static Vec3 outward(const Placed& ellipsoid, const Vec3& x) {
+  static Vec3 outward(const PlacedPart& ellipsoid, const Vec3& x) {
     const Solid& solid = ellipsoid.part.solid;
     const Quat& q = solid.placement.q;
     const Vec3 local = q.conjugate() * (ellipsoid.frame.R.transpose() * x);
     const Vec3 semi = solid.edges / solid.edges.maxCoeff();
     return ellipsoid.turned(q * local.cwiseQuotient(semi.cwiseAbs2()));
   }
-  static Vec3 axis_of(const Placed& cylinder) {
+  static Vec3 axis_of(const PlacedPart& cylinder) {
     return cylinder.turned(cylinder.part.solid.placement.q * Vec3::UnitZ());
   }
-  static Vec3 across(const Placed& cylinder, const Vec3& way) {
+  static Vec3 across(const PlacedPart& cylinder, const Vec3& way) {
     const Vec3 axis = axis_of(cylinder);
     return way - axis * axis.dot(way);
   }
-  static Vec3 nearest_rim_point(const Placed& cylinder, const Vec3& x) {
+  static Vec3 nearest_rim_point(const PlacedPart& cylinder, const Vec3& x) {
     const Vec3 axis = axis_of(cylinder), way = x - cylinder.center();
     const Vec3 out = across(cylinder, way).normalized();
     const double side = axis.dot(way) > 0 ? 0.5 : -0.5;
@@ -294,8 +295,8 @@ class LeastOverlap {
     return cylinder.center() + (out * solid.radius + axis * side * solid.length) / cylinder.unit;
   }
 
-  const Placed& a_;
-  const Placed& b_;
+  const PlacedPart& a_;
+  const PlacedPart& b_;
   double enough_, least_ = infinity;
   Vec3 best_ = Vec3::UnitZ();
 };
@@ -307,7 +308,7 @@ bool is_round(const Part& part) {
 
 double below_plane(const Part& plane, const Frame& frame, const Part& part, const Frame& other) {
   const Vec3 n = frame.R * plane.solid.normal;
-  const Placed placed{part, other, other * part.center, 1};
+  const PlacedPart placed{part, other, other * part.center, 1};
   const double lowest = n.dot(other * part.center - frame.p) - placed.height(-n);
   return plane.solid.offset - lowest;
 }
@@ -361,7 +362,7 @@ double overlap(const Part& a, const Frame& frame_a, const Part& b, const Frame& 
   if (apart > a.reach + b.reach) return a.reach + b.reach - apart;
 
   const double unit = std::min(a.reach, b.reach);
-  const Placed placed_a{a, frame_a, origin, unit}, placed_b{b, frame_b, origin, unit};
+  const PlacedPart placed_a{a, frame_a, origin, unit}, placed_b{b, frame_b, origin, unit};
   LeastOverlap search(placed_a, placed_b, enough / unit);
   search.try_axis(placed_b.center() - placed_a.center());
   search.try_axes_of_polyhedra();

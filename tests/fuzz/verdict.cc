@@ -16,6 +16,7 @@ namespace {
 struct NamedSchedule {
   const char* name;
   test::Schedule schedule;
+  bool vain_edits = false;
 };
 
 // Head starts of some bodies, of every event; seeds follow the scene's.
@@ -45,7 +46,8 @@ std::vector<NamedSchedule> schedules(const DescribedScene& scene) {
           {"narrow", narrow},
           {"bodies", adversary(scene, false)},
           {"events", adversary(scene, true)},
-          {"undo", undo}};
+          {"undo", undo},
+          {"edits", {}, true}};
 }
 
 std::string number(const char* format, double x) {
@@ -54,11 +56,13 @@ std::string number(const char* format, double x) {
   return text;
 }
 
-void compare_hashes(Verdict& verdict) {
-  for (const auto& [name, schedule] : schedules(verdict.scene)) {
+void compare_hashes(Verdict& verdict, const Judges& judges) {
+  const std::vector<NamedSchedule> all = schedules(verdict.scene);
+  for (std::size_t i = 0; i < std::min(judges.most_schedules, all.size()); ++i) {
+    const auto& [name, schedule, vain_edits] = all[(judges.first_schedule + i) % all.size()];
     const double cpu = 1 + 5 * verdict.findings.cpu;
     const Findings other =
-        run_apart(cpu, [&](Findings& f) { run_for_hash(verdict.scene, schedule, f); });
+        run_apart(cpu, [&](Findings& f) { run_for_hash(verdict.scene, schedule, vain_edits, f); });
     if (other.out_of_time) {
       verdict.dear += std::string(" ") + name;
       continue;
@@ -164,7 +168,7 @@ Verdict judge(const DescribedScene& scene, const Judges& judges, double budget) 
   // the judge's own work is not the world's
   verdict.findings = run_apart(2 * budget + 10, [&](Findings& f) { run_judged(scene, budget, f); });
   judge_findings(verdict, judges);
-  if (judges.hash && verdict.findings.finished) compare_hashes(verdict);
+  if (judges.hash && verdict.findings.finished) compare_hashes(verdict, judges);
   return verdict;
 }
 

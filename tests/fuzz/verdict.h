@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ const char* name_of(Fault fault);
 struct Judges {
   bool depth = true, energy = true, progress = true, hash = true;
   double pace = pace_bound;
+  // hashes are compared under so many of the schedules as there are, from this one on
+  std::size_t first_schedule = 0, most_schedules = std::numeric_limits<std::size_t>::max();
 };
 
 struct Verdict {

@@ -7,8 +7,6 @@
 namespace tw::test {
 namespace {
 
-constexpr double g = 9.81;
-
 // Of the contacts on a body: their force, N, and their torque about its centre, N m.
 struct Load {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();

@@ -97,7 +97,7 @@ ShapePtr plane() {
   return make_union(tiles);
 }
 
-struct Case {
+struct ErlebenCase {
   ShapePtr body, ground;
   Vec3 position, ground_position;
   Vec3 velocity = Vec3::Zero();
@@ -118,7 +118,7 @@ struct Result {
 };
 
 // Nothing gets deeper than a fiftieth of its width.
-Result run(const Case& c, const Quat& orientation, double friction) {
+Result run(const ErlebenCase& c, const Quat& orientation, double friction) {
   World world;
   set_contact_for_all(world, 0, friction);
   world.set_gravity(Vec3(0, -c.gravity, 0));
@@ -153,7 +153,7 @@ Result run(const Case& c, const Quat& orientation, double friction) {
 }
 
 // With friction and without; returns the end with friction.
-BodyState expect_held(const Case& c, const Quat& orientation = turned) {
+BodyState expect_held(const ErlebenCase& c, const Quat& orientation = turned) {
   BodyState end;
   for (const double friction : {0.0, 0.5}) {
     const Result result = run(c, orientation, friction);
@@ -180,15 +180,15 @@ TEST(Erleben, spikes_and_wedges_on_each_other) {
 }
 
 // Tip down in the middle of a plate, moving along x.
-Case into(const ShapePtr& body, const ShapePtr& plate,
-          const std::function<double(const Vec3&)>& height, double duration, double speed) {
-  Case c{body, plate, {0, 2 + above, 0}, {0, -1, 0}, {speed, 0, 0}, duration};
+ErlebenCase into(const ShapePtr& body, const ShapePtr& plate,
+                 const std::function<double(const Vec3&)>& height, double duration, double speed) {
+  ErlebenCase c{body, plate, {0, 2 + above, 0}, {0, -1, 0}, {speed, 0, 0}, duration};
   c.height = height;
   return c;
 }
 
 TEST(Erleben, a_spike_in_a_crack) {
-  Case pushed = into(spike(), crack(), over_crack, 0.9, 1);
+  ErlebenCase pushed = into(spike(), crack(), over_crack, 0.9, 1);
   pushed.force = {1, 0, 0};
   pushed.middle = 0.75;
   expect_held(pushed);
@@ -198,7 +198,7 @@ TEST(Erleben, a_spike_in_a_crack) {
 }
 
 TEST(Erleben, a_wedge_in_a_crack) {
-  Case pushed = into(wedge(), crack(), over_crack, 0.9, 1);
+  ErlebenCase pushed = into(wedge(), crack(), over_crack, 0.9, 1);
   pushed.force = {10, 0, 0};
   pushed.middle = 1;
   expect_held(pushed);
@@ -208,7 +208,7 @@ TEST(Erleben, a_spike_in_a_hole) { expect_held(into(spike(), hole(), over_hole, 
 
 TEST(Erleben, sliding_spikes_and_wedges_feel_no_seams) {
   for (const ShapePtr& body : {spike(), wedge()}) {
-    const Case c{body, plane(), {-4.9, 2 + above, 0}, {0, -1, 0}, {10, 0, 0}, 0.9, 0};
+    const ErlebenCase c{body, plane(), {-4.9, 2 + above, 0}, {0, -1, 0}, {10, 0, 0}, 0.9, 0};
     const BodyState end = expect_held(c);
     EXPECT_LT((end.velocity - c.velocity).norm(), 1e-12);
     EXPECT_LT((end.position - c.position - 0.9 * c.velocity).norm(), 1e-12);
@@ -217,8 +217,8 @@ TEST(Erleben, sliding_spikes_and_wedges_feel_no_seams) {
 
 BodyState cube_on(const ShapePtr& ground) {
   const auto top = [](const Vec3& p) { return p.y() - 0.5; };
-  const Case c{make_box({1, 1, 1}), ground, {0, 0.05, 0}, {0, -1, 0}, Vec3::Zero(), 2.5, 9.8,
-               Vec3::Zero(),        top};
+  const ErlebenCase c{make_box({1, 1, 1}), ground, {0, 0.05, 0}, {0, -1, 0}, Vec3::Zero(), 2.5, 9.8,
+                      Vec3::Zero(),        top};
   return expect_held(c, Quat::Identity());
 }
 

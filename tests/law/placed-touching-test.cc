@@ -12,8 +12,6 @@
 namespace tw::test {
 namespace {
 
-constexpr double g = 9.81;
-
 void add_floor_at(World& world, double angle, double friction) {
   set_contact_for_all(world, 0, friction);
   add_wall(world, {std::sin(angle), 0, std::cos(angle)}, 0);

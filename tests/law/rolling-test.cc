@@ -10,8 +10,6 @@
 namespace tw::test {
 namespace {
 
-constexpr double g = 9.81;
-
 // How far a round body of inertia beta m r^2 runs down a slope from rest.
 struct Descent {
   double moved = 0, speed = 0, spin = 0;

@@ -8,13 +8,14 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "law/squeezed-bodies.h"
 #include "support/heap-scenes.h"
 #include "support/stability.h"
 
 namespace tw::test {
 namespace {
 
-constexpr double width = 0.2, gap = 0.1, g = 9.81;
+constexpr double gap = 0.1;
 constexpr double depth = 0.5 * (width - gap);  // on either side
 
 double time_of_return() { return 20 * std::sqrt(2.5e-4 * width / g); }

@@ -6,13 +6,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "law/squeezed-bodies.h"
 #include "support/heap-scenes.h"
 #include "support/stability.h"
 
 namespace tw::test {
 namespace {
-
-constexpr double width = 0.2;
 
 ShapePtr cube() { return make_box(Vec3::Constant(width)); }
 ShapePtr ball() { return make_sphere(0.5 * width); }

@@ -8,12 +8,10 @@
 namespace tw::test {
 namespace {
 
-constexpr double budget = 20;  // s of CPU, which no scene comes near
-
 // No error, no stall, no gain of energy beyond `rise` of that at the start, no overlap beyond two
 // thousandths of the smaller body's width.
 StabilityOutcome expect_sound(const StabilityScene& scene, double rise) {
-  StabilityRun run(scene, budget);
+  StabilityRun run(scene, ample_budget);
   const StabilityOutcome o = run.run();
   EXPECT_EQ(o.error, "") << scene.name;
   EXPECT_FALSE(o.stalled) << scene.name << " at " << o.reached << " s";

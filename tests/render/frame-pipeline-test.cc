@@ -133,6 +133,18 @@ TEST(FramePipeline, abandoned_it_writes_the_frame_in_hand_and_no_other) {
   EXPECT_FALSE(fs::exists(folder / "00005.png"));
 }
 
+TEST(FramePipeline, its_end_can_be_waited_for_in_pieces) {
+  TW_SKIP_WITHOUT_OPENGL();
+  const TemporaryFolder folder;
+  FramePipeline pipeline(settings_for(folder.path().string()), ball_over_ground());
+  for (int i = 0; i < 5; ++i) pipeline.submit(frame_at(i));
+  EXPECT_FALSE(pipeline.finish(0));
+  EXPECT_TRUE(pipeline.finish(60));
+  EXPECT_EQ(pipeline.frames_written(), 5);
+  EXPECT_TRUE(fs::exists(folder / "00004.png"));
+  pipeline.finish();
+}
+
 TEST(FramePipeline, lost_bodies_are_counted) {
   TW_SKIP_WITHOUT_OPENGL();
   const TemporaryFolder folder;

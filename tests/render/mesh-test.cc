@@ -75,8 +75,20 @@ TEST(Mesh, balls_cones_and_capsules_have_their_volumes) {
   }
 }
 
-// Whether smooth or not, top and rim: of each vertex, the colour of the point of the grid that is
-// nearest in the plane.
+// Seen from below, too: a shell as thick as the ground is deep, closed, so that its volume does not
+// ask for the origin.
+TEST(Mesh, height_fields_are_closed_below) {
+  const HeightField field({0, 1, 0, 0.5, 0, 2}, 3, 1, 1);
+  for (bool smooth : {false, true}) {
+    Mesh mesh = height_field_mesh(field, smooth);
+    EXPECT_NEAR(volume(mesh), 2 * field.depth(), 1e-5);
+    for (Mesh::Vertex& vertex : mesh.vertices) vertex.position += Eigen::Vector3f(3, -5, 7);
+    EXPECT_NEAR(volume(mesh), 2 * field.depth(), 1e-4);
+  }
+}
+
+// Whether smooth or not, top, underside and rim: of each vertex, the colour of the point of the
+// grid that is nearest in the plane.
 TEST(Mesh, height_fields_have_the_colors_of_their_points) {
   const std::vector<Vec3> colors = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
                                     {0, 0, 1}, {1, 1, 0}, {1, 1, 1}};

@@ -144,6 +144,10 @@ TEST(Renderer, hulls_that_stand_fixed_have_a_grain_and_others_have_not) {
   EXPECT_LT(spread_on_plate(hull(), false), 0.03);
   EXPECT_LT(spread_on_plate(hull(), true, std::nullopt), 0.03);
   EXPECT_LT(spread_on_plate(make_box({8, 8, 0.1}), true), 0.03);
+  // all parts of a body or none: what is seen here is its box
+  const ShapePtr below = make_hull({{-1, -1, -2}, {1, -1, -2}, {1, 1, -2}, {0, 0, -3}});
+  EXPECT_GT(spread_on_plate(make_union({make_box({8, 8, 0.1}), below}), true), 0.04);
+  EXPECT_LT(spread_on_plate(make_union({make_box({8, 8, 0.1}), below}), false), 0.03);
 }
 
 TEST(Renderer, camera_light_and_sky_can_change_between_frames) {

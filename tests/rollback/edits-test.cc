@@ -38,7 +38,9 @@ void expect_one_history(const Change& change, bool has_effect = true) {
 
 TEST(Edits, velocity) {
   expect_one_history([](World& world) {
-    world.edit(10, [](StateView& view) { view.set_velocity(permuted(view.state().velocity)); });
+    world.edit(10, [](StateView& view) {
+      view.set_velocity(permuted(view.state().velocity) + Vec3(0.1, 0, 0));
+    });
   });
 }
 

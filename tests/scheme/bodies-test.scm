@@ -69,9 +69,11 @@
                     (list (world-time) (position a)))
         (run-for! 1)
         (test-equal "and goes on to the same bits" after (position a)))
-      (add-body! #:shape (sphere 0.1) #:position #(0 0 99))
-      (test-message "a body more than at the checkpoint" "added or removed since the checkpoint"
-        (restore! kept)))))
+      (let ((later (add-body! #:name "later" #:shape (sphere 0.1) #:position #(0 0 99))))
+        (restore! kept)
+        (test-equal "a body that came since is gone" #f (memq later (world-bodies)))
+        (test-message "and its handle says so" "#<body later.*expected one that is there"
+          (position later))))))
 
 (in-world ()
   (let ((free (add-body! #:shape #f #:mass 2 #:inertia #(1 2 3) #:center-of-mass #(0 0 0)
@@ -141,7 +143,7 @@
   (let ((ball (add-body! #:name "ball" #:shape (sphere 0.1) #:position #(0 0 1)))
         (paddle (add-body! #:name "paddle" #:shape (box 1 1 0.1) #:max-speed 1
                            #:motion (lambda (time) (values (vector (* 3 time) 0 0) #(1 0 0 0))))))
-    (test-message "the bound is verified" "expected at most max-speed, 1 m/s" (run! #:until 1))
+    (test-message "the bound is verified" "paddle is faster than its #:max-speed: it moves a point by [0-9.e-]+ m between 0 s and [0-9.e-]+ s, at [23][0-9.]* m/s; expected at most 1 m/s" (run! #:until 1))
     (test-assert "the world stays usable" (real? (world-time)))))
 
 (in-world ()
@@ -183,7 +185,7 @@
 
 (in-world ()
   (test-message "a jump is told with its time"
-    "the motion of plate moved a point by .* between 0.299999[0-9]* s and 0.3"
+    "the motion of plate is faster than its #:max-speed: it moves a point by .* between 0.299999[0-9]* s and 0.3"
     (run-with-motion (lambda (time) (straight (if (< time 0.3) 0 0.01))) 5 1))
   (test-assert "nothing after it is committed" (< (world-time) 0.3)))
 (in-world ()
@@ -197,7 +199,66 @@
   (run-with-motion (lambda (time) (straight (if (< time 0.3) (* 3 time) (- 1.2 time)))) 3 1)
   (test-assert "a kink is no error" (close? #(0.2 0 0) (position (find-body "plate")) 1e-12)))
 
+;; smooth, and too fast from a time on: it is told so, from there on
+(for-each
+ (lambda (motion fast)
+   (in-world ()
+     (test-message "a motion that becomes too fast"
+       "plate is faster than its #:max-speed: .*, at 2[.]0[0-9]* m/s; expected at most 2 m/s, or a larger"
+       (run-with-motion motion 2 9))
+     (test-assert "nothing after it is committed" (<= 1 (world-time) (+ fast 0.001)))))
+ (list (lambda (time) (straight (* 0.25 time time)))
+       (lambda (time) (values #(0 0 0) (rotation #(0 0 1) (* 0.5 time time))))
+       (lambda (time) (straight (* 0.01 (exp time)))))
+ (list 4 (/ 2 (sqrt 0.5)) (log 200)))
+(in-world ()
+  (run-with-motion (lambda (time) (straight (* 2 time))) 2 3)
+  (test-assert "as fast as it may be" (close? #(6 0 0) (position (find-body "plate")) 1e-9)))
+
+;; ---- what cannot be moved ----
+
+(in-world ()
+  (let ((plate (add-body! #:name "plate" #:shape (box 1 1 0.1)
+                          #:motion (keyframes '((0 #(0 0 0)) (1 #(1 0 0))))))
+        (floor (add-body! #:name "floor" #:shape (box 9 9 1) #:position #(0 0 -5) #:fixed? #t)))
+    (define given "of plate cannot be changed, which is kinematic: its #:motion says where .*; expected .*#:motion .*add-body! after remove-body!")
+    (test-message "where a motion says where it is" (string-append "position or orientation " given)
+      (set! (position plate) #(0 0 1)))
+    (test-message "and how it is turned" (string-append "position or orientation " given)
+      (set! (orientation plate) #(0 1 0 0)))
+    (test-message "nor how fast" (string-append "velocity " given) (set! (velocity plate) #(0 0 1)))
+    (test-message "what is fixed" "of floor cannot be changed, which is fixed; expected .*remove-body!, and add-body!"
+      (set! (position floor) #(0 0 1)))
+    (run! #:until 0.5)
+    (test-assert "the motion goes on" (close? #(0.5 0 0) (position plate) 1e-12))))
+
 ;; ---- removing ----
+
+;; what its springs held from the start counts for nothing, and goes with them
+(in-world ()
+  (let* ((floor (add-body! #:shape (box 4 4 1) #:position #(0 0 -0.5) #:fixed? #t))
+         (crate (add-body! #:shape (box 1 1 1) #:position #(0 0 0.5)))
+         (start (total-energy)))
+    (run! #:until 1)
+    (test-assert "at rest it stays" (close? start (total-energy) 1e-9))
+    (remove-body! floor)
+    (test-assert "without the floor there is no spring" (close? start (total-energy) 1e-9))
+    (run! #:until 1.5)
+    (test-assert "it falls" (close? start (total-energy) 1e-8))
+    (remove-body! crate)
+    (test-equal "an emptied world has no energy" 0.0 (total-energy))
+    (run! #:until 2)
+    (add-body! #:shape (sphere 1) #:density 1 #:position #(0 0 -2))
+    (test-assert "nor does it remember any"
+      (close? (* -9.81 2 4/3 3.141592653589793) (total-energy) 1e-9))))
+(in-world ()
+  (ground)
+  (let ((crate (add-body! #:shape (box 1 1 1) #:position #(0 0 0.5))))
+    (run! #:until 1)
+    (set! (velocity crate) #(0 0 1))
+    (run! #:until 1.1)
+    (remove-body! crate)
+    (test-equal "whose springs have let go since" 0.0 (total-energy))))
 
 ;; What was attached just before leaves a state behind whose group it was in.
 (for-each

@@ -71,6 +71,16 @@
   (begin (module-define! (current-module) 'my-favourite 'camera) (shown (help my-favourite))))
 (test-equal "help is a procedure, too" (shown (begin (help "camera") (help 'sensors)))
   (shown (for-each help '("camera" sensors))))
+(test-assert "a word finds descriptions, too, by the line that has it"
+  (string-match "^names with friction:\n(.|\n)*\ndescriptions with friction:\n(.|\n)*  set-contact-parameters! +#:friction "
+                (shown (help friction))))
+(test-assert "and what is in no name"
+  (string-match "^descriptions with ffmpeg:\n  simulate! +#:movie "
+                (shown (help ffmpeg))))
+(test-assert "keywords, as they are written"
+  (string-match "^descriptions with #:max-speed:\n  add-body! +#:max-speed " (shown (help #:max-speed))))
+(test-assert "several words" (string-match "descriptions with field of gravity:\n  total-energy "
+                                           (shown (help "field of gravity"))))
 (test-message "a name that nothing has" "nothing-such; expected a name" (help nothing-such))
 (test-assert "help describes itself" (string-match "SUBJECT" (shown (help help))))
 

@@ -73,6 +73,28 @@
 
 (cond
  ((%drawing?)
+  ;; a film whose pictures ffmpeg takes slowly, and whose end takes it long
+  (mkdir (in-folder "programs"))
+  (write-file "programs/ffmpeg" "#!/bin/sh" "for file; do :; done"
+              "sleep 4; cat >/dev/null; sleep 4; echo film >\"${file#file:}\"")
+  (chmod (in-folder "programs/ffmpeg") #o755)
+  (let ((result (shell (format #f "env PATH=~a:$PATH ~a ball.scm --movie=slow.mp4 --fps=40 --size=640x360 --quality=draft"
+                               (in-folder "programs") timewarp))))
+    (test-equal "a film: status 0" 0 (run-status result))
+    (test-assert (format #f "progress says that drawing is slow, not the ball: ~a" (run-errors result))
+      (string-match "s simulated, [0-9] of 21 frames written, 0 rollbacks; slow: drawing\n"
+                    (run-errors result)))
+    (test-assert "and that the film is being closed"
+      (string-match "simulated, all 21 frames written, closing the files, 0 rollbacks\n"
+                    (run-errors result)))
+    (test-assert "the ball is not blamed" (not (string-match "took" (run-errors result)))))
+  (let ((frames-between (@@ (timewarp drawing) frames-between)))
+    (test-equal "frames up to and including a time" '(1 30 31 31)
+      (map (lambda (end) (frames-between 0 end 30)) '(0 0.99 1 1.01)))
+    (test-equal "from a time on" '(0 1 15)
+      (map (lambda (start) (frames-between start 1 30)) '(1.01 1 0.52)))
+    (test-equal "as C++ has them" (iota 300)
+      (map (lambda (k) (1- (frames-between 0 (/ (exact->inexact k) 30) 30))) (iota 300))))
   (let ((result (run "ball.scm" "--frames=out" "--fps=4" "--size=160x90" "--quality=draft" "--stats=s.json")))
     (test-equal "--frames: status 0" 0 (run-status result))
     (test-equal "frames at k/fps up to the end" '(#t #t #t #f)
@@ -135,6 +157,35 @@
   (test-assert "render! draws contacts if asked to"
     (and (equal? (bytes "bare.png") (bytes "bare/00001.png"))
          (equal? (bytes "lines.png") (bytes "lines/00001.png"))))
+  ;; what is drawn in place of the shape
+  (write-file "cube.obj" "mtllib cube.mtl" "v -0.5 -0.5 -0.5" "v 0.5 -0.5 -0.5" "v 0.5 0.5 -0.5" "v -0.5 0.5 -0.5"
+              "v -0.5 -0.5 0.5" "v 0.5 -0.5 0.5" "v 0.5 0.5 0.5" "v -0.5 0.5 0.5" "usemtl paint"
+              "f 4 3 2 1" "f 5 6 7 8" "f 1 2 6 5" "f 2 3 7 6" "f 3 4 8 7" "f 4 1 5 8")
+  (write-file "cube.mtl" "newmtl paint" "Kd 1 0.25 0.25")
+  (write-file "seen.scm"
+              "(use-modules (timewarp) (timewarp worlds))"
+              "(define (shot file . arguments)"
+              "  (parameterize ((current-world (make-world)))"
+              "    (add-body! #:shape (half-space #(0 0 1) 0) #:fixed? #t)"
+              "    (apply add-body! #:position #(0 0 0.5) arguments)"
+              "    (camera #:eye #(2 -3 1) #:target #(0 0 0.4))"
+              "    (render! file #:size '(160 90) #:quality 'draft)))"
+              "(define paint #(1 0.25 0.25))"
+              "(shot \"shape.png\" #:shape (box 1 1 1) #:color paint)"
+              "(shot \"visual.png\" #:shape (sphere 0.2) #:color paint #:visual (box 1 1 1))"
+              "(shot \"list.png\" #:shape (sphere 0.2) #:color paint"
+              "      #:visual (list (placed (box 1 1 0.5) #:position #(0 0 0.25)) (placed (box 1 1 0.5) #:position #(0 0 -0.25))))"
+              "(shot \"mesh.png\" #:shape (sphere 0.2) #:visual (load-visual \"cube.obj\"))"
+              "(shot \"scaled.png\" #:shape (sphere 0.2) #:color #(0 0 1)"
+              "      #:visual (load-visual \"cube.obj\" #:scale #(-1 1 1) #:up 'y #:color paint))"
+              "(shot \"hidden.png\" #:shape (box 1 1 1) #:visual (load-visual \"cube.obj\") #:visible? #f)"
+              "(shot \"without.png\" #:shape (box 1 1 1) #:visible? #f)")
+  (test-equal "visuals are drawn" "" (run-errors (run "seen.scm" "--quiet" "--until=0")))
+  (test-assert "as the shapes that they are, and not the shape"
+    (and (equal? (bytes "visual.png") (bytes "shape.png")) (equal? (bytes "list.png") (bytes "shape.png"))))
+  (test-equal "a mesh, in the colour of its material" (bytes "shape.png") (bytes "mesh.png"))
+  (test-equal "or in that given, mirrored, with its y up" (bytes "shape.png") (bytes "scaled.png"))
+  (test-equal "what is not visible is not" (bytes "without.png") (bytes "hidden.png"))
   (test-equal "and so does simulate!" (bytes "lines/00001.png") (bytes "own-lines/00001.png"))
   ;; Ctrl-C: the frame in hand is finished, those that wait are dropped.  Counted, since how long a frame
   ;; takes depends on what else the machine does: one may be finished between the count and the signal

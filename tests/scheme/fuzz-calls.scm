@@ -10,7 +10,8 @@
 ;; its number.  They are made in a child process, which says what it does before it does it.  Where
 ;; the child dies, or says nothing for long, the parent repeats the episode without one call after
 ;; the other and prints those that are needed.  A call may return or raise an error that has a
-;; message.  Files that calls write go with a folder of their own.
+;; message; an error leaves the poses and the hash of the history as they were, unless the call runs the
+;; world.  Files that calls write go with a folder of their own.
 ;; Settings: plain, check (validators after every event), adversary (events out of order),
 ;; undo (every discontinuity taken back and done again).
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
@@ -69,9 +70,23 @@
     (('timewarp-error _ _ (message) _) message)
     (_ (call-with-output-string (lambda (port) (print-exception port #f key args))))))
 
+;; Whether an argument of the call changes a world by itself, before the call may be refused.
+(define (changes-before? call)
+  (any (match-lambda
+         (((or 'lambda 'doing 'quote) . _) #f)
+         ((? list? (head . rest))
+          (or (and (symbol? head) (string-suffix? "!" (symbol->string head)))
+              (changes-before? (cons head rest))))
+         (_ #f))
+       (if (list? call) (cdr call) '())))
+
+;; What a refused call must leave alone; #f where it cannot be told.
+(define (poses-and-hash)
+  (false-if-exception (cons (all-poses) (%history-hash (current-world)))))
+
 ;; #f, or what is wrong with how the call ended.
 (define (trial call)
-  (let ((interrupted? #f) (fault #f) (start (get-internal-real-time)))
+  (let ((interrupted? #f) (fault #f) (before (poses-and-hash)) (start (get-internal-real-time)))
     (setitimer ITIMER_REAL 0 0 patience 0)
     (catch #t
       (lambda ()
@@ -83,7 +98,10 @@
                 ((not (string? message)) (set! fault (format #f "~s has no message" key)))
                 ((string-null? (string-trim message))
                  (set! fault (format #f "~s has an empty message" key)))
-                ((string-contains message "internal error") (set! fault message))))))
+                ((string-contains message "internal error") (set! fault message))
+                ((not (or (runs? call) (changes-before? call) (equal? before (poses-and-hash))))
+                 (set! fault (format #f "is refused (~a), and has changed poses or hash"
+                                     message)))))))
     (setitimer ITIMER_REAL 0 0 0 0)
     (let ((taken (/ (- (get-internal-real-time) start) 1.0 internal-time-units-per-second)))
       (when (> taken 0.3) (say "slow " (format #f "~,2f s" taken))))
@@ -92,10 +110,10 @@
 
 (define (overrides)
   (case setting
-    ((plain) '())
-    ((check) '((check . #t)))
-    ((undo) '((undo-redo . #t)))
-    ((adversary) '((adversary 1 0.05 #t)))))
+    ((plain) '((hash . #t)))
+    ((check) '((hash . #t) (check . #t)))
+    ((undo) '((hash . #t) (undo-redo . #t)))
+    ((adversary) '((hash . #t) (adversary 1 0.05 #t)))))
 
 ;; Seeds begin at other places.
 (define (place-of episode number)

@@ -12,7 +12,12 @@
   (set-cdr! (last-pair elements) elements)
   elements)
 
-;; Both a list that never ends and one that ends in the number 7 are refused, with a short message.
+;; 2^50 parts, if it is walked as a tree.
+(define shared
+  (let loop ((value '(1)) (n 50)) (if (zero? n) value (loop (cons value value) (1- n)))))
+
+;; A list that never ends, one that ends in the number 7 and one that is endless to print are
+;; refused, with a short message.
 (define-syntax-rule (refuses-lists name (_ element ...) expression)
   (in-world ()
     (let* ((ball (add-body! #:name "ball" #:shape (sphere 1)))
@@ -24,7 +29,8 @@
                            (< (string-length message) 400)))))))
       (try "circular" (circular element ...))
       (try "circular at once" (circular (first (list element ...))))
-      (try "improper" (cons* element ... 7)))))
+      (try "improper" (cons* element ... 7))
+      (try "shared" shared))))
 
 (define points '(#(0 0 0) #(1 0 0) #(0 1 0) #(0 0 1)))
 
@@ -45,6 +51,11 @@
 (refuses-lists "a policy" (list 'retroactive 1) (lambda (ball l) (scene #:policy l)))
 (refuses-lists "a vector" (list 1 2 3) (lambda (ball l) (v+ l #(0 0 0))))
 (refuses-lists "a quaternion" (list 1 0 0 0) (lambda (ball l) (q* l l)))
+(refuses-lists "what to observe" (list 'frame) (lambda (ball l) (observe! l list)))
+(refuses-lists "whom a force moves" (list 1) (lambda (ball l) (add-force! l list)))
+(refuses-lists "a spring" (list 1) (lambda (ball l) (add-spring! ball l #:stiffness l)))
+(refuses-lists "who collides" (list 1) (lambda (ball l) (on-collision! l l list)))
+(refuses-lists "a period" (list 1) (lambda (ball l) (add-callback! ball list #:period l)))
 (refuses-lists "a frame" (list 0.0 0) (lambda (ball l) (frame-views l)))
 
 (test-message "a list is no name" "name is" (find-body (circular 1)))

@@ -67,6 +67,38 @@
   (run-output (run "outer/nested.scm" "--quiet" "--until=0.1")))
 
 (test-message "no mesh" "no faces" (load-shape (write-file "empty.obj" "# nothing")))
+;; a cube and a stray triangle
+(let* ((file (apply write-file "stray.obj"
+                    (append (box-lines "cube" 1 '(0 0 0) '(1 1 1)) '("o stray" "v 5 0 0" "v 6 0 0" "v 6 1 0" "f 9 10 11"))))
+       (volume #f)
+       (warned (call-with-output-string
+                 (lambda (port)
+                   (parameterize ((current-warning-port port)) (set! volume (shape-volume (load-shape file))))))))
+  (test-assert (format #f "a flat part is left out: ~a" warned)
+    (and (close? 1.0 volume 1e-14)
+         (string-match "stray.obj: the object stray has no hull: .*; it is left out" warned)))
+  (test-message "or refused" "stray.obj: the object stray has no hull" (load-shape file #:strict? #t)))
+(test-assert "y up"
+  (close? #(0.05 -0.15 0.1) (shape-centroid (load-shape cube #:up 'y)) 1e-15))
+(test-message "what is up" "up is z\\?; expected 'y or 'z" (load-shape cube #:up 'z?))
+;; points so close that Qhull's merged facets bend
+(test-assert "a mesh with nearly the same points many times"
+  (let ((state (seed->random-state 5)))
+    (every (lambda (trial)
+             (let* ((n 60)
+                    (points (append-map
+                             (lambda (i)
+                               (let* ((a (* 6.2831853 (/ i n))) (c (cos a)) (s (sin a)))
+                                 (append-map
+                                  (lambda (z)
+                                    (map (lambda (k)
+                                           (map (lambda (x) (+ x (* 1e-12 (random:normal state))))
+                                                (list (+ (* 0.8 c) (* 0.6 z)) s (+ (* -0.6 c) (* 0.8 z)))))
+                                         (iota 3)))
+                                  '(-0.5 0.5))))
+                             (iota n))))
+               (close? 3.135 (shape-volume (convex (map list->vector points))) 0.01)))
+           (iota 20))))
 (test-message "a flat mesh" "has no hull: .*flat"
   (load-shape (write-file "flat.obj" "v 0 0 0" "v 1 0 0" "v 1 1 0" "v 0 1 0" "f 1 2 3 4")))
 (test-message "corners that are not there" "flaw.obj has a face with the corner 7, and 2 vertices"

@@ -81,4 +81,15 @@
   (run-for! 0)
   (test-equal "no time" 0.0 (world-time)))
 
+(in-world ()
+  (test-equal "a step where nothing is to be done" #f (step!))
+  (let ((floor (ground)) (ball (add-body! #:shape (sphere 0.5) #:position #(0 0 1))))
+    (define (next kind)
+      (match (step!)
+        ((found time . bodies) (if (eq? found kind) (cons time bodies) (next kind)))))
+    (match (next 'impact)
+      ((time a b)
+       (test-assert "a step tells what it has done, when and to whom"
+         (and (close? time (sqrt (/ 9.81)) 1e-9) (equal? (list a b) (list floor ball))))))))
+
 (test-end "worlds")

@@ -11,6 +11,12 @@
 namespace tw::test {
 
 using Numbers = std::vector<double>;
+using Column = Eigen::VectorXd;
+
+inline Eigen::Map<const Column> column(const Numbers& x) {
+  return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
+inline Numbers numbers(const Column& x) { return Numbers(x.data(), x.data() + x.size()); }
 
 inline Mat3 random_inertia(Random& random) {
   const Vec3 squares(random.real(0.01, 0.1), random.real(0.01, 0.1), random.real(0.01, 0.1));
@@ -63,11 +69,28 @@ inline std::vector<multibody::LinkSpec> random_links(Random& random, int count, 
   return links;
 }
 
+// Some joints of one freedom follow others.
+inline std::vector<multibody::LinkSpec> with_followers(std::vector<multibody::LinkSpec> links,
+                                                       Random& random) {
+  std::vector<multibody::LinkSpec*> leaders;
+  for (multibody::LinkSpec& link : links) {
+    if (link.joint.kind != multibody::JointKind::revolute &&
+        link.joint.kind != multibody::JointKind::prismatic)
+      continue;
+    if (leaders.empty() || random.below(3) == 0)
+      leaders.push_back(&link);
+    else
+      link.joint.follows = {leaders[random.below(leaders.size())]->name, random.real(-2, 2),
+                            random.real(-1, 1)};
+  }
+  return links;
+}
+
 // A tree with a state, and what surrounds it.
 struct TreeState {
   multibody::Tree tree;
   Numbers q, u;
-  multibody::Surroundings around;
+  multibody::BaseMotion around;
 
   TreeState(const std::vector<multibody::LinkSpec>& links, Random& random, bool moving_base)
       : tree(links),

@@ -11,6 +11,8 @@
 
 namespace tw::test {
 
+inline constexpr double g = 9.81;  // m/s^2
+
 struct Scene {
   std::string name;
   double duration = 1;  // s

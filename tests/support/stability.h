@@ -17,6 +17,8 @@
 
 namespace tw::test {
 
+inline constexpr double ample_budget = 20;  // s of CPU, which no scene comes near
+
 struct StabilityScene {
   std::string name, what;
   double duration = 1;  // s
@@ -91,10 +93,10 @@ inline void measure_depths(const World& world, StabilityOutcome& outcome) {
       const Shape& shape_b = *world.body(b).shape;
       const double distance =
           separation(shape_a, frame_of(world, a), shape_b, frame_of(world, b)).distance;
-      const double width = std::min(shape_a.least_width(), shape_b.least_width());
+      const double thinner = std::min(shape_a.least_width(), shape_b.least_width());
       outcome.deepest = std::max(outcome.deepest, -distance);
-      if (-distance / width <= outcome.deepest_share) continue;
-      outcome.deepest_share = -distance / width;
+      if (-distance / thinner <= outcome.deepest_share) continue;
+      outcome.deepest_share = -distance / thinner;
       outcome.deepest_pair = world.body(a).name + " / " + world.body(b).name;
     }
 }

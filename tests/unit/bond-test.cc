@@ -27,6 +27,8 @@ class Bonds : public testing::Test {
     bond.spring = {30, 2, kind == 0 ? 0.7 : 0.0};
     bond.holds = kind == 2;
     if (bond.holds) bond.turn = {5, 0.4, short_rotation(draw(1.5))};
+    // a part of the draws is beyond the limit, a part below where it begins
+    if (bond.holds) bond.firm = bond.firm_turn = {2, 10};
     return bond;
   }
   Random random_{11};

@@ -10,7 +10,7 @@
 #include "convex-oracles.h"
 #include "seam-ground.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 // 10 tiles of 0.5 m along x with coplanar tops at z = 0, from x = 0.
@@ -58,7 +58,7 @@ TEST(Seams, a_box_sunk_into_a_tiled_floor_feels_one_plane) {
 
 // What is asked of face planes first is what the distance says.
 TEST(Seams, a_part_holds_what_is_as_deep_in_it_as_its_surface_is_far) {
-  Random random(38);
+  Engine random(38);
   const ShapePtr shapes[] = {
       make_box({0.4, 0.3, 0.2}), random_rock(random, 14, {0.5, 0.4, 0.3}), make_sphere(0.2),
       make_cylinder(0.2, 0.3),
@@ -84,7 +84,7 @@ TEST(Seams, a_part_holds_what_is_as_deep_in_it_as_its_surface_is_far) {
 TEST(Seams, a_tilted_box_is_carried_at_its_deepest_corner) {
   const Ground floor = tiled_floor();
   const ShapePtr box = make_box({0.4, 0.3, 0.2});
-  Random random(1);
+  Engine random(1);
   for (int i = 0; i < 3000; ++i) {
     const double tilt = std::pow(10, uniform(random, -6, -0.5));
     Frame frame = turned(tilt * random_direction(random), {0, 0, 0});
@@ -217,7 +217,7 @@ TEST(Seams, the_inner_seams_of_a_moving_union_are_no_features) {
 
 // A rough mountainside: a grid of heights, two triangular columns a cell.
 struct Mountain : Ground {
-  explicit Mountain(Random& random) {
+  explicit Mountain(Engine& random) {
     constexpr int cells = 6;
     std::map<std::pair<int, int>, double> height;
     for (int i = 0; i <= cells; ++i)
@@ -299,7 +299,7 @@ TEST(Seams, a_rod_is_not_on_an_edge_that_it_crosses_beyond_its_end) {
 }
 
 TEST(Seams, a_rock_that_comes_down_on_a_rough_mountainside_keeps_what_it_touches) {
-  Random random(5);
+  Engine random(5);
   int lost = 0;
   int ghosts = 0;
   int landed = 0;
@@ -340,4 +340,4 @@ TEST(Seams, a_rock_that_comes_down_on_a_rough_mountainside_keeps_what_it_touches
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

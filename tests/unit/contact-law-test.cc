@@ -45,6 +45,16 @@ TEST(ContactLaw, given_stiffness_and_damping_hold) {
   EXPECT_DOUBLE_EQ(c.depth, 2 * 9.81 / 1e5);
 }
 
+TEST(ContactLaw, four_million_weights_press_a_hundredth_deep) {
+  for (const bool unequal : {false, true}) {
+    const ContactConstants c = contact_constants({}, 2, 0.4, 9.81, unequal);
+    const double weight = 2 * 9.81, depth = 0.01 * 0.4;
+    EXPECT_NEAR(spring_force(c, 1, depth) / weight, 4e6, 3e4) << unequal;
+    EXPECT_LT(spring_depth(c, 1, 1e6 * weight), 0.9 * depth);
+    EXPECT_NEAR(spring_depth(c, 1, 8e6 * weight), 2 * depth, 0.02 * depth);
+  }
+}
+
 TEST(ContactLaw, without_gravity_the_standard_one_stands_in) {
   const ContactConstants zero = contact_constants({}, 2, 0.4, 0, false);
   const ContactConstants standard = contact_constants({}, 2, 0.4, 9.81, false);
@@ -52,10 +62,11 @@ TEST(ContactLaw, without_gravity_the_standard_one_stands_in) {
   EXPECT_EQ(zero.b, standard.b);
 }
 
-// To beyond where it hardens no more, ten hardening depths.
+// To beyond where it hardens no more, ten hardening depths, and the limit of the second hardening,
+// twenty.
 TEST(ContactLaw, depth_of_a_force_is_the_inverse_of_the_force_and_the_energy_its_integral) {
   ContactConstants c = contact_constants({}, 2, 0.4, 9.81, false);
-  for (const double ratio : {1e-9, 0.01, 0.5, 1.0, 3.0, 9.9, 10.1, 40.0}) {
+  for (const double ratio : {1e-9, 0.01, 0.5, 1.0, 3.0, 9.9, 10.1, 12.1, 15.0, 19.9, 20.1, 40.0}) {
     const double depth = ratio * c.hardening, step = 1e-5 * depth;
     const double force = spring_force(c, 0.25, depth);
     EXPECT_NEAR(spring_depth(c, 0.25, force), depth, 1e-14 * depth) << ratio;
@@ -74,9 +85,15 @@ TEST(ContactLaw, grip_is_the_root_of_how_much_harder_the_spring_is) {
   EXPECT_EQ(friction_grip(c, -1e-3), 1);
   EXPECT_EQ(friction_grip(c, 0), 1);
   EXPECT_DOUBLE_EQ(friction_grip(c, c.hardening), std::sqrt(2));
-  for (const double ratio : {0.3, 3.0, 9.9, 10.1, 40.0}) {
+  for (const double ratio : {0.3, 3.0, 9.9, 10.1}) {
     const double depth = ratio * c.hardening, y = friction_grip(c, depth);
     EXPECT_NEAR(y * y, spring_force(c, 1, depth) / (c.k * depth), 1e-12 * y * y) << ratio;
+  }
+  // of the second hardening they keep up with how steep it is
+  for (const double ratio : {13.0, 15.0, 19.0}) {
+    const double depth = ratio * c.hardening, step = 1e-6 * depth, y = friction_grip(c, depth);
+    const double rise = spring_force(c, 1, depth + step) - spring_force(c, 1, depth - step);
+    EXPECT_NEAR(y * y, rise / (2 * step * c.k), 1e-6 * y * y) << ratio;
   }
 }
 

@@ -102,6 +102,25 @@ TEST(ContactParameters, bodies_without_a_material_match_no_material) {
   EXPECT_EQ(table.look_up(floor_, ball).restitution, 0.3);
 }
 
+// What joins two bodies keeps them from colliding unless a rule that names both lets them.
+TEST(ContactParameters, it_is_told_whether_the_rule_on_collisions_names_both) {
+  ContactSettings on, off;
+  on.collide = true;
+  off.collide = false;
+  ContactTable table;
+  EXPECT_FALSE(table.look_up(ball, box).collide_names_both);
+  table.add(body(1), all(), on);
+  table.add(body(1), body(2), restitution(0.5));
+  EXPECT_FALSE(table.look_up(ball, box).collide_names_both);
+  table.add(body(2), body(1), on);
+  EXPECT_TRUE(table.look_up(ball, box).collide_names_both);
+  EXPECT_FALSE(table.look_up(ball, floor_).collide_names_both);
+  table.add(body(1), body(2), off);
+  EXPECT_FALSE(table.look_up(ball, box).collide);
+  table.take_back(3);
+  EXPECT_TRUE(table.look_up(ball, box).collide);
+}
+
 TEST(ContactParameters, values_out_of_range_are_errors_that_name_the_keyword) {
   ContactTable table;
   const double nan = std::nan("");

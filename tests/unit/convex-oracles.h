@@ -1,4 +1,4 @@
-// Random solids and poses, and slow independent answers about them, for tests of collision/.
+// Engine solids and poses, and slow independent answers about them, for tests of collision/.
 //
 // The oracles share nothing with the code under test: distance by all pairs of features, depth by
 // all axes without pruning, overlap by libccd's portal refinement.
@@ -15,41 +15,41 @@
 #include "geometry/polyhedron.h"
 #include "geometry/shape.h"
 
-namespace tw::testing {
+namespace tw::test {
 
-using Random = std::mt19937_64;
+using Engine = std::mt19937_64;
 
-inline double uniform(Random& random, double lo, double hi) {
+inline double uniform(Engine& random, double lo, double hi) {
   return std::uniform_real_distribution<double>(lo, hi)(random);
 }
 
-inline Vec3 random_vector(Random& random, double reach) {
+inline Vec3 random_vector(Engine& random, double reach) {
   const double x = uniform(random, -reach, reach);
   const double y = uniform(random, -reach, reach);
   const double z = uniform(random, -reach, reach);
   return {x, y, z};
 }
 
-inline Vec3 random_direction(Random& random) {
+inline Vec3 random_direction(Engine& random) {
   for (;;) {
     const Vec3 v = random_vector(random, 1);
     if (v.norm() > 0.1 && v.norm() < 1) return v.normalized();
   }
 }
 
-inline Quat random_rotation(Random& random) {
+inline Quat random_rotation(Engine& random) {
   const Vec3 axis = random_direction(random);
   const double angle = uniform(random, 0, 2 * pi);
   return rotation_by(angle * axis).normalized();
 }
 
-inline Frame random_frame(Random& random, double reach) {
+inline Frame random_frame(Engine& random, double reach) {
   const Vec3 position = random_vector(random, reach);
   return Frame(Pose{position, random_rotation(random)});
 }
 
 // Points on a unit sphere, squeezed to `widths`.
-inline ShapePtr random_rock(Random& random, int points, const Vec3& widths) {
+inline ShapePtr random_rock(Engine& random, int points, const Vec3& widths) {
   std::vector<Vec3> cloud;
   for (int i = 0; i < points; ++i) cloud.push_back(random_direction(random).cwiseProduct(widths));
   return make_hull(cloud);
@@ -203,7 +203,7 @@ class CcdOracle {
 };
 
 // A zoo of polyhedra about a metre wide: boxes, plates, needles, rocks of 4 to 200 points, prisms.
-inline std::vector<ShapePtr> polyhedron_zoo(Random& random) {
+inline std::vector<ShapePtr> polyhedron_zoo(Engine& random) {
   return {make_box({1, 1, 1}),
           make_box({2, 1, 0.05}),
           make_box({0.02, 0.03, 1.5}),
@@ -216,4 +216,4 @@ inline std::vector<ShapePtr> polyhedron_zoo(Random& random) {
           prism(20, 0.7, 0.02)};
 }
 
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -8,7 +8,7 @@
 #include "convex-oracles.h"
 #include "seam-ground.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 constexpr double hole = 0.35, lip_height = 1.2, steep = 0.96;
@@ -85,7 +85,7 @@ TEST(CrossingRims, a_grain_in_the_corner_is_carried_by_both_lips) {
 
 TEST(CrossingRims, what_touches_two_plates_is_carried_by_both) {
   const Ground ground = rims();
-  Random random(3);
+  Engine random(3);
   constexpr double depth = 1e-3;
   int both = 0, lost = 0;
   for (int i = 0; i < 400; ++i) {
@@ -115,4 +115,4 @@ TEST(CrossingRims, what_touches_two_plates_is_carried_by_both) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -15,11 +15,11 @@
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 // Some cells are flat, most are not.
-ShapePtr random_field(Random& random, std::size_t rows, std::size_t columns, double rough) {
+ShapePtr random_field(Engine& random, std::size_t rows, std::size_t columns, double rough) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < rows * columns; ++i)
     heights.push_back(uniform(random, 0, 1) < 0.3 ? 0 : uniform(random, -rough, rough));
@@ -46,7 +46,7 @@ double ground_at(const HeightField& field, double x, double y) {
 }
 
 TEST(HeightField, is_solid_below_its_heights) {
-  Random random(1);
+  Engine random(1);
   const ShapePtr shape = random_field(random, 9, 12, 0.6);
   const HeightField& field = *shape->height_field();
   EXPECT_EQ(field.part_count(), 2u * 8 * 11);
@@ -78,7 +78,7 @@ TEST(HeightField, has_one_part_where_cells_lie_in_a_plane) {
 
 // Terraces and ramps: every cell is under one part alone.
 TEST(HeightField, joined_cells_cover_the_ground_once) {
-  Random random(3);
+  Engine random(3);
   for (int k = 0; k < 20; ++k) {
     const std::size_t columns = 12, rows = 10;
     std::vector<double> heights(columns * rows);
@@ -138,7 +138,7 @@ TEST(HeightField, says_what_is_wrong_with_it) {
 }
 
 // Shapes with trees: a field, and a union of many parts.
-std::vector<ShapePtr> shapes_with_trees(Random& random) {
+std::vector<ShapePtr> shapes_with_trees(Engine& random) {
   std::vector<ShapePtr> parts;
   for (int i = 0; i < 60; ++i)
     parts.push_back(place_shape(i % 3 ? make_box({0.2, 0.3, 0.1}) : make_sphere(0.1),
@@ -148,7 +148,7 @@ std::vector<ShapePtr> shapes_with_trees(Random& random) {
   return shapes;
 }
 
-std::vector<ShapePtr> shapes_without(Random& random) {
+std::vector<ShapePtr> shapes_without(Engine& random) {
   return {make_sphere(0.3),
           make_box({0.3, 0.2, 0.4}),
           random_rock(random, 20, {0.4, 0.3, 0.3}),
@@ -158,7 +158,7 @@ std::vector<ShapePtr> shapes_without(Random& random) {
 }
 
 TEST(PartTree, finds_the_least_distance_of_all_pairs) {
-  Random random(2);
+  Engine random(2);
   const std::vector<ShapePtr> with = shapes_with_trees(random), without = shapes_without(random);
   int overlaps = 0;
   for (int i = 0; i < 60; ++i)
@@ -185,7 +185,7 @@ TEST(PartTree, finds_the_least_distance_of_all_pairs) {
 }
 
 TEST(PartTree, finds_the_manifolds_of_all_pairs_in_order) {
-  Random random(3);
+  Engine random(3);
   const std::vector<ShapePtr> with = shapes_with_trees(random), without = shapes_without(random);
   const double reach = 0.02;
   std::size_t points = 0;
@@ -213,7 +213,7 @@ TEST(PartTree, finds_the_manifolds_of_all_pairs_in_order) {
 
 // A plane cell has one part and two numbers; a union may have more parts than a small field.
 TEST(PartTree, finds_no_part_of_a_field_twice) {
-  Random random(6);
+  Engine random(6);
   const ShapePtr field = make_height_field(std::vector<double>(9, 0.0), 3, 1, 1);
   std::vector<ShapePtr> parts;
   for (int i = 0; i < 40; ++i)
@@ -241,7 +241,7 @@ ShapePtr alone(const ConvexPart& part) {
 }
 
 TEST(PartTree, finds_where_rays_enter) {
-  Random random(4);
+  Engine random(4);
   int hits = 0;
   for (const ShapePtr& shape : shapes_with_trees(random)) {
     std::vector<ShapePtr> parts;
@@ -267,7 +267,7 @@ TEST(PartTree, finds_where_rays_enter) {
 
 // Several threads make parts at once: each part exists once.
 TEST(HeightField, parts_are_made_by_several_threads) {
-  Random random(5);
+  Engine random(5);
   const ShapePtr shape = random_field(random, 40, 40, 1);
   std::vector<std::vector<const ConvexPart*>> seen(4);
   std::vector<std::thread> threads;
@@ -280,4 +280,4 @@ TEST(HeightField, parts_are_made_by_several_threads) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

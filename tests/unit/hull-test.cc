@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 std::string error_of(const std::vector<Vec3>& points) {
@@ -19,7 +19,7 @@ std::string error_of(const std::vector<Vec3>& points) {
   return "";
 }
 
-std::vector<Vec3> cloud(Random& random, int count, const Vec3& widths) {
+std::vector<Vec3> cloud(Engine& random, int count, const Vec3& widths) {
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) points.push_back(random_vector(random, 1).cwiseProduct(widths));
   return points;
@@ -44,7 +44,7 @@ void check_polyhedron(const Polyhedron& hull, const std::vector<Vec3>& points, d
 }
 
 TEST(Hull, of_random_points_is_closed_convex_and_holds_them) {
-  Random random(1);
+  Engine random(1);
   for (int round = 0; round < 60; ++round) {
     const double width = std::pow(10, uniform(random, -3, 0));
     const Vec3 widths(1, width, std::pow(10, uniform(random, -5, 0)));
@@ -65,7 +65,7 @@ TEST(Hull, joins_coplanar_triangles_to_polygons) {
   EXPECT_EQ(cube.edges().size(), 12u);
   check_polyhedron(cube, lattice, 1);
   // tilted, so that no coordinate is exact
-  Random random(2);
+  Engine random(2);
   const Frame tilt = random_frame(random, 3);
   for (Vec3& p : lattice) p = tilt * p;
   const Polyhedron tilted = convex_hull(lattice);
@@ -84,7 +84,7 @@ TEST(Hull, of_prisms_has_polygons_of_all_sides) {
 }
 
 TEST(Hull, is_the_same_for_the_same_points) {
-  Random random(3);
+  Engine random(3);
   const auto points = cloud(random, 100, {1, 1, 1});
   const Polyhedron first = convex_hull(points);
   const Polyhedron second = convex_hull(points);
@@ -99,7 +99,7 @@ TEST(Hull, is_the_same_for_the_same_points) {
 }
 
 TEST(Hull, far_from_the_origin_and_in_any_unit_keeps_its_faces) {
-  Random random(4);
+  Engine random(4);
   const auto points = cloud(random, 40, {1, 1, 1});
   const Polyhedron near = convex_hull(points);
   for (double unit : {1e-6, 1e6}) {
@@ -110,7 +110,7 @@ TEST(Hull, far_from_the_origin_and_in_any_unit_keeps_its_faces) {
 }
 
 TEST(Hull, duplicates_change_nothing) {
-  Random random(5);
+  Engine random(5);
   auto points = cloud(random, 20, {1, 1, 1});
   const Polyhedron once = convex_hull(points);
   const auto copy = points;
@@ -136,7 +136,7 @@ TEST(Hull, refuses_bad_points_and_says_how_flat_they_are) {
 }
 
 TEST(Hull, refuses_flat_points_in_any_pose_without_a_word_on_the_terminal) {
-  Random random(6);
+  Engine random(6);
   ::testing::internal::CaptureStderr();
   for (int round = 0; round < 100; ++round) {
     const Frame frame = random_frame(random, 5);
@@ -152,13 +152,13 @@ TEST(Hull, refuses_flat_points_in_any_pose_without_a_word_on_the_terminal) {
 }
 
 TEST(Hull, accepts_plates_a_millionth_thick) {
-  Random random(7);
+  Engine random(7);
   const auto points = cloud(random, 50, {1, 1, 1e-6});
   check_polyhedron(convex_hull(points), points, 1);
 }
 
 TEST(Polyhedron, support_is_the_farthest_vertex_from_any_start) {
-  Random random(8);
+  Engine random(8);
   for (const ShapePtr& shape : polyhedron_zoo(random)) {
     const Polyhedron& core = *shape->parts()[0].core;
     const int count = static_cast<int>(core.vertices().size());
@@ -173,7 +173,7 @@ TEST(Polyhedron, support_is_the_farthest_vertex_from_any_start) {
 }
 
 TEST(Polyhedron, faces_under_a_point_are_those_whose_planes_it_is_over) {
-  Random random(5);
+  Engine random(5);
   for (int round = 0; round < 50; ++round) {
     const auto hull = convex_hull(cloud(random, 20, Vec3(1, 1, 1)));
     const Vec3 point = random_vector(random, 1.5);
@@ -203,4 +203,4 @@ TEST(Polyhedron, refuses_faces_that_leave_a_hole_or_are_not_convex) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

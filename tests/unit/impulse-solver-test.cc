@@ -1,6 +1,7 @@
 // Several contacts at once: closed forms, conservation, the limit, and bodies joined to others.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "dynamics/impulse-solver.h"
+#include "unit/impulse-energy.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,8 @@
 
 namespace tw {
 namespace {
+
+using test::energy;
 
 ImpulseSlot ball(double mass, double radius, const Vec3& x, const Vec3& v,
                  const Vec3& w = Vec3::Zero()) {
@@ -34,17 +37,6 @@ Vec3 angular_momentum(const ImpulseSolver& solver) {
   for (std::uint32_t i = 0; i < solver.slot_count(); ++i) {
     const ImpulseSlot& s = solver.slot(i);
     if (s.moves()) sum += s.inverse_inertia.inverse() * s.w + s.x.cross(s.v) / s.inverse_mass;
-  }
-  return sum;
-}
-
-double energy(const ImpulseSolver& solver) {
-  double sum = 0;
-  for (std::uint32_t i = 0; i < solver.slot_count(); ++i) {
-    const ImpulseSlot& s = solver.slot(i);
-    if (s.moves())
-      sum +=
-          0.5 * (s.v.squaredNorm() / s.inverse_mass + s.w.dot(s.inverse_inertia.inverse() * s.w));
   }
   return sum;
 }

@@ -13,7 +13,7 @@
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 using Points = std::vector<ManifoldPoint>;
@@ -46,7 +46,7 @@ double least_gap(const Points& points) {
 struct ShallowPose {
   Frame frame_a, frame_b;
 
-  ShallowPose(Random& random, const ShapePtr& a, const ShapePtr& b, double depth) {
+  ShallowPose(Engine& random, const ShapePtr& a, const ShapePtr& b, double depth) {
     frame_a = random_frame(random, 1);
     frame_b = random_frame(random, 1);
     frame_b.p = frame_a.p + 4 * random_direction(random);
@@ -75,7 +75,7 @@ double gap_by_feature(const ManifoldPoint& p) {
 }
 
 TEST(Manifold, gaps_follow_from_the_features) {
-  Random random(1);
+  Engine random(1);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   zoo.push_back(make_sphere(0.4));
   zoo.push_back(make_half_space({1, 2, 3}, 0.1));
@@ -199,7 +199,7 @@ TEST(Manifold, an_edge_over_a_strip_has_two_points) {
 }
 
 TEST(Manifold, the_deepest_point_is_as_deep_as_the_separating_axis_test_says) {
-  Random random(2);
+  Engine random(2);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (int round = 0; round < 200; ++round)
     for (const ShapePtr& a : zoo)
@@ -215,7 +215,7 @@ TEST(Manifold, the_deepest_point_is_as_deep_as_the_separating_axis_test_says) {
 }
 
 TEST(Manifold, every_pair_within_reach_has_a_point_and_none_beyond) {
-  Random random(3);
+  Engine random(3);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   zoo.push_back(make_sphere(0.4));
   int near = 0;
@@ -233,7 +233,7 @@ TEST(Manifold, every_pair_within_reach_has_a_point_and_none_beyond) {
 }
 
 TEST(Manifold, swapping_the_bodies_mirrors_the_points) {
-  Random random(4);
+  Engine random(4);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   int pairs = 0;
   for (int round = 0; round < 20; ++round)
@@ -260,7 +260,7 @@ TEST(Manifold, swapping_the_bodies_mirrors_the_points) {
 }
 
 TEST(Manifold, a_rigid_motion_of_both_moves_the_points_along) {
-  Random random(5);
+  Engine random(5);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   zoo.push_back(make_sphere(0.4));
   for (int round = 0; round < 10; ++round)
@@ -282,7 +282,7 @@ TEST(Manifold, a_rigid_motion_of_both_moves_the_points_along) {
 }
 
 TEST(Manifold, names_of_points_outlive_small_motions) {
-  Random random(6);
+  Engine random(6);
   int kept = 0;
   int all = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -316,7 +316,7 @@ double deepest_under_top(const ShapePtr& b, const Frame& frame_b, double half, d
 }
 
 TEST(Manifold, what_rolls_within_the_reach_is_represented) {
-  Random random(7);
+  Engine random(7);
   const ShapePtr table = make_box({2, 2, 1});
   int rolled = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -517,7 +517,7 @@ TEST(Manifold, points_of_tilted_faces_near_as_fast_as_the_bodies) {
 // Along any normal two hulls overlap at least as far as they are deep, along that of their nearest
 // points just so far.
 TEST(Manifold, overlap_along_a_normal_bounds_the_depth) {
-  Random random(31);
+  Engine random(31);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (const ShapePtr& a : zoo)
     for (const ShapePtr& b : zoo) {
@@ -540,4 +540,4 @@ TEST(Manifold, overlap_along_a_normal_bounds_the_depth) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

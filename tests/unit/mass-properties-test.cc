@@ -8,7 +8,7 @@
 
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 void expect_equal(const MassProperties& a, const MassProperties& b, double tolerance) {
@@ -62,7 +62,7 @@ TEST(MassProperties, of_a_regular_octahedron) {
 }
 
 TEST(MassProperties, of_a_rock_do_not_depend_on_where_it_stands) {
-  Random random(1);
+  Engine random(1);
   std::vector<Vec3> points;
   for (int i = 0; i < 40; ++i) points.push_back(random_vector(random, 1));
   const MassProperties here = make_hull(points)->mass_properties();
@@ -91,7 +91,7 @@ TEST(MassProperties, of_a_dumbbell_have_the_parallel_axes) {
 }
 
 TEST(MassProperties, inertia_is_symmetric_to_the_last_bit_and_a_solid_s) {
-  Random random(2);
+  Engine random(2);
   for (const ShapePtr& shape : polyhedron_zoo(random)) {
     const Vec3 position = random_vector(random, 2);
     const ShapePtr placed = place_shape(shape, {position, random_rotation(random)});
@@ -105,4 +105,4 @@ TEST(MassProperties, inertia_is_symmetric_to_the_last_bit_and_a_solid_s) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -121,7 +121,7 @@ TEST(MovingBase, its_place_velocity_and_acceleration_are_of_one_motion) {
     for (int i = 0; i < 50; ++i) {
       const double t = random.real(-0.2, 1), apart = 1e-6;
       if (motion->next_corner(t - 2 * apart, t + 2 * apart) < never) continue;
-      Surroundings here, before, after;
+      BaseMotion here, before, after;
       base.set(t, here);
       base.set(t - apart, before);
       base.set(t + apart, after);
@@ -159,7 +159,7 @@ TEST(MovingBase, a_jump_gives_no_impulse_along_the_joints) {
     joints.base = base.twist_before(1);
     // sum over the links of axis . momentum, about the origin
     const auto momentum_along = [&] {
-      Surroundings around;
+      BaseMotion around;
       base.set(1, around);
       around.v = joints.base.v, around.w = joints.base.w;
       Kinematics k(tree);

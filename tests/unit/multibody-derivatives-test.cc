@@ -12,13 +12,8 @@ namespace tw::test {
 namespace {
 
 using namespace multibody;
-using Column = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-Eigen::Map<const Column> column(const Numbers& x) {
-  return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-Numbers numbers(const Column& x) { return Numbers(x.data(), x.data() + x.size()); }
 Out all(Matrix& m) { return Out(m.data(), static_cast<std::size_t>(m.size())); }
 
 struct Derivatives {

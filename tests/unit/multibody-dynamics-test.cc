@@ -16,13 +16,6 @@ namespace tw::test {
 namespace {
 
 using namespace multibody;
-using Column = Eigen::VectorXd;
-
-Eigen::Map<const Column> column(const Numbers& x) {
-  return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-Numbers numbers(const Column& x) { return Numbers(x.data(), x.data() + x.size()); }
-
 Eigen::MatrixXd mass_matrix_of(const Tree& tree, const Kinematics& k) {
   InverseDynamics work(tree);
   Eigen::MatrixXd M(tree.nv(), tree.nv());
@@ -114,7 +107,7 @@ TEST(MultibodyDynamics, a_rod_swings_as_a_pendulum) {
   rod.center_of_mass = {0, 0, -0.5};
   rod.inertia = Vec3(2.0 / 12, 2.0 / 12, 0).asDiagonal();
   const Tree tree({rod});
-  Surroundings around;
+  BaseMotion around;
   around.gravity = {0, 0, -9.81};
   Kinematics k(tree);
   Articulation a(tree);
@@ -145,7 +138,7 @@ TEST(MultibodyDynamics, two_points_on_strings_are_the_double_pendulum) {
   lower.mass = m2;
   lower.center_of_mass = {0, 0, -l2};
   const Tree tree({upper, lower});
-  Surroundings around;
+  BaseMotion around;
   around.gravity = {0, 0, -g};
   const double t1 = 0.4, t2 = -1.1, w1 = 2, w2 = -3;
   const Numbers q{t1, t2 - t1}, u{w1, w2 - w1}, tau{0, 0};

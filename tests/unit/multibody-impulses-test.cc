@@ -14,23 +14,27 @@ namespace tw::test {
 namespace {
 
 using namespace multibody;
-using Column = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-Eigen::Map<const Column> column(const Numbers& x) {
-  return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-
-// A random tree, placed and factored, with its dense twin.
+// A random tree, placed and factored, with its dense twin; in every other one joints follow others.
 struct Case {
+  std::vector<LinkSpec> links;
   TreeState state;
   const Tree& tree = state.tree;
   Kinematics k{tree};
   Articulation a{tree};
   Factored factored{tree, k, a};
   Matrix M{tree.nv(), tree.nv()};
+  Matrix T = Matrix::Identity(tree.nv(), tree.nv());  // u = T v
 
-  Case(Random& random, int count) : state(random_links(random, count, false), random, true) {
+  Case(Random& random, int count)
+      : links(random.below(2) == 0 ? random_links(random, count, false)
+                                   : with_followers(random_links(random, count, false), random)),
+        state(links, random, true) {
+    follow_positions(tree, state.q);
+    follow(tree, state.u);
+    for (const Coupling& c : tree.couplings()) T(c.follower, c.leader) = c.ratio;
+    for (const Coupling& c : tree.couplings()) T(c.follower, c.follower) = 0;
     place(tree, state.q, state.u, state.around, k);
     EXPECT_TRUE(factor(tree, k, a));
     InverseDynamics work(tree);
@@ -44,7 +48,12 @@ struct Case {
     J.topRows<3>() -= cross_matrix(arm) * J.bottomRows<3>();
     return J;
   }
-  Matrix solve(const Matrix& b) const { return M.llt().solve(b); }
+  // Of M, or of T^T M T where some follow.
+  Matrix solve(const Matrix& b) const {
+    Matrix folded = T.transpose() * M * T;
+    for (const Coupling& c : tree.couplings()) folded(c.follower, c.follower) = 1;
+    return T * folded.llt().solve(T.transpose() * b);
+  }
 };
 
 int random_of(Random& random, int count) {
@@ -94,6 +103,32 @@ TEST(MultibodyImpulses, velocities_change_as_by_the_mass_matrix) {
     const Column expected = c.solve(sum);
     EXPECT_LT((column(given) - expected).norm(), 1e-12 * (1 + expected.norm()));
   }
+}
+
+// As a tree whose joints follow none, pulled at by what holds them.
+TEST(MultibodyImpulses, joints_that_follow_are_accelerated_as_one) {
+  Random random(23);
+  int followers = 0;
+  for (int round = 0; round < 200; ++round) {
+    Case c(random, 9);
+    followers += static_cast<int>(c.tree.couplings().size());
+    std::vector<LinkSpec> alone = c.links;
+    for (LinkSpec& link : alone) link.joint.follows.reset();
+    const Tree free(alone);
+    Kinematics k(free);
+    Articulation a(free);
+    place(free, c.state.q, c.state.u, c.state.around, k);
+    const Numbers tau = random_numbers(random, c.state.u.size(), 5);
+    Numbers rate = c.state.zeros(), together = rate;
+    ASSERT_TRUE(forward_dynamics(free, k, tau, a, rate));
+    ASSERT_TRUE(forward_dynamics(c.tree, c.k, tau, c.a, together));
+    const Column expected = c.solve(c.M * column(rate));
+    EXPECT_LT((column(together) - expected).norm(), 1e-11 * (1 + expected.norm()));
+    for (const Coupling& coupling : c.tree.couplings())
+      EXPECT_EQ(together[static_cast<std::size_t>(coupling.follower)],
+                coupling.ratio * together[static_cast<std::size_t>(coupling.leader)]);
+  }
+  EXPECT_GT(followers, 100);
 }
 
 TEST(MultibodyImpulses, a_free_body_has_the_inverse_inertia_of_a_body) {

@@ -231,7 +231,7 @@ TEST(MultibodyTree, a_link_on_the_base_stands_where_the_base_puts_it) {
   EXPECT_EQ(tree.nv(), 1);
   EXPECT_EQ(tree.mass(), 1) << "the foot is part of the base";
   Kinematics k(tree);
-  Surroundings around;
+  BaseMotion around;
   around.base.p = {0, 0, 5};
   around.v = {1, 0, 0};
   place(tree, Numbers{0}, Numbers{0}, around, k);

@@ -9,7 +9,7 @@
 #include "collision/part-pairs.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 // What the full search says.
@@ -29,7 +29,7 @@ Separation part_zero(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
 struct Throw {
   Frame frame_a, frame_b;
 
-  Throw(Random& random, const ShapePtr& a, const ShapePtr& b, double depth, bool aligned) {
+  Throw(Engine& random, const ShapePtr& a, const ShapePtr& b, double depth, bool aligned) {
     for (bool hit = false; !hit;) {
       frame_a = random_frame(random, 1);
       frame_b = random_frame(random, 1);
@@ -46,7 +46,7 @@ struct Throw {
     }
     frame_b.p -= depth * part_zero(a, frame_a, b, frame_b).normal;
   }
-  void turn_face_against(Random& random, const Polyhedron& a, const Polyhedron& b) {
+  void turn_face_against(Engine& random, const Polyhedron& a, const Polyhedron& b) {
     int face = 0;
     a.face_separation(frame_a.to_local(frame_b.p), face);
     const Vec3 n = frame_a.R * a.face(face).normal;
@@ -58,7 +58,7 @@ struct Throw {
 };
 
 TEST(NearestFeatures, distance_equals_that_of_the_full_search_on_1e5_shallow_poses) {
-  Random random(1);
+  Engine random(1);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   int overlaps = 0;
   int rough = 0;
@@ -82,7 +82,7 @@ TEST(NearestFeatures, distance_equals_that_of_the_full_search_on_1e5_shallow_pos
 }
 
 TEST(NearestFeatures, most_shallow_contacts_are_proven_without_a_search) {
-  Random random(2);
+  Engine random(2);
   int proven = 0;
   const int poses = 1000;
   for (int i = 0; i < poses; ++i) {
@@ -96,7 +96,7 @@ TEST(NearestFeatures, most_shallow_contacts_are_proven_without_a_search) {
 }
 
 TEST(NearestFeatures, deep_overlaps_are_answered_as_by_the_full_search) {
-  Random random(3);
+  Engine random(3);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (int round = 0; round < 50; ++round)
     for (const ShapePtr& a : zoo)
@@ -110,7 +110,7 @@ TEST(NearestFeatures, deep_overlaps_are_answered_as_by_the_full_search) {
 }
 
 TEST(NearestFeatures, beyond_the_reach_the_distance_is_a_lower_bound_above_it) {
-  Random random(4);
+  Engine random(4);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   int far = 0;
   for (int round = 0; round < 20; ++round)
@@ -129,4 +129,4 @@ TEST(NearestFeatures, beyond_the_reach_the_distance_is_a_lower_bound_above_it) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -41,7 +41,7 @@ void expect_solves(const Eigen::MatrixXd& A, const Eigen::VectorXd& q) {
   EXPECT_LE(x->cwiseProduct(slope).cwiseAbs().maxCoeff(), 1e-8 * (1 + x->maxCoeff()));
 }
 
-struct Random {
+struct RandomProblem {
   std::mt19937 bits{7};
   std::normal_distribution<double> normal;
   Eigen::MatrixXd matrix(int rows, int columns) {
@@ -50,7 +50,7 @@ struct Random {
 };
 
 TEST(Nonnegative, is_the_best_of_all_subsets) {
-  Random random;
+  RandomProblem random;
   for (int n = 1; n <= 9; ++n)
     for (int trial = 0; trial < 40; ++trial) {
       const Eigen::MatrixXd E = random.matrix(n + 2, n).colwise().normalized();
@@ -63,7 +63,7 @@ TEST(Nonnegative, is_the_best_of_all_subsets) {
 
 // More unknowns than rank, as where a box stands on four corners: any of the solutions.
 TEST(Nonnegative, may_be_singular) {
-  Random random;
+  RandomProblem random;
   for (int trial = 0; trial < 200; ++trial) {
     const Eigen::MatrixXd E = random.matrix(4, 12).colwise().normalized();
     expect_solves(E.transpose() * E, E.transpose() * random.matrix(4, 1));

@@ -7,7 +7,7 @@
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 // The signed distance of a point.
@@ -20,7 +20,7 @@ double height(const Shape& shape, const Frame& frame, const Vec3& point) {
 // Up to the hit the ray is outside, at the hit on the surface, a little farther inside; a ray that
 // misses is outside all the way.
 TEST(Ray, meets_every_kind_of_shape_first_where_it_enters) {
-  Random random(1);
+  Engine random(1);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (const ShapePtr& shape :
        {make_sphere(0.5), make_cylinder(0.5, 1), make_cylinder(0.03, 1.5), make_capsule(0.2, 1),
@@ -69,4 +69,4 @@ TEST(Ray, meets_every_kind_of_shape_first_where_it_enters) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

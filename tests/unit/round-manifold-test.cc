@@ -12,7 +12,7 @@
 #include "integrate/group-arc.h"
 #include "integrate/standing.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 using Points = std::vector<ManifoldPoint>;
@@ -50,7 +50,7 @@ double gap_by_feature(const ManifoldPoint& p) {
 const ShapePtr ground = make_half_space({0, 0, 1}, 0);
 
 TEST(RoundManifold, the_deepest_point_is_as_deep_as_the_shapes_and_follows_from_its_features) {
-  Random random(1);
+  Engine random(1);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   zoo.push_back(make_sphere(0.4));
   zoo.push_back(make_half_space({1, 2, 3}, 0.1));
@@ -122,7 +122,7 @@ TEST(CylinderManifold, lying_it_has_the_ends_of_its_axis_and_rolling_leaves_them
 }
 
 TEST(CylinderManifold, tilted_its_gaps_are_exact_and_stay_while_it_spins) {
-  Random random(2);
+  Engine random(2);
   const ShapePtr coin = make_cylinder(0.3, 0.1);
   for (int i = 0; i < 300; ++i) {
     const double tilt = std::pow(10, uniform(random, -3.5, 0.19));
@@ -326,7 +326,7 @@ TEST(CylinderManifold, where_sides_edges_and_rims_cross_the_gap_stays_that_of_th
 // A ball in the place of the ellipsoid would miss half the difference of its two radii of curvature
 // times the square of the angle it rolls by: 4e-4 m.
 TEST(RoundManifold, an_ellipsoid_that_rolls_on_a_plane_keeps_its_gap) {
-  Random random(5);
+  Engine random(5);
   const ShapePtr table = make_box({4, 4, 1}), disc = make_cylinder(2, 0.1);
   for (const ShapePtr& egg : {make_ellipsoid({0.5, 0.3, 0.2}), make_ellipsoid({0.1, 0.1, 0.5}),
                               place_shape(make_ellipsoid({0.3, 0.4, 0.1}),
@@ -346,7 +346,7 @@ TEST(RoundManifold, an_ellipsoid_that_rolls_on_a_plane_keeps_its_gap) {
 
 // By balls in their places gaps were up to 1e-3 m wrong.
 TEST(RoundManifold, ellipsoids_on_what_is_curved_keep_their_gaps) {
-  Random random(6);
+  Engine random(6);
   const std::vector<ShapePtr> below = {make_ellipsoid({2, 1, 0.5}), make_sphere(1),
                                        make_cylinder(0.7, 8), make_capsule(0.3, 8),
                                        make_box({4, 6, 8})};
@@ -381,7 +381,7 @@ TEST(RoundManifold, ellipsoids_on_what_is_curved_keep_their_gaps) {
 
 // Balls about a point of the axis missed the gap by r delta^2/(2 sin tilt): 1e-4 m.
 TEST(CylinderManifold, rims_on_planes_keep_their_gaps) {
-  Random random(7);
+  Engine random(7);
   int tangent = 0;
   for (const ShapePtr& disc : {make_cylinder(0.3, 0.1), make_cylinder(0.2, 1), make_cone(0.3, 0.5)})
     for (int i = 0; i < 40; ++i) {
@@ -429,4 +429,4 @@ TEST(CylinderManifold, a_ball_meets_side_cap_and_rim) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -10,7 +10,7 @@
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 SupportCore placed(const ShapePtr& shape, const Frame& frame) {
@@ -100,7 +100,7 @@ TEST(Round, mass_is_that_of_a_fine_hull) {
 }
 
 TEST(Round, bounds_and_radii_hold_the_surface_and_no_more) {
-  Random random(11);
+  Engine random(11);
   for (const ShapePtr& shape : round_zoo())
     for (int i = 0; i < 10; ++i) {
       const Pose pose{random_vector(random, 1), random_rotation(random)};
@@ -125,7 +125,7 @@ TEST(Round, bounds_and_radii_hold_the_surface_and_no_more) {
 }
 
 TEST(Round, the_nearest_point_of_an_ellipsoid_is_on_it_and_none_is_nearer) {
-  Random random(12);
+  Engine random(12);
   for (int i = 0; i < 20000; ++i) {
     const auto length = [&] { return std::pow(10, uniform(random, -1.5, 1.5)); };
     Vec3 s(length(), length(), length());
@@ -149,7 +149,7 @@ TEST(Round, the_nearest_point_of_an_ellipsoid_is_on_it_and_none_is_nearer) {
 }
 
 TEST(Cylinder, bounds_and_radius_are_those_of_its_rims) {
-  Random random(1);
+  Engine random(1);
   const ShapePtr shape = make_cylinder(0.3, 0.8);
   EXPECT_DOUBLE_EQ(shape->least_width(), 0.6);
   EXPECT_DOUBLE_EQ(shape->radius_about_origin(), 0.5);
@@ -190,19 +190,19 @@ TEST(Cylinder, distance_to_a_ball_and_a_half_space_is_the_closed_form) {
   EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.2, 0, 1.3)).distance, 0.2);
   EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.5 + 0.3, 0, 1 + 0.4)).distance, 0.4);
   EXPECT_DOUBLE_EQ(parts(cylinder, Frame(), ball, at(0.45, 0, 0)).distance, -0.15);
-  const ShapePtr ground = make_half_space({0, 0, 1}, 0);
-  EXPECT_DOUBLE_EQ(parts(ground, Frame(), cylinder, at(0, 0, 1.25)).distance, 0.25);
+  const ShapePtr half_space = make_half_space({0, 0, 1}, 0);
+  EXPECT_DOUBLE_EQ(parts(half_space, Frame(), cylinder, at(0, 0, 1.25)).distance, 0.25);
   Frame lying(rotation_by({pi / 2, 0, 0}).toRotationMatrix(), {0, 0, 0.7});
-  EXPECT_NEAR(parts(cylinder, lying, ground, Frame()).distance, 0.2, 1e-15);
+  EXPECT_NEAR(parts(cylinder, lying, half_space, Frame()).distance, 0.2, 1e-15);
   Frame tilted(rotation_by({0.3, 0, 0}).toRotationMatrix(), {0, 0, 0});
-  EXPECT_NEAR(parts(ground, Frame(), cylinder, tilted).distance,
+  EXPECT_NEAR(parts(half_space, Frame(), cylinder, tilted).distance,
               -(std::cos(0.3) + 0.5 * std::sin(0.3)), 1e-15);
 }
 
 // Distances above zero are proven: two points of the bodies are so far apart, and a slab of that
 // width separates them.
 TEST(Round, distance_is_proven_by_a_slab_and_two_points) {
-  Random random(2);
+  Engine random(2);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   int cases = 0;
   double worst = 0;
@@ -239,7 +239,7 @@ TEST(Round, distance_is_proven_by_a_slab_and_two_points) {
 // The rim of a disc in the face of a wide plate, to rounding: no more is known of a direction than
 // that they touch, and both centres lie in nearly one plane.
 TEST(Cylinder, a_rim_that_touches_a_wide_face_to_rounding_is_not_deep) {
-  Random random(7);
+  Engine random(7);
   const Vec3 edges(953.4171115238494, 572.0502669143095, 9.534171115238493);
   const ShapePtr plate = make_box(edges), disc = make_cylinder(46.8765404984617, 17.33209996074106);
   const Frame on(Pose{{-424.0948451486165, 0, 65.11248423879162},
@@ -263,7 +263,7 @@ TEST(Cylinder, a_rim_that_touches_a_wide_face_to_rounding_is_not_deep) {
 
 // No axis of many separates by less than the depth.
 TEST(Round, depth_is_the_least_of_many_axes_and_that_of_its_own) {
-  Random random(3);
+  Engine random(3);
   std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   int overlaps = 0;
   for (int round = 0; round < 6; ++round)
@@ -310,7 +310,7 @@ TEST(Round, depth_is_the_least_of_many_axes_and_that_of_its_own) {
 // Thin discs, cones and ellipsoids, tips and rims, moved into exact touch with each other and with
 // boxes: the witness points are on both.  Some were half the size away.
 TEST(Round, witnesses_of_thin_ones_in_touch_are_on_both) {
-  Random random(16);
+  Engine random(16);
   const auto thin_one = [&]() -> ShapePtr {
     const double thin = std::pow(10, -uniform(random, 0, 3));
     const bool flat = random() % 2 == 0;
@@ -345,7 +345,7 @@ TEST(Round, witnesses_of_thin_ones_in_touch_are_on_both) {
 }
 
 TEST(Cylinder, normals_of_faces_caps_and_sides_are_exact) {
-  Random random(4);
+  Engine random(4);
   const ShapePtr box = make_box({2, 2, 1});
   const ShapePtr cylinder = make_cylinder(0.3, 0.8);
   for (int i = 0; i < 200; ++i) {
@@ -393,4 +393,4 @@ TEST(Cylinder, symmetric_overlaps_have_the_depth_of_the_nearest_way_out) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

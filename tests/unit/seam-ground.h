@@ -6,7 +6,7 @@
 
 #include "collision/seams/seams.h"
 
-namespace tw::testing {
+namespace tw::test {
 
 using Points = std::vector<ManifoldPoint>;
 
@@ -52,4 +52,4 @@ struct Ground {
   }
 };
 
-}  // namespace tw::testing
+}  // namespace tw::test

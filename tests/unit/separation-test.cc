@@ -7,7 +7,7 @@
 
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 constexpr double size_of_zoo = 2.5;
@@ -21,7 +21,7 @@ Separation parts(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b, con
 struct GapPose {
   Frame frame_a, frame_b;
 
-  GapPose(Random& random, const ShapePtr& a, const ShapePtr& b, double gap) {
+  GapPose(Engine& random, const ShapePtr& a, const ShapePtr& b, double gap) {
     frame_a = random_frame(random, 1);
     frame_b = random_frame(random, 1);
     frame_b.p = frame_a.p + 4 * random_direction(random);
@@ -32,7 +32,7 @@ struct GapPose {
 
 template <class Visit>
 void for_random_pairs(std::uint64_t seed, int rounds, Visit visit) {
-  Random random(seed);
+  Engine random(seed);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (int round = 0; round < rounds; ++round)
     for (const ShapePtr& a : zoo)
@@ -41,7 +41,7 @@ void for_random_pairs(std::uint64_t seed, int rounds, Visit visit) {
 
 TEST(Separation, distance_equals_that_of_all_feature_pairs_to_rounding) {
   double worst = 0;
-  for_random_pairs(1, 6, [&worst](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(1, 6, [&worst](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     const double gap = std::pow(10, uniform(random, -12, 0));
     const GapPose pose(random, a, b, gap);
     const Separation s = parts(a, pose.frame_a, b, pose.frame_b);
@@ -57,7 +57,7 @@ TEST(Separation, distance_equals_that_of_all_feature_pairs_to_rounding) {
 
 TEST(Separation, depth_equals_the_least_over_all_axes_to_rounding) {
   double worst = 0;
-  for_random_pairs(2, 3, [&worst](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(2, 3, [&worst](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     const bool shallow = uniform(random, 0, 1) < 0.5;
     GapPose pose(random, a, b, -std::pow(10, uniform(random, -9, -2)));
     if (!shallow) pose.frame_b.p = pose.frame_a.p + random_vector(random, 0.3);
@@ -76,7 +76,7 @@ TEST(Separation, depth_equals_the_least_over_all_axes_to_rounding) {
 }
 
 TEST(Separation, the_distance_alone_has_the_same_bits) {
-  for_random_pairs(11, 4, [](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(11, 4, [](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     for (const double gap : {0.3, 1e-6, 1e-12, 0.0, -1e-6, -0.05}) {
       const GapPose pose(random, a, b, gap);
       ASSERT_EQ(signed_distance(*a, pose.frame_a, *b, pose.frame_b),
@@ -89,7 +89,7 @@ TEST(Separation, the_distance_alone_has_the_same_bits) {
 TEST(Separation, sign_agrees_with_libccd_on_thousands_of_poses) {
   int overlaps = 0;
   int poses = 0;
-  for_random_pairs(3, 40, [&](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(3, 40, [&](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     const Frame frame_a = random_frame(random, 0.5);
     const Frame frame_b = random_frame(random, 0.5);
     const Separation s = parts(a, frame_a, b, frame_b);
@@ -110,7 +110,7 @@ TEST(Separation, sign_agrees_with_libccd_on_thousands_of_poses) {
 }
 
 TEST(Separation, nearly_parallel_faces_and_edges_keep_all_digits) {
-  Random random(13);
+  Engine random(13);
   const std::vector<ShapePtr> zoo = {make_box({1, 1, 1}), make_box({2, 1, 0.05}),
                                      prism(6, 0.5, 0.5), prism(40, 0.5, 0.2)};
   for (int round = 0; round < 150; ++round)
@@ -143,7 +143,7 @@ TEST(Separation, nearly_parallel_faces_and_edges_keep_all_digits) {
 }
 
 TEST(Separation, witness_points_lie_on_both_surfaces_along_the_normal) {
-  for_random_pairs(4, 4, [](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(4, 4, [](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     const double gap = std::pow(10, uniform(random, -6, 0));
     const GapPose pose(random, a, b, gap);
     const Separation s = parts(a, pose.frame_a, b, pose.frame_b);
@@ -158,7 +158,7 @@ TEST(Separation, witness_points_lie_on_both_surfaces_along_the_normal) {
 }
 
 TEST(Separation, swapping_the_parts_negates_the_normal_and_keeps_the_distance) {
-  for_random_pairs(5, 6, [](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(5, 6, [](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     const double sign = uniform(random, 0, 1) < 0.3 ? -1 : 1;
     const double gap = sign * std::pow(10, uniform(random, -13, sign < 0 ? -2.5 : 0.0));
     const GapPose pose(random, a, b, gap);
@@ -178,7 +178,7 @@ TEST(Separation, swapping_the_parts_negates_the_normal_and_keeps_the_distance) {
 }
 
 TEST(Separation, a_warm_start_returns_what_a_cold_start_returns) {
-  Random random(6);
+  Engine random(6);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (const ShapePtr& a : zoo)
     for (const ShapePtr& b : zoo) {
@@ -203,7 +203,7 @@ TEST(Separation, a_warm_start_returns_what_a_cold_start_returns) {
 }
 
 TEST(Separation, distance_has_no_jump_on_the_way_through_touch) {
-  for_random_pairs(7, 2, [](Random& random, const ShapePtr& a, const ShapePtr& b) {
+  for_random_pairs(7, 2, [](Engine& random, const ShapePtr& a, const ShapePtr& b) {
     GapPose pose(random, a, b, 1e-7);
     const Vec3 toward =
         parts(a, pose.frame_a, b, pose.frame_b).normal + 0.3 * random_direction(random);
@@ -252,7 +252,7 @@ TEST(Separation, normals_of_crossing_edges_are_exact_whatever_the_gap) {
 }
 
 TEST(Separation, degenerate_poses_never_give_nan) {
-  Random random(8);
+  Engine random(8);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   const auto check = [](const Separation& s) {
     ASSERT_TRUE(std::isfinite(s.distance));
@@ -311,7 +311,7 @@ TEST(Separation, spheres_have_their_closed_form) {
 }
 
 TEST(Separation, sphere_and_polyhedron_agree_with_features_and_faces) {
-  Random random(9);
+  Engine random(9);
   for (const ShapePtr& shape : polyhedron_zoo(random))
     for (int i = 0; i < 300; ++i) {
       const double radius = uniform(random, 0.01, 0.5);
@@ -339,7 +339,7 @@ TEST(Separation, sphere_and_polyhedron_agree_with_features_and_faces) {
 }
 
 TEST(Separation, half_space_measures_the_lowest_point) {
-  Random random(10);
+  Engine random(10);
   for (const ShapePtr& shape : polyhedron_zoo(random))
     for (int i = 0; i < 50; ++i) {
       const Vec3 normal = random_direction(random);
@@ -369,7 +369,7 @@ TEST(Separation, opposite_half_spaces_leave_a_slab_and_others_overlap) {
 }
 
 TEST(Separation, of_unions_is_the_least_over_parts_and_skips_distant_ones) {
-  Random random(11);
+  Engine random(11);
   std::vector<ShapePtr> pieces;
   for (int i = 0; i < 6; ++i) {
     const ShapePtr piece = i % 2 == 0 ? make_sphere(0.2) : random_rock(random, 12, {0.3, 0.2, 0.2});
@@ -413,8 +413,8 @@ TEST(Separation, ties_take_the_first_pair_of_parts) {
 
 TEST(Separation, distance_scales_with_the_unit_of_length) {
   for (double unit : {1e-6, 1e-3, 1e3, 1e6}) {
-    Random random(12);
-    Random same(12);
+    Engine random(12);
+    Engine same(12);
     const ShapePtr a = random_rock(random, 30, Vec3::Constant(0.5));
     const ShapePtr scaled = random_rock(same, 30, Vec3::Constant(0.5 * unit));
     for (int i = 0; i < 100; ++i) {
@@ -432,7 +432,7 @@ TEST(Separation, distance_scales_with_the_unit_of_length) {
 // Drums with one axis, end to end or deep in each other: differences of parallel faces, which have
 // no volume in some places.  Known: the least of what the caps and the walls overlap by.
 TEST(Separation, drums_with_parallel_axes_are_as_deep_as_caps_and_walls_say) {
-  Random random(29);
+  Engine random(29);
   const ShapePtr drum = make_cylinder(0.5, 1);
   double worst_touch = 0, worst_deep = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -454,7 +454,7 @@ TEST(Separation, drums_with_parallel_axes_are_as_deep_as_caps_and_walls_say) {
 // Side by side: what lies along a line slides past the other for as long as it does, if distance
 // and normal are exact.
 TEST(Separation, drums_side_by_side_touch_to_the_last_digits) {
-  Random random(31);
+  Engine random(31);
   const ShapePtr drum = make_cylinder(0.04, 0.08);
   double worst_distance = 0, worst_normal = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -471,4 +471,4 @@ TEST(Separation, drums_side_by_side_touch_to_the_last_digits) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

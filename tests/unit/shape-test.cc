@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -24,7 +24,7 @@ std::string error_of(const std::function<ShapePtr()>& make) {
 }
 
 TEST(Shape, bounds_of_turned_polyhedra_are_exact) {
-  Random random(1);
+  Engine random(1);
   for (const ShapePtr& shape : polyhedron_zoo(random))
     for (int i = 0; i < 20; ++i) {
       const Vec3 position = random_vector(random, 1);
@@ -68,7 +68,7 @@ TEST(Shape, half_space_is_unbounded_except_along_its_own_axis) {
 }
 
 TEST(Shape, placed_half_space_moves_its_plane) {
-  Random random(2);
+  Engine random(2);
   const Vec3 normal = random_direction(random);
   const Pose pose{random_vector(random, 2), random_rotation(random)};
   const ShapePtr plane = make_half_space(normal, 0.7);
@@ -79,7 +79,7 @@ TEST(Shape, placed_half_space_moves_its_plane) {
 }
 
 TEST(Shape, placing_twice_is_placing_by_the_product) {
-  Random random(3);
+  Engine random(3);
   const Pose first{random_vector(random, 1), random_rotation(random)};
   const Pose second{random_vector(random, 1), random_rotation(random)};
   const ShapePtr rock = random_rock(random, 12, {1, 1, 1});
@@ -132,4 +132,4 @@ TEST(Shape, refuses_bad_values_by_name) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

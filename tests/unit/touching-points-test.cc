@@ -5,7 +5,7 @@
 #include "collision/separation.h"
 #include "convex-oracles.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 std::vector<ContactPoint> touching(const ShapePtr& a, const Frame& frame_a, const ShapePtr& b,
@@ -179,7 +179,7 @@ TEST(TouchingPoints, of_unions_carry_the_pair_of_parts) {
 }
 
 TEST(TouchingPoints, gaps_and_midpoints_belong_to_both_surfaces_in_random_contacts) {
-  Random random(1);
+  Engine random(1);
   const std::vector<ShapePtr> zoo = polyhedron_zoo(random);
   for (int round = 0; round < 10; ++round)
     for (const ShapePtr& a : zoo)
@@ -214,7 +214,7 @@ TEST(TouchingPoints, gaps_and_midpoints_belong_to_both_surfaces_in_random_contac
 }
 
 TEST(TouchingPoints, swapping_the_bodies_negates_the_normal) {
-  Random random(2);
+  Engine random(2);
   const ShapePtr rock = random_rock(random, 20, {0.5, 0.4, 0.3});
   for (int i = 0; i < 200; ++i) {
     const Frame frame_a = random_frame(random, 1);
@@ -237,4 +237,4 @@ TEST(TouchingPoints, appends_to_what_is_there) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

@@ -6,7 +6,7 @@
 #include "convex-oracles.h"
 #include "seam-ground.h"
 
-namespace tw::testing {
+namespace tw::test {
 namespace {
 
 // A pit of abutting pieces, its lowest point at the origin, and the normals of its slopes.
@@ -69,8 +69,8 @@ ShapePtr spike_for(const Pit& pit) {
 
 // Of 200 tips under all slopes of pits, up to `deepest` of their width below the lowest point: how
 // many are not held by every slope with their depth under it.
-int lost_in(const std::function<Pit(Random&)>& dig, double deepest) {
-  Random random(7);
+int lost_in(const std::function<Pit(Engine&)>& dig, double deepest) {
+  Engine random(7);
   int lost = 0;
   for (int i = 0; i < 200; ++i) {
     const Pit pit = dig(random);
@@ -90,7 +90,7 @@ int lost_in(const std::function<Pit(Random&)>& dig, double deepest) {
 }
 
 TEST(Valleys, a_tip_in_a_groove_is_held_by_both_slopes) {
-  const auto dig = [](Random& random) {
+  const auto dig = [](Engine& random) {
     const double left = uniform(random, 0.1, 1.5);
     return groove(left, left * uniform(random, 0.7, 1));
   };
@@ -99,7 +99,7 @@ TEST(Valleys, a_tip_in_a_groove_is_held_by_both_slopes) {
 }
 
 TEST(Valleys, a_tip_in_a_hole_is_held_by_all_slopes) {
-  const auto dig = [](Random& random) {
+  const auto dig = [](Engine& random) {
     return hole(static_cast<int>(3 + random() % 4), uniform(random, 0.1, 1.4));
   };
   EXPECT_EQ(lost_in(dig, 1e-3), 0);
@@ -109,7 +109,7 @@ TEST(Valleys, a_tip_in_a_hole_is_held_by_all_slopes) {
 // A crest along y over the wall between two pieces, at x = 0: what is beneath it, on that wall or a
 // little beside, is held by the slope that it is nearer to.
 TEST(Valleys, a_tip_on_the_wall_beneath_a_crest_is_held) {
-  Random random(3);
+  Engine random(3);
   for (int i = 0; i < 200; ++i) {
     const double left = uniform(random, 0.05, 0.5), right = uniform(random, 0.05, 0.5);
     const Pit crest = groove(-left, -right);
@@ -251,7 +251,7 @@ int missing_in(const Ground& room, double deepest) {
   const ShapePtr tip =
       make_hull({{0, 0, 0}, {0.5, 0.1, 0.9}, {0.1, 0.6, 0.8}, {0.7, 0.6, 0.5}, {0.6, 0.7, 0.9}});
   const double size = tip->least_width();
-  Random random(1);
+  Engine random(1);
   int missing = 0;
   for (int i = 0; i < 300; ++i) {
     const double most = deepest * std::pow(10, uniform(random, -4, 0));
@@ -281,4 +281,4 @@ TEST(Valleys, a_tip_in_the_corner_of_a_room_is_held_by_floor_and_walls) {
 }
 
 }  // namespace
-}  // namespace tw::testing
+}  // namespace tw::test

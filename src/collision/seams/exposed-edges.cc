@@ -65,20 +65,20 @@ struct Lowest {
   const Height* rising = nullptr;
 };
 
-const Height& greatest_at(const std::vector<Height>& heights, double s) {
+const Height& highest_at(const std::vector<Height>& heights, double s) {
   return *std::max_element(heights.begin(), heights.end(),
                            [s](const Height& a, const Height& b) { return a.at(s) < b.at(s); });
 }
 
 Lowest lowest(const std::vector<Height>& heights, const Stretch& stretch) {
-  const Height* falling = &greatest_at(heights, stretch.from);
+  const Height* falling = &highest_at(heights, stretch.from);
   if (falling->rise() >= 0) return {stretch.from, nullptr, falling};
-  const Height* rising = &greatest_at(heights, stretch.to);
+  const Height* rising = &highest_at(heights, stretch.to);
   if (rising->rise() <= 0) return {stretch.to, rising, nullptr};
   // the greatest height is convex: the crossing of a tangent from each side never passes its least
   for (std::size_t i = 0;; ++i) {
     const double s = (falling->at_tail - rising->at_tail) / (rising->rise() - falling->rise());
-    const Height& there = greatest_at(heights, s);
+    const Height& there = highest_at(heights, s);
     if (i >= heights.size() || !(there.at(s) > falling->at(s)) || &there == falling ||
         &there == rising)
       return {s, falling, rising};

@@ -1,0 +1,45 @@
+// What a file of others has wrong and is read all the same: each thing with its place and with what
+// is taken instead.
+// SPDX-License-Identifier: LGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace tw {
+
+class Mending {
+ public:
+  // `strict`: the first thing wrong is an error.
+  explicit Mending(bool strict) : strict_(strict) {}
+
+  // `where`: "FILE:LINE: "; `done`: what is taken instead; `expected`: for the error.
+  void mend(const std::string& where, const std::string& wrong, const std::string& done,
+            const std::string& expected) {
+    if (strict_) throw UserError(where + wrong + "; expected " + expected);
+    notes_.push_back(where + wrong + "; " + done);
+  }
+
+  // The same of what an error says, "WRONG; expected EXPECTED", after `before`.
+  void mend(const std::string& where, const std::string& before, const UserError& error,
+            const std::string& done) {
+    const std::string text = error.what();
+    const std::size_t split = text.rfind(between);
+    const bool whole = split == std::string::npos;
+    mend(where, before + text.substr(0, split), done,
+         whole ? "what can be read" : text.substr(split + std::string(between).size()));
+  }
+
+  std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
+
+ private:
+  static constexpr const char* between = "; expected ";
+
+  bool strict_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tw
