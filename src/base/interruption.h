@@ -30,4 +30,8 @@ class InterruptionCheck {
 
 void raise_if_interrupted();
 
+// The same for who must not throw where it is: what would be thrown is thrown by this thread's next
+// raise_if_interrupted().
+bool is_interrupted();
+
 }  // namespace tw

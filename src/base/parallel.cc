@@ -16,6 +16,7 @@
 
 #include "base/constants.h"
 #include "base/cpu-clock.h"
+#include "base/interruption.h"
 #include "base/never.h"
 #include "base/work-count.h"
 
@@ -25,6 +26,7 @@ namespace {
 thread_local Team* team_of_thread = nullptr;
 // Whose item this thread is at; null: nobody's.
 thread_local const SharedLoop* at_item_of = nullptr;
+thread_local bool is_helper = false;
 
 void pause_a_little() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -33,6 +35,8 @@ void pause_a_little() {
   std::this_thread::yield();
 #endif
 }
+
+}  // namespace
 
 // Held for some dozen instructions.
 class SpinLock {
@@ -45,6 +49,8 @@ class SpinLock {
  private:
   std::atomic_flag busy_;
 };
+
+namespace {
 
 class Locked {
  public:
@@ -83,7 +89,8 @@ struct SharedLoop {
   const SharedLoop* const outer = at_item_of;  // whose item it is a loop of
   std::atomic<std::size_t> next{0};
   std::atomic<int> helping{0};
-  SpinLock lock;  // of what follows
+  std::atomic<bool> given_up{false};  // nobody wants what is not done yet
+  SpinLock lock;                      // of what follows
   WorkCount helped;
   std::exception_ptr error;
 
@@ -99,6 +106,10 @@ struct SharedLoop {
     const SharedLoop* at = outer;
     while (at && at != &other) at = at->outer;
     return at;
+  }
+  void give_up() {
+    given_up.store(true, std::memory_order_relaxed);
+    next.store(items, std::memory_order_release);
   }
   void work() {
     const SharedLoop* const before = std::exchange(at_item_of, this);
@@ -121,12 +132,20 @@ struct SharedLoop {
         for (std::size_t k = first; k < std::min(items, first + count); ++k) item(loop, k);
       }
     } catch (...) {
-      next.store(items, std::memory_order_release);
-      const Locked locked(lock);
-      error = std::current_exception();
+      {
+        const Locked locked(lock);
+        if (!error) error = std::current_exception();
+      }
+      give_up();
     }
   }
 };
+
+// What a helper gives up: an item of a loop that was given up, or of a loop within it.
+void give_up_if_told() {
+  for (const SharedLoop* at = at_item_of; at; at = at->outer)
+    if (at->given_up.load(std::memory_order_relaxed)) throw Interrupted();
+}
 
 // Helpers look for loops that have items left.  Between two loops of a run there are some hundred
 // microseconds, and to be woken takes a helper half as long: so it looks on for a while before it
@@ -172,12 +191,20 @@ class Team::Pool {
     for (int looks = 0; shared.helping.load(std::memory_order_acquire) > 0; ++looks)
       if (SharedLoop* inner = looks % looks_between == 0 ? join(&shared) : nullptr)
         help_with(*inner);
+      else if (looks < patient_looks)
+        pause_a_little();
       else
-        looks < 4096 ? pause_a_little() : std::this_thread::yield();
+        await_a_little(shared);
   }
 
  private:
-  static constexpr int looks_between = 16;
+  static constexpr int looks_between = 16, patient_looks = 4096;
+
+  // Items may take long: who waits for helpers asks for them.
+  static void await_a_little(SharedLoop& shared) {
+    if (!is_helper && is_interrupted()) shared.give_up();
+    std::this_thread::yield();
+  }
 
   // One with items left, within `outer` if that is given; null: there is none.
   SharedLoop* join(const SharedLoop* outer = nullptr) {
@@ -192,6 +219,8 @@ class Team::Pool {
 
   void help(Team& team) {
     const Scope scope(&team);
+    const InterruptionCheck check(give_up_if_told);
+    is_helper = true;
     while (!stop_) {
       const std::uint32_t seen = published_.load();
       if (SharedLoop* shared = join())

@@ -84,7 +84,8 @@ class Beside {
 
 // Calls item(i) for each i < items, once.  `grain`: so many items are worth a helper, 10 us of work
 // or more; fewer than twice as many stay together.  Where items throw, one of their exceptions
-// comes out, and the others need not have been called.
+// comes out, and the others need not have been called.  Where the caller is interrupted, so are the
+// helpers at their items (base/interruption.h).
 template <class Function>
 void each_in_parallel(std::size_t items, std::size_t grain, Function&& item) {
   Team* team = items >= 2 * grain ? Team::current() : nullptr;

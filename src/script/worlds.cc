@@ -190,8 +190,9 @@ TW_PRIMITIVE(advance, "%advance!", (SCM world, SCM until, SCM slice),
   WorldBox& box = quiet_box(world, "run!");
   const CallCounter counter(box);
   const InterruptionCheck check(look_for_signals);
-  return scm_from_bool(box.world.advance(to_real(until, "until"), to_real(slice, "slice")) ==
-                       RunStatus::finished);
+  const RunStatus status = box.world.advance(to_real(until, "until"), to_real(slice, "slice"));
+  raise_if_interrupted();
+  return scm_from_bool(status == RunStatus::finished);
 }
 
 TW_PRIMITIVE(frame_rates, "%frame-rates", (SCM world),
@@ -208,6 +209,7 @@ TW_PRIMITIVE(step, "%step!", (SCM world),
   const CallCounter counter(box);
   const InterruptionCheck check(look_for_signals);
   const std::optional<StepReport> done = box.world.step();
+  raise_if_interrupted();
   if (!done) return SCM_BOOL_F;
   SCM bodies = SCM_EOL;
   for (const BodyId id : done->bodies) bodies = scm_cons(from_body(world, id), bodies);

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/interruption.h"
 #include "base/work-count.h"
 
 namespace tw {
@@ -140,6 +141,84 @@ TEST(Parallel, an_exception_of_an_item_comes_out) {
   int done = 0;
   each_in_parallel(1, 1, [&](std::size_t) { ++done; });
   EXPECT_EQ(done, 1);
+}
+
+// Items that end when they are interrupted, and which gave up.
+struct Endless {
+  std::atomic<int> begun = 0, interrupted = 0, ended = 0;
+  void operator()() {
+    ++begun;
+    const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < late) {
+      try {
+        raise_if_interrupted();
+      } catch (const Interrupted&) {
+        ++interrupted;
+        throw;
+      }
+      wait_a_little();
+    }
+    ++ended;
+  }
+};
+
+TEST(Parallel, who_is_interrupted_while_waiting_interrupts_the_helpers) {
+  Team team(2);
+  const Team::Scope scope(&team);
+  const auto self = std::this_thread::get_id();
+  const InterruptionCheck check([] { throw Interrupted(); });
+  Endless endless;
+  const auto loop = [&] {
+    each_in_parallel(2, 1, [&](std::size_t) {
+      if (std::this_thread::get_id() != self) return endless();
+      while (endless.begun == 0) wait_a_little();
+    });
+  };
+  EXPECT_THROW(loop(), Interrupted);
+  EXPECT_EQ(endless.interrupted, 1);
+  EXPECT_EQ(endless.ended, 0);
+}
+
+TEST(Parallel, who_is_interrupted_at_an_item_interrupts_loops_within_others) {
+  Team team(2);
+  const Team::Scope scope(&team);
+  const auto self = std::this_thread::get_id();
+  const InterruptionCheck check([] { throw Interrupted(); });
+  Endless endless;
+  const auto loop = [&] {
+    each_in_parallel(2, 1, [&](std::size_t) {
+      if (std::this_thread::get_id() != self)
+        return each_in_parallel(2, 1, [&](std::size_t) {
+          if (std::this_thread::get_id() != self) endless();
+        });
+      while (endless.begun == 0) wait_a_little();
+      raise_if_interrupted();
+    });
+  };
+  EXPECT_THROW(loop(), Interrupted);
+  EXPECT_EQ(endless.ended, 0);
+}
+
+TEST(Parallel, an_interrupt_is_put_off_where_items_do_not_ask) {
+  Team team(2);
+  const Team::Scope scope(&team);
+  static std::atomic<int> asked;
+  asked = 0;
+  const InterruptionCheck check([] {
+    if (asked++ == 0) throw Interrupted();
+  });
+  const auto self = std::this_thread::get_id();
+  std::atomic<bool> helped = false;
+  each_in_parallel(2, 1, [&](std::size_t) {
+    if (std::this_thread::get_id() == self) {
+      while (!helped) wait_a_little();
+    } else {
+      helped = true;
+      while (asked == 0) wait_a_little();
+    }
+  });
+  EXPECT_THROW(raise_if_interrupted(), Interrupted);
+  raise_if_interrupted();
 }
 
 TEST(Parallel, what_helpers_did_is_counted_here) {
