@@ -17,7 +17,7 @@
      scene define-scene-parameter scene-random-state world-time world-bodies find-body reset!
      load-scene make-world current-world)
     ("Shapes" "what bodies are made of"
-     sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
+     sphere box capsule cylinder cone ellipsoid convex half-space height-field triangle-mesh union placed
      rock load-shape load-visual rotation shape-volume shape-inertia shape-centroid shape-radius shape?)
     ("Bodies" "adding them, reading and (set! (velocity BODY) ...) changing them"
      add-body! remove-body! keyframes position orientation velocity angular-velocity applied-force

@@ -9,7 +9,8 @@
   #:use-module (timewarp files)
   #:use-module (srfi srfi-4)
   #:use-module (ice-9 match)
-  #:export (sphere box capsule cylinder cone ellipsoid convex half-space height-field union placed
+  #:export (sphere box capsule cylinder cone ellipsoid convex half-space height-field triangle-mesh union
+            placed
             rock load-shape load-visual rotation
             shape-volume shape-inertia shape-centroid shape-radius shape?))
 
@@ -153,22 +154,42 @@ count the overlap twice."
 #:orientation  a quaternion #(w x y z), as rotation returns; #(1 0 0 0)"
   (%placed shape position orientation))
 
-(define-keyword-procedure (load-shape file #:key scale convex-hull? up strict?)
+(define-keyword-procedure (triangle-mesh points triangles #:key strict?)
+  "Return ground by its surface, however concave it is: POINTS, a list or vector of #(x y z) in metres,
+and TRIANGLES, a list or vector of #(i j k), the numbers of their corners, counter-clockwise from
+outside.  For fixed or kinematic bodies only.
+
+Triangles in one plane are joined to convex polygons.  What is beneath each polygon is solid, up to
+twice its width deep or that of the mean one, and at most half as deep as the next surface beneath: a
+surface that encloses nothing is a shell beneath its front.  Triangles without an area and those on
+others are left out, those that face the other way than their neighbours are turned, with a warning.
+
+#:strict?  #t: what is wrong with triangles is an error; #f"
+  (let ((made (%triangle-mesh points triangles strict?)))
+    (tell-mended (cdr made))
+    (car made)))
+
+(define-keyword-procedure (load-shape file #:key scale convex-hull? concave? up strict?)
   "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for
 beside the file that the call stands in, then beside the scene that is being loaded, then in the current
 folder.
 
 What hangs together in it by common vertices is a convex part, several make a union; the frame is
 that of the file.  A part that isn't convex is an error that names its object: split it in a
-modelling program, or take the hull.  A part that is flat is left out, with a warning.
+modelling program, or take the hull, or all of it as ground.  A part that is flat is left out, with a
+warning.
 
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:convex-hull?  whether the hull is taken of parts that are not convex; #f
+#:concave?      whether all is ground with the file's surface, as triangle-mesh makes it; #f
 #:up            'y: the file's y is up, and becomes z here, its z becomes -y; 'z
-#:strict?       #t: a flat part is an error; #f"
+#:strict?       #t: a flat part is an error, and what is wrong with triangles of ground; #f"
   (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
+  (when (and convex-hull? concave?)
+    (bad-value "concave?" concave? "#f where #:convex-hull? is given"))
   (let* ((found (beside-caller file (caller-place)))
-         (made (%load-shape found (or scale 1) convex-hull? (eq? up 'y) strict?)))
+         (kind (cond (concave? 'concave) (convex-hull? 'hulls) (else 'convex)))
+         (made (%load-shape found (or scale 1) kind (eq? up 'y) strict?)))
     (note-file-read found)
     (tell-mended (cdr made))
     (car made)))

@@ -57,12 +57,12 @@ void parts_around(const Shape& shape, const Frame& frame, const Aabb& place,
                   std::vector<std::uint32_t>& out);
 
 // Of two shapes with at least one tree: whether each part of a is looked for in the tree of b, or
-// the other way round.  That of more parts is searched; a height field always is, as some of its
-// numbers stand for no part.
+// the other way round.  That of more parts is searched; one of lazy parts always is, as some of its
+// numbers may stand for no part.
 inline bool searches_second(const Shape& a, const Shape& b) {
   if (!a.tree() || !b.tree()) return b.tree() != nullptr;
-  const bool field_a = a.height_field() != nullptr, field_b = b.height_field() != nullptr;
-  return field_a != field_b ? field_b : a.part_count() <= b.part_count();
+  const bool lazy_a = a.has_lazy_parts(), lazy_b = b.has_lazy_parts();
+  return lazy_a != lazy_b ? lazy_b : a.part_count() <= b.part_count();
 }
 
 // Calls visit(i, j) for part i of a and part j of b, for all pairs that may be within `reach` (m)

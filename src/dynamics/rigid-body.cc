@@ -79,9 +79,9 @@ RigidInertia resolve_inertia(const MassSpecification& given, const Shape* shape,
   const bool bounded = shape && !shape->is_ground();
   TW_REQUIRE(bounded || (given.mass && given.inertia),
              name +
-                 (!shape                  ? " has no shape"
-                  : shape->height_field() ? " is a height field"
-                                          : " has an unbounded shape") +
+                 (!shape             ? " has no shape"
+                  : shape->bounded() ? " is a " + shape->kind_name()
+                                     : " has an unbounded shape") +
                  "; expected #:mass and #:inertia, or a bounded #:shape, or #:fixed? #t");
 
   // centre of mass and inertia about it, body axes

@@ -10,22 +10,18 @@ namespace tw {
 
 HeightField::HeightField(std::vector<double> heights, std::size_t columns, double spacing_x,
                          double spacing_y, std::vector<Vec3> colors)
-    : heights_(std::move(heights)),
+    : LazyParts(2 * (columns - 1) * (heights.size() / columns - 1)),
+      heights_(std::move(heights)),
       colors_(std::move(colors)),
       columns_(columns),
       spacing_x_(spacing_x),
       spacing_y_(spacing_y),
-      rectangles_((columns - 1) * (heights_.size() / columns - 1)),
-      parts_(2 * rectangles_.size()) {
+      rectangles_((columns - 1) * (heights_.size() / columns - 1)) {
   join_cells();
-  std::vector<Aabb> boxes(parts_.size());
+  std::vector<Aabb> boxes(part_count());
   for (std::size_t i = 0; i < boxes.size(); ++i)
     if (exists(i)) boxes[i] = box(i);
-  tree_ = std::make_unique<const PartTree>(boxes);
-}
-
-HeightField::~HeightField() {
-  for (const auto& part : parts_) delete part.load();
+  set_boxes(boxes);
 }
 
 Vec3 HeightField::corner(std::size_t row, std::size_t column) const {
@@ -130,24 +126,7 @@ ConvexPart HeightField::make_part(std::size_t number) const {
   }
   faces.insert(faces.begin(), {above, below});
 
-  ConvexPart part;
-  part.kind = PartKind::polyhedron;
-  part.place({Mat3::Identity(), middle});
-  part.core = std::make_shared<const Polyhedron>(std::move(vertices), faces);
-  part.bound_center = middle + part.core->center();
-  part.bound_radius = part.core->radius();
-  return part;
-}
-
-const ConvexPart& HeightField::part(std::size_t number) const {
-  std::atomic<const ConvexPart*>& place = parts_[number];
-  const ConvexPart* found = place.load(std::memory_order_acquire);
-  if (found) return *found;
-  auto fresh = std::make_unique<const ConvexPart>(make_part(number));
-  // who comes second takes what the first one made
-  if (place.compare_exchange_strong(found, fresh.get(), std::memory_order_acq_rel))
-    return *fresh.release();
-  return *found;
+  return part_about(middle, std::make_shared<const Polyhedron>(std::move(vertices), faces));
 }
 
 }  // namespace tw

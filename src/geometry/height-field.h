@@ -4,8 +4,7 @@
 // greatest x and y, but where its four corners lie in one plane.  Cells side by side in one plane
 // are joined to rectangles: from the least row and column on, each as wide as it may be, then as
 // long.  What is beneath the two triangles or the rectangle is solid: a convex part with vertical
-// sides, whose bottom is as far below its lowest corner as cells are wide.  A part is made when it
-// is first asked for.
+// sides, whose bottom is as far below its lowest corner as cells are wide.
 //
 // Frames: the shape's own: the middle of the grid at x = y = 0, heights along z, metres.
 //
@@ -13,25 +12,19 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "geometry/part-tree.h"
-#include "geometry/shape.h"
+#include "geometry/lazy-parts.h"
 
 namespace tw {
 
-class HeightField {
+class HeightField final : public LazyParts {
  public:
   // Row by row, x growing within a row and y from row to row.  `colors`: sRGB, one a height, or
   // none.
   HeightField(std::vector<double> heights, std::size_t columns, double spacing_x, double spacing_y,
               std::vector<Vec3> colors = {});
-  ~HeightField();
-  HeightField(const HeightField&) = delete;
-  HeightField& operator=(const HeightField&) = delete;
 
   std::size_t rows() const { return heights_.size() / columns_; }
   std::size_t columns() const { return columns_; }
@@ -44,18 +37,14 @@ class HeightField {
   // The bottom of a part is so far below its lowest corner, m.
   double depth() const { return std::max(spacing_x_, spacing_y_); }
 
-  // Two numbers for each cell.  A rectangle has the first number of its first cell; its other ones
-  // stand for no part.
-  std::size_t part_count() const { return parts_.size(); }
+  // Parts have two numbers for each cell.  A rectangle has the first number of its first cell; its
+  // other ones stand for no part.
   bool exists(std::size_t number) const {
     const Rectangle& cells = rectangles_[number / 2];
     return number % 2 == 0 ? cells.rows > 0 : cells.is_cut;
   }
   // The top corners of a part, counter-clockwise from above.
   std::vector<Vec3> top(std::size_t number) const;
-  // Any number of threads may ask at once.
-  const ConvexPart& part(std::size_t number) const;
-  const PartTree& tree() const { return *tree_; }
 
  private:
   // Of cells in one plane, at the first of them; none where they are another one's.
@@ -68,15 +57,13 @@ class HeightField {
   void join_cells();
   Rectangle rectangle_from(std::size_t row, std::size_t column) const;
   Aabb box(std::size_t number) const;
-  ConvexPart make_part(std::size_t number) const;
+  ConvexPart make_part(std::size_t number) const override;
 
   std::vector<double> heights_;
   std::vector<Vec3> colors_;
   std::size_t columns_;
   double spacing_x_, spacing_y_;
   std::vector<Rectangle> rectangles_;  // for each cell
-  mutable std::vector<std::atomic<const ConvexPart*>> parts_;
-  std::unique_ptr<const PartTree> tree_;
 };
 
 }  // namespace tw

@@ -13,6 +13,7 @@
 #include "geometry/height-field.h"
 #include "geometry/hull.h"
 #include "geometry/mass-properties.h"
+#include "geometry/mesh-ground.h"
 #include "geometry/part-tree.h"
 #include "geometry/polyhedron.h"
 
@@ -222,17 +223,39 @@ ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
   return shape;
 }
 
+ShapePtr finish_ground(std::shared_ptr<const LazyParts> parts, std::string kind_name,
+                       double least_width, double thickness) {
+  auto shape = std::make_shared<Shape>();
+  shape->kind_name_ = std::move(kind_name);
+  // the tree belongs to the parts
+  shape->tree_ = std::shared_ptr<const PartTree>(parts, &parts->tree());
+  shape->lazy_ = std::move(parts);
+  shape->least_width_ = least_width;
+  shape->thickness_ = thickness;
+  const Aabb& box = shape->tree_->root().box;
+  shape->radius_about_origin_ = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).norm();
+  TW_REQUIRE(shape->radius_about_origin_ <= 4 * greatest_length,
+             "a " + shape->kind_name_ + " reaches " + show(shape->radius_about_origin_) +
+                 " m from its origin; expected lengths " + lengths_text());
+  return shape;
+}
+
 const std::vector<ConvexPart>& Shape::parts() const {
-  TW_ASSERT(!field_, "all parts of a height field were asked for");
+  TW_ASSERT(!lazy_, "all parts of a " + kind_name_ + " were asked for");
   return parts_;
 }
 
-std::size_t Shape::field_parts() const { return field_->part_count(); }
-const ConvexPart& Shape::field_part(std::size_t i) const { return field_->part(i); }
+std::size_t Shape::lazy_count() const { return lazy_->part_count(); }
+const ConvexPart& Shape::lazy_part(std::size_t i) const { return lazy_->part(i); }
+
+const HeightField* Shape::height_field() const {
+  return dynamic_cast<const HeightField*>(lazy_.get());
+}
+const MeshGround* Shape::mesh() const { return dynamic_cast<const MeshGround*>(lazy_.get()); }
 
 Aabb Shape::bounds(const Frame& frame) const {
   Aabb box;
-  if (field_) {
+  if (lazy_) {
     const Aabb& all = tree_->root().box;
     const Frame middle(frame.R, frame * all.center());
     const Vec3 reach = 0.5 * (frame.R.cwiseAbs() * all.size());
@@ -246,7 +269,7 @@ Aabb Shape::bounds(const Frame& frame) const {
 
 double Shape::radius_about_line(const Vec3& direction) const {
   double radius = 0;
-  TW_ASSERT(!field_, "a height field does not turn freely");
+  TW_ASSERT(!lazy_, "a " + kind_name_ + " does not turn freely");
   for (const ConvexPart& part : parts_)
     radius = std::max(radius, radius_about_line_of(part, direction.normalized()));
   return radius;
@@ -360,21 +383,34 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
                    " of a height field is #" + show(colors[i]) +
                    "; expected red, green and blue from 0 to 1");
 
-  auto shape = std::make_shared<Shape>();
-  shape->kind_name_ = "height field";
-  shape->field_ = std::make_shared<const HeightField>(std::move(heights), columns, spacing_x,
-                                                      spacing_y, std::move(colors));
-  const HeightField& field = *shape->field_;
-  // the tree belongs to the field
-  shape->tree_ = std::shared_ptr<const PartTree>(shape->field_, &field.tree());
-  const Aabb& box = field.tree().root().box;
-  shape->least_width_ = std::min(box.size().x(), box.size().y());
-  shape->thickness_ = shape->least_width_;
-  shape->radius_about_origin_ = box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).norm();
-  TW_REQUIRE(shape->radius_about_origin_ <= 4 * greatest_length,
-             "a height field reaches " + show(shape->radius_about_origin_) +
-                 " m from its origin; expected lengths " + lengths_text());
-  return shape;
+  auto field = std::make_shared<const HeightField>(std::move(heights), columns, spacing_x,
+                                                   spacing_y, std::move(colors));
+  const Vec3 sides = field->tree().root().box.size();
+  const double width = std::min(sides.x(), sides.y());
+  return finish_ground(std::move(field), "height field", width, width);
+}
+
+ShapePtr make_mesh(const std::vector<Vec3>& points, const std::vector<MeshTriangle>& triangles,
+                   MeshFaults* faults) {
+  for (const Vec3& p : points)
+    TW_REQUIRE(is_finite(p) && p.cwiseAbs().maxCoeff() <= greatest_length,
+               "a point of a mesh is " + show(p) + "; expected coordinates of at most " +
+                   tw::show(greatest_length) + " m");
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (const std::uint32_t corner : triangles[i])
+      TW_REQUIRE(corner < points.size(), "triangle " + std::to_string(i) +
+                                             " of a mesh has the corner " + std::to_string(corner) +
+                                             "; expected a number below " +
+                                             std::to_string(points.size()) + ", that of a point");
+  MeshFaults found;
+  auto mesh = std::make_shared<const MeshGround>(mesh_faces(points, triangles, found));
+  if (faults) *faults = found;
+  Vec3 sides = mesh->tree().root().box.size();
+  std::sort(sides.begin(), sides.end());
+  const double thickness = std::min(sides.y(), mesh->thickness());
+  TW_REQUIRE(sides.y() >= least_length,
+             "a mesh is " + show(sides.y()) + " m wide; expected lengths " + lengths_text());
+  return finish_ground(std::move(mesh), "mesh", sides.y(), thickness);
 }
 
 ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
@@ -383,8 +419,8 @@ ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
   std::vector<MassProperties> masses;
   for (const ShapePtr& shape : shapes) {
     TW_REQUIRE(shape != nullptr, "a part of a union is not a shape");
-    TW_REQUIRE(!shape->height_field(),
-               "a part of a union is a height field; expected it to be a body of its own");
+    TW_REQUIRE(!shape->has_lazy_parts(), "a part of a union is a " + shape->kind_name() +
+                                             "; expected it to be a body of its own");
     parts.insert(parts.end(), shape->parts().begin(), shape->parts().end());
     masses.push_back(shape->mass_properties());
   }
@@ -393,9 +429,9 @@ ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
 
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {
   TW_REQUIRE(shape != nullptr, "what is to be placed is not a shape");
-  TW_REQUIRE(!shape->height_field(),
-             "what is to be placed is a height field; expected the #:position and #:orientation of "
-             "its body to place it");
+  TW_REQUIRE(!shape->has_lazy_parts(),
+             "what is to be placed is a " + shape->kind_name() +
+                 "; expected the #:position and #:orientation of its body to place it");
   TW_REQUIRE(is_finite(pose.p),
              "a shape is placed at " + show(pose.p) + "; expected finite numbers");
   TW_REQUIRE(pose.p.cwiseAbs().maxCoeff() <= greatest_length,

@@ -3,8 +3,8 @@
 // Every shape is a list of convex parts in the body's frame, of few kinds: a box or hull is a
 // polyhedron; cylinder, cone and capsule are *frustums*: what a line that need not be parallel to
 // the axis sweeps out about it, and all points within a margin of that.  A kind is a row in the
-// tables of pairs in collision/separation.cc and collision/manifold.cc.  The parts of a height
-// field are made when they are asked for; shapes of many parts have a tree over them.
+// tables of pairs in collision/separation.cc and collision/manifold.cc.  The parts of height fields
+// and meshes are made when they are asked for; shapes of many parts have a tree over them.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
 // flat, and say which value.
@@ -12,6 +12,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,10 +24,15 @@
 namespace tw {
 
 class HeightField;
+class LazyParts;
+class MeshGround;
+struct MeshFaults;
 class PartTree;
 class Polyhedron;
 class Shape;
 using ShapePtr = std::shared_ptr<const Shape>;
+
+using MeshTriangle = std::array<std::uint32_t, 3>;  // numbers of points
 
 enum class PartKind { sphere, polyhedron, half_space, frustum, ellipsoid };
 
@@ -66,24 +73,26 @@ struct MassProperties {
 
 class Shape {
  public:
-  // All parts, of shapes other than height fields.
+  // All parts, of shapes that have no lazy ones.
   const std::vector<ConvexPart>& parts() const;
-  // Of any shape.  A number may be that of no part: of a height field those that its tree does not
-  // name.
-  std::size_t part_count() const { return field_ ? field_parts() : parts_.size(); }
-  const ConvexPart& part(std::size_t i) const { return field_ ? field_part(i) : parts_[i]; }
+  // Of any shape.  A number may be that of no part: of lazy ones those that the tree does not name.
+  std::size_t part_count() const { return lazy_ ? lazy_count() : parts_.size(); }
+  const ConvexPart& part(std::size_t i) const { return lazy_ ? lazy_part(i) : parts_[i]; }
   // Over the parts, in the shape's frame; null: they are few.
   const PartTree* tree() const { return tree_.get(); }
+  // Whether its parts are made when they are asked for.
+  bool has_lazy_parts() const { return lazy_ != nullptr; }
   // Null: it is none.
-  const HeightField* height_field() const { return field_.get(); }
+  const HeightField* height_field() const;
+  const MeshGround* mesh() const;
   // False for a half-space (and unions that hold one).
   bool bounded() const { return bounded_; }
-  // Half-spaces and height fields are ground, not bodies that could move freely.
-  bool is_ground() const { return !bounded_ || field_; }
+  // Half-spaces, height fields and meshes are ground, not bodies that could move freely.
+  bool is_ground() const { return !bounded_ || lazy_; }
   // Exact, the parts of a union added up (an overlap counts twice).  Not of ground.
   const MassProperties& mass_properties() const { return mass_; }
   // Least width of the bounding box, m: the `size` of contact parameters.  Of a height field the
-  // least of its sides, infinite if unbounded.
+  // least of its sides, of a mesh the middle one of its three, infinite if unbounded.
   double least_width() const { return least_width_; }
   // Least width of the boxes of its parts, each along the axes of its own frame, m: a wall's
   // thickness, however large the room is.
@@ -94,8 +103,8 @@ class Shape {
   // No point is farther from the line through the origin, m (exact but for tilted frustums and
   // ellipsoids that are off it).
   double radius_about_line(const Vec3& direction) const;
-  // The shape's bounds when its frame is placed at `frame`, m.  Exact, but of height fields that
-  // are turned: the bounds of their box.
+  // The shape's bounds when its frame is placed at `frame`, m.  Exact, but of lazy parts that are
+  // turned: the bounds of their box.
   Aabb bounds(const Frame& frame) const;
   // One word for messages: "sphere", "box", "hull", "cylinder", "cone", "union" and so on.
   const std::string& kind_name() const { return kind_name_; }
@@ -108,13 +117,13 @@ class Shape {
  private:
   friend ShapePtr finish_shape(std::vector<ConvexPart> parts, std::string kind_name,
                                const MassProperties& mass);
-  friend ShapePtr make_height_field(std::vector<double> heights, std::size_t columns,
-                                    double spacing_x, double spacing_y, std::vector<Vec3> colors);
-  std::size_t field_parts() const;
-  const ConvexPart& field_part(std::size_t i) const;
+  friend ShapePtr finish_ground(std::shared_ptr<const LazyParts> parts, std::string kind_name,
+                                double least_width, double thickness);
+  std::size_t lazy_count() const;
+  const ConvexPart& lazy_part(std::size_t i) const;
 
   std::vector<ConvexPart> parts_;
-  std::shared_ptr<const HeightField> field_;
+  std::shared_ptr<const LazyParts> lazy_;
   std::shared_ptr<const PartTree> tree_;
   MassProperties mass_;
   bool bounded_ = true;
@@ -143,6 +152,10 @@ ShapePtr make_half_space(const Vec3& normal, double offset);
 // a height, or none.
 ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, double spacing_x,
                            double spacing_y, std::vector<Vec3> colors = {});
+// Ground by its surface, however concave: see geometry/mesh-ground.h.  Three corners a triangle,
+// counter-clockwise from outside, with numbers of points.  `faults`: of the triangles, if wanted.
+ShapePtr make_mesh(const std::vector<Vec3>& points, const std::vector<MeshTriangle>& triangles,
+                   MeshFaults* faults = nullptr);
 ShapePtr make_union(const std::vector<ShapePtr>& shapes);
 // The shape moved by `pose` within the body's frame.
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose);

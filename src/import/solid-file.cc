@@ -18,6 +18,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "geometry/mesh-faces.h"
 #include "geometry/polyhedron.h"
 #include "import/mesh-file.h"
 
@@ -171,9 +172,8 @@ ShapePtr hull_of(const Object& object, const std::vector<Vec3>& points) {
   return make_hull(corners);
 }
 
-}  // namespace
-
-ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
+// In the frame and unit of the shape; at least one triangle.
+Mesh read_mesh(const std::string& file, const SolidOptions& options) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -186,6 +186,58 @@ ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mendin
     if (options.y_up) point = Vec3(point.x(), -point.z(), point.y());
     point = point.cwiseProduct(options.scale);
   }
+  return mesh;
+}
+
+std::string several(std::size_t count, const std::string& of) {
+  return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void mend_triangles(const std::string& where, const MeshFaults& faults, Mending& mending) {
+  if (faults.thin > 0)
+    mending.mend(where, several(faults.thin, "triangle") + " without an area", "left out",
+                 "three corners apart from each other and not in a line");
+  if (faults.doubled > 0)
+    mending.mend(where,
+                 several(faults.doubled, "triangle") + " on others" +
+                     (faults.back_to_back > 0
+                          ? ", " + std::to_string(faults.back_to_back) + " of them back to back"
+                          : ""),
+                 "left out: what is beneath the front of the first one is solid",
+                 "one triangle at a place");
+  if (faults.turned > 0)
+    mending.mend(where,
+                 several(faults.turned, "triangle") + " facing the other way than those around",
+                 "turned", "corners counter-clockwise from outside");
+  if (faults.crowded_sides > 0)
+    mending.mend(where, several(faults.crowded_sides, "side") + " of more than two triangles",
+                 "none of them is taken for the other's neighbour", "two triangles at a side");
+}
+
+ShapePtr read_ground(const std::string& file, const SolidOptions& options, Mending& mending) {
+  const Mesh mesh = read_mesh(file, options);
+  std::vector<MeshTriangle> triangles;
+  // a scale of odd sign turns all of them inside out
+  const bool mirrored = options.scale.prod() < 0;
+  for (const Object& object : mesh.objects)
+    for (const auto& [a, b, c] : object.triangles)
+      triangles.push_back({static_cast<std::uint32_t>(a),
+                           static_cast<std::uint32_t>(mirrored ? c : b),
+                           static_cast<std::uint32_t>(mirrored ? b : c)});
+  MeshFaults faults;
+  try {
+    ShapePtr shape = make_mesh(mesh.points, triangles, &faults);
+    mend_triangles("the mesh " + file + ": ", faults, mending);
+    return shape;
+  } catch (const UserError& error) {
+    throw UserError("the mesh " + file + ": " + error.what());
+  }
+}
+
+ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
+  Mesh mesh = read_mesh(file, options);
   const std::vector<std::size_t> places = same_places(mesh.points);
   std::vector<Object> parts;
   for (Object& object : mesh.objects) {
@@ -211,7 +263,9 @@ ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mendin
     TW_REQUIRE(options.hulls || dent <= flat,
                "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
                    " of its size over one of its faces; expected objects that are convex each, "
-                   "which make a union, or #:convex-hull? #t for the hull of each");
+                   "which make a union, or #:concave? #t for ground as it is, or #:convex-hull? #t "
+                   "for the "
+                   "hull of each");
   }
   if (shapes.empty()) throw UserError("the mesh " + file + ": " + first_flat);
   if (flat_parts > 0) {

@@ -1,9 +1,10 @@
-// Solids from mesh files.
+// Solids and ground from mesh files.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
 #include <string>
 
+#include "geometry/mesh-faces.h"
 #include "geometry/shape.h"
 #include "import/mending.h"
 
@@ -23,5 +24,14 @@ struct SolidOptions {
 // and with the name of the object where one is not convex, by more than 1e-4 of its size, and
 // hulls are not wanted.
 ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending);
+
+// The same triangles as ground, however concave (geometry/mesh-ground.h): all objects in one.  Of
+// SolidOptions `hulls` says nothing.  What is wrong with triangles is mended.
+//
+// Errors: UserError, with the file's name, where it is missing, is no mesh, or has no triangles.
+ShapePtr read_ground(const std::string& file, const SolidOptions& options, Mending& mending);
+
+// Tells what was wrong with triangles; `where` begins each sentence.
+void mend_triangles(const std::string& where, const MeshFaults& faults, Mending& mending);
 
 }  // namespace tw

@@ -52,8 +52,9 @@ void resolve_shape(Body& body, const BodyDef& def) {
   body.radius = body.shape_P->radius_about_origin();
   body.least_width = body.shape_P->least_width();
   body.thickness = body.shape_P->thickness();
+  const std::string& kind = body.shape_P->kind_name();
   TW_REQUIRE(!body.shape_P->is_ground() || !body.dynamic(),
-             body.info.name + (body.unbounded ? " is a half-space" : " is a height field") +
+             body.info.name + (body.unbounded ? " is a half-space" : " is a " + kind) +
                  " that moves freely; expected #:fixed? or #:motion");
   if (body.dynamic()) {
     int axis = 0;
@@ -61,7 +62,7 @@ void resolve_shape(Body& body, const BodyDef& def) {
     body.girth = body.shape_P->radius_about_line(Vec3::Unit(axis));
     if (body.girth < answer::slender * body.radius) body.slender_axis = axis;
   }
-  if (body.shape_P->height_field()) return;
+  if (body.shape_P->has_lazy_parts()) return;
   const ConvexPart& part = body.shape_P->parts().front();
   const bool at_center = part.bound_center.norm() <= 1e-15 * part.bound_radius;
   if (body.shape_P->is_sphere() && at_center) body.sphere_radius = part.radius;

@@ -96,6 +96,10 @@ void BodyDrawer::add_body(const DrawBody& body, std::size_t index) {
     record.color << shown.cast<float>(), gloss_of(body.fixed, body.fixed);
     return add_height_field(body, record);
   }
+  if (body.shape->mesh()) {
+    record.color << color.cast<float>(), gloss_of(body.fixed, body.fixed);
+    return add_mesh_ground(body, record);
+  }
   const bool grain = has_grain(body);
   record.color << color.cast<float>(), gloss_of(body.fixed, grain);
   for (const ConvexPart& part : body.shape->parts()) {
@@ -126,6 +130,15 @@ void BodyDrawer::add_height_field(const DrawBody& body, Part record) {
   if (body.fixed) grainy_parts_ += static_cast<int>(field.part_count() / 2);
   const auto [found, fresh] = group_index_.emplace(MeshKey(&field, smooth, 0, 0), groups_.size());
   if (fresh) groups_.push_back(make_group(height_field_mesh(field, smooth)));
+  groups_[found->second].parts.push_back(record);
+}
+
+void BodyDrawer::add_mesh_ground(const DrawBody& body, Part record) {
+  const MeshGround& ground = *body.shape->mesh();
+  const bool smooth = body.smooth.value_or(false);
+  if (body.fixed) grainy_parts_ += static_cast<int>(ground.part_count());
+  const auto [found, fresh] = group_index_.emplace(MeshKey(&ground, smooth, 0, 0), groups_.size());
+  if (fresh) groups_.push_back(make_group(mesh_ground_mesh(ground, smooth)));
   groups_[found->second].parts.push_back(record);
 }
 

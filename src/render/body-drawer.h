@@ -63,6 +63,7 @@ class BodyDrawer {
   void add_visual(const DrawBody& body, std::size_t index);
   void add_part(const ConvexPart& part, const DrawBody& body, Part record);
   void add_height_field(const DrawBody& body, Part record);
+  void add_mesh_ground(const DrawBody& body, Part record);
   MeshGroup& group_of(const ConvexPart& part, bool smooth);
   MeshGroup make_group(const Mesh& mesh);
   void upload(GLuint buffer, const void* data, std::size_t size) const;

@@ -101,6 +101,37 @@ Mesh smooth_mesh(const Polyhedron& polyhedron) {
   return mesh;
 }
 
+Mesh mesh_ground_mesh(const MeshGround& ground, bool smooth) {
+  const MeshFaces& faces = ground.faces();
+  std::vector<Vec3> normals;
+  if (smooth) {
+    normals.assign(faces.points.size(), Vec3::Zero());
+    for (const MeshFace& face : faces.faces)
+      for (std::size_t i = 0, n = face.corners.size(); i < n; ++i) {
+        const Vec3& x = faces.points[face.corners[i]];
+        const Vec3 &next = faces.points[face.corners[(i + 1) % n]],
+                   &previous = faces.points[face.corners[(i + n - 1) % n]];
+        normals[face.corners[i]] += angle_between(next - x, previous - x) * face.normal;
+      }
+  }
+  Mesh mesh;
+  const auto add = [&](const MeshFace& face, bool back) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const std::size_t n = face.corners.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::uint32_t corner = face.corners[back ? n - 1 - i : i];
+      const Vec3 normal = smooth ? Vec3(normals[corner].normalized()) : face.normal;
+      mesh.vertices.push_back(
+          {faces.points[corner].cast<float>(), ((back ? -1 : 1) * normal).cast<float>()});
+    }
+    add_fan(mesh, first, static_cast<int>(n));
+  };
+  for (const MeshFace& face : faces.faces) add(face, false);
+  if (ground.is_open())
+    for (const MeshFace& face : faces.faces) add(face, true);
+  return mesh;
+}
+
 Mesh surface_mesh(const SurfaceMesh& surface, bool tinted) {
   Mesh mesh;
   for (const SurfaceMesh::Vertex& v : surface.vertices) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/height-field.h"
+#include "geometry/mesh-ground.h"
 #include "geometry/polyhedron.h"
 #include "geometry/visual.h"
 
@@ -28,6 +29,9 @@ Mesh smooth_mesh(const Polyhedron& polyhedron);
 // The ground with its rim and its underside.  Smooth: the normals of what the heights are samples
 // of.  Tints are the ground's colours, where it has some.
 Mesh height_field_mesh(const HeightField& field, bool smooth);
+// The surface of a mesh; where that is open, its back as well.  Smooth: the mean of the normals of
+// the faces at a point.
+Mesh mesh_ground_mesh(const MeshGround& ground, bool smooth);
 // Tints are the surface's own colours, where it has some and they are wanted.
 Mesh surface_mesh(const SurfaceMesh& surface, bool tinted);
 // A sphere of radius 1 as 320 flat triangles: an icosahedron split twice.

@@ -100,9 +100,9 @@ double ScmMotion::displacement(const Pose& from, const Pose& to) const {
   if (!shape_) return (to.p - from.p).norm();
   const Frame a(from), b(to);
   const Vec3 turn = turn_between(from.q, to.q);
-  if (const HeightField* field = shape_->height_field()) {
+  if (shape_->has_lazy_parts()) {
     // the corners of its box: a spike may go farther than the rim
-    const Aabb& box = field->tree().root().box;
+    const Aabb& box = shape_->tree()->root().box;
     for (int i = 0; i < 8; ++i) {
       const Vec3 corner = box.corner(i);
       most = std::max(most, (b * corner - a * corner).norm());

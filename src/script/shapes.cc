@@ -129,14 +129,40 @@ Vec3 to_scale(SCM scale) {
 
 }  // namespace
 
-TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM hulls, SCM y_up, SCM strict),
-             "Return (SHAPE . NOTES) of a mesh file.") {
+TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM kind, SCM y_up, SCM strict),
+             "Return (SHAPE . NOTES) of a mesh file; kind: convex, hulls or concave.") {
   SolidOptions options;
-  options.hulls = scm_is_true(hulls);
+  const std::string wanted = to_symbol_name(kind, "the kind");
+  options.hulls = wanted == "hulls";
   options.y_up = scm_is_true(y_up);
   options.scale = to_scale(scale);
   Mending mending(scm_is_true(strict));
-  const ShapePtr shape = read_solid(to_file_name(file, "the file"), options, mending);
+  const std::string name = to_file_name(file, "the file");
+  const ShapePtr shape = wanted == "concave" ? read_ground(name, options, mending)
+                                             : read_solid(name, options, mending);
+  return scm_cons(from_shape(shape), from_strings(mending.take_notes()));
+}
+
+TW_PRIMITIVE(triangle_mesh, "%triangle-mesh", (SCM points, SCM triangles, SCM strict),
+             "Return (SHAPE . NOTES) of the ground with these triangles.") {
+  const std::vector<Vec3> places = to_points(points, "points");
+  std::vector<MeshTriangle> all;
+  for (const SCM one : to_elements(triangles, "triangles", "a list or vector of #(i j k)")) {
+    constexpr const char* expected = "#(i j k), numbers of points";
+    const std::vector<SCM> corners = to_elements(one, "a triangle", expected);
+    if (corners.size() != 3) throw BadValue{"a triangle", one, expected};
+    MeshTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!scm_is_unsigned_integer(corners[k], 0, places.size() - 1))
+        throw BadValue{"a triangle", one, expected};
+      triangle[k] = scm_to_uint32(corners[k]);
+    }
+    all.push_back(triangle);
+  }
+  MeshFaults faults;
+  const ShapePtr shape = make_mesh(places, all, &faults);
+  Mending mending(scm_is_true(strict));
+  mend_triangles("a mesh has ", faults, mending);
   return scm_cons(from_shape(shape), from_strings(mending.take_notes()));
 }
 
@@ -186,8 +212,8 @@ static void require_bounds(const ShapePtr& shape) {
 // The mass properties of a shape that has some.
 static const MassProperties& mass_of(const ShapePtr& shape) {
   require_bounds(shape);
-  TW_REQUIRE(!shape->height_field(),
-             "the shape is a height field, which is ground without mass; expected another shape");
+  TW_REQUIRE(!shape->is_ground(), "the shape is a " + shape->kind_name() +
+                                      ", which is ground without mass; expected another shape");
   return shape->mass_properties();
 }
 

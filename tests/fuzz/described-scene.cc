@@ -63,6 +63,18 @@ Vec3 Hills::corner(std::size_t row, std::size_t column) const {
   return {at(column, columns), at(row, rows()), heights[row * columns + column]};
 }
 
+std::vector<MeshTriangle> Hills::triangles() const {
+  std::vector<MeshTriangle> all;
+  const auto across = static_cast<std::uint32_t>(columns);
+  for (std::uint32_t row = 0; row + 1 < rows(); ++row)
+    for (std::uint32_t column = 0; column + 1 < across; ++column) {
+      const std::uint32_t a = row * across + column, d = a + across;
+      all.push_back({a, a + 1, d + 1});
+      all.push_back({a, d + 1, d});
+    }
+  return all;
+}
+
 namespace {
 
 Solid turned(SolidKind kind, double radius, double length) {
@@ -126,10 +138,18 @@ ShapePtr shape_of(const Solid& solid) {
 
 }  // namespace
 
+static ShapePtr mesh_of(const Hills& hills) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < hills.heights.size(); ++i)
+    points.push_back(hills.corner(i / hills.columns, i % hills.columns));
+  return make_mesh(points, hills.triangles());
+}
+
 ShapePtr shape_of(const DescribedBody& body) {
   if (body.mesh) return shape_from_file(body);
   if (body.hills) {
     const Hills& hills = *body.hills;
+    if (hills.as_mesh) return mesh_of(hills);
     return make_height_field(hills.heights, hills.columns, hills.spacing, hills.spacing);
   }
   if (body.solids.size() == 1) {

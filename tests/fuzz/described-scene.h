@@ -37,14 +37,17 @@ struct Solid {
   }
 };
 
-// A height field of cells of `spacing` metres.
+// A height field of cells of `spacing` metres, or a mesh of the same triangles.
 struct Hills {
   std::vector<double> heights;  // m, row by row
   std::size_t columns = 0;
   double spacing = 1;
+  bool as_mesh = false;
 
   Vec3 corner(std::size_t row, std::size_t column) const;
   std::size_t rows() const { return heights.size() / columns; }
+  // Of all cells, with numbers of corners.
+  std::vector<MeshTriangle> triangles() const;
 };
 
 // How a body hangs on a multibody, whose links follow one another in the scene, parents first.

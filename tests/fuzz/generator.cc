@@ -66,6 +66,7 @@ constexpr Kind table[] = {
      draw_pressed},
     {"rested", "begins with the poses of a heap that fell into a pit, to six digits", draw_rested,
      true},
+    {"meshes", "as hills, on a mesh", draw_meshes},
 };
 
 // Which the seeds take in turn; the others are asked for by name, so that what is known of a seed

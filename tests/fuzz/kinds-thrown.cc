@@ -219,9 +219,10 @@ void draw_ramp(Draft& draft) {
   draft.last(12);
 }
 
-void draw_hills(Draft& draft) {
+static void draw_ground(Draft& draft, bool as_mesh) {
   const double s = draft.size, half = s * draft.random.real(1, 2.5);
   Hills hills;
+  hills.as_mesh = as_mesh;
   hills.spacing = s * draft.log_uniform(0.25, 2);
   const auto cells = static_cast<std::size_t>(std::ceil(2 * (half + s) / hills.spacing));
   hills.columns = cells + 1;
@@ -263,6 +264,10 @@ void draw_hills(Draft& draft) {
     if (body.dynamic()) body.velocity += draft.vector(draft.speed);
   draft.last(10);
 }
+
+void draw_hills(Draft& draft) { draw_ground(draft, false); }
+
+void draw_meshes(Draft& draft) { draw_ground(draft, true); }
 
 // Three walls, the lean ones no more than 30 degrees off square to the floor, each of which runs on
 // beneath the others or ends with the room; bodies slide into the corner and push each other there.

@@ -31,6 +31,7 @@ void draw_plates(Draft& draft);
 void draw_corner(Draft& draft);
 void draw_ramp(Draft& draft);
 void draw_hills(Draft& draft);
+void draw_meshes(Draft& draft);
 
 // kinds-joined.cc
 void draw_chains(Draft& draft);

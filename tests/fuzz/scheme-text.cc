@@ -55,7 +55,19 @@ const char* const mesh_text = R"((define (mesh text)
     (load-shape file)))
 )";
 
+std::string mesh_text_of(const Hills& hills) {
+  std::string all = "(triangle-mesh '(";
+  for (std::size_t i = 0; i < hills.heights.size(); ++i)
+    all += "\n      " + text(hills.corner(i / hills.columns, i % hills.columns));
+  all += ")\n    '(";
+  for (const auto& [a, b, c] : hills.triangles())
+    all +=
+        "\n      #(" + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + ")";
+  return all + "))";
+}
+
 std::string hills_text(const Hills& hills) {
+  if (hills.as_mesh) return mesh_text_of(hills);
   std::string rows = "(height-field '(";
   for (std::size_t i = 0; i < hills.heights.size(); ++i) {
     if (i % hills.columns == 0) rows += i == 0 ? "\n      (" : ")\n      (";

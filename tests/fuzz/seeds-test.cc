@@ -69,8 +69,9 @@ TEST(Seeds, have_no_faults_but_those_that_are_known) {
 
 TEST(Seeds, of_kinds_asked_for_by_name_have_no_faults_but_those_that_are_known) {
   const std::uint64_t count = test::long_tests() ? 300 : 10;
-  for (const char* kind : {"hills", "rolls", "chains", "bonds", "called", "sensed", "asked",
-                           "driven", "flush", "tools", "corner", "struck", "pressed", "rested"})
+  for (const char* kind :
+       {"hills", "rolls", "chains", "bonds", "called", "sensed", "asked", "driven", "flush",
+        "tools", "corner", "struck", "pressed", "rested", "meshes"})
     for (std::uint64_t seed = 0; seed < count; ++seed)
       expect_what_is_known(judge(random_scene(kind, seed), two_schedules(seed), budget));
 }

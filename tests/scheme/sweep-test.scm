@@ -41,7 +41,7 @@
 (let ((result (sweep "ball.scm" "--out=first" "-D" "height=0.5..1.5..0.5" "--seed=1,2" "--hash"
                      "--accuracy=1e-5")))
   (test-equal "a sweep: status 0" 0 (run-status result))
-  (test-says "it says how it came out" "^6 runs in .*/first: 6 finished\n$" (run-errors result))
+  (test-says "it says how it came out" "(^|\n)6 runs in .*/first: 6 finished\n$" (run-errors result))
   (test-equal "nothing on standard output" "" (run-output result)))
 
 (let ((fourth (run-of "first" 4)))
@@ -87,7 +87,7 @@
 (let* ((before (read-file "first/runs/00003.json"))
        (result (sweep "ball.scm" "--out=first" "-D" "height=1..3" "--seed=1,2" "--hash"
                       "--accuracy=1e-5" "--chunk=3")))
-  (test-says "further values add runs" "^6 runs of the 10 in .*: 6 finished" (run-errors result))
+  (test-says "further values add runs" "(^|\n)6 runs of the 10 in .*: 6 finished" (run-errors result))
   (test-equal "those that are there stay" before (read-file "first/runs/00003.json"))
   (test-equal "all are in the file" (iota 10 1)
     (map (lambda (run) (assoc-ref run "run")) (runs "first"))))
