@@ -169,7 +169,7 @@ others are left out, those that face the other way than their neighbours are tur
     (tell-mended (cdr made))
     (car made)))
 
-(define-keyword-procedure (load-shape file #:key scale convex-hull? concave? up strict?)
+(define-keyword-procedure (load-shape file #:key scale convex-hull? concave? objects? up strict?)
   "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for
 beside the file that the call stands in, then beside the scene that is being loaded, then in the current
 folder.
@@ -182,14 +182,18 @@ warning.
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:convex-hull?  whether the hull is taken of parts that are not convex; #f
 #:concave?      whether all is ground with the file's surface, as triangle-mesh makes it; #f
+#:objects?      #t: a list ((NAME . SHAPE) ...) of the file's objects, NAME a string, is returned, to be
+                bodies each; where there is but one, of the parts in it; #f
 #:up            'y: the file's y is up, and becomes z here, its z becomes -y; 'z
 #:strict?       #t: a flat part is an error, and what is wrong with triangles of ground; #f"
   (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
   (when (and convex-hull? concave?)
     (bad-value "concave?" concave? "#f where #:convex-hull? is given"))
+  (when (and objects? concave?)
+    (bad-value "objects?" objects? "#f where #:concave? is given: ground is one body"))
   (let* ((found (beside-caller file (caller-place)))
          (kind (cond (concave? 'concave) (convex-hull? 'hulls) (else 'convex)))
-         (made (%load-shape found (or scale 1) kind (eq? up 'y) strict?)))
+         (made (%load-shape found (or scale 1) kind objects? (eq? up 'y) strict?)))
     (note-file-read found)
     (tell-mended (cdr made))
     (car made)))

@@ -236,38 +236,33 @@ ShapePtr read_ground(const std::string& file, const SolidOptions& options, Mendi
   }
 }
 
-ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
-  Mesh mesh = read_mesh(file, options);
-  const std::vector<std::size_t> places = same_places(mesh.points);
-  std::vector<Object> parts;
-  for (Object& object : mesh.objects) {
-    for (auto& triangle : object.triangles)
-      for (std::size_t& corner : triangle) corner = places[corner];
-    const std::vector<Object> pieces = connected(object, mesh.points.size());
-    parts.insert(parts.end(), pieces.begin(), pieces.end());
-  }
+namespace {
 
+// The hull of each part; null where that is flat.
+std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>& points,
+                               const std::vector<Object>& parts, const SolidOptions& options,
+                               Mending& mending) {
   std::vector<ShapePtr> shapes;
   std::size_t flat_parts = 0;
   std::string first_flat;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string what = title(parts[i], i, parts.size());
     try {
-      shapes.push_back(hull_of(parts[i], mesh.points));
+      shapes.push_back(hull_of(parts[i], points));
     } catch (const UserError& error) {
       // a stray triangle, a sheet
       if (flat_parts++ == 0) first_flat = what + " has no hull: " + error.what();
+      shapes.push_back(nullptr);
       continue;
     }
-    const double dent = deepest_dent(parts[i], mesh.points, *shapes.back());
+    const double dent = deepest_dent(parts[i], points, *shapes.back());
     TW_REQUIRE(options.hulls || dent <= flat,
                "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
                    " of its size over one of its faces; expected objects that are convex each, "
-                   "which make a union, or #:concave? #t for ground as it is, or #:convex-hull? #t "
-                   "for the "
-                   "hull of each");
+                   "which make a union, or #:concave? #t for ground as it is, or #:convex-hull? "
+                   "#t for the hull of each");
   }
-  if (shapes.empty()) throw UserError("the mesh " + file + ": " + first_flat);
+  if (flat_parts == shapes.size()) throw UserError("the mesh " + file + ": " + first_flat);
   if (flat_parts > 0) {
     std::string others;
     if (flat_parts > 1)
@@ -276,7 +271,69 @@ ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mendin
     mending.mend("the mesh " + file + ": ", others, UserError(first_flat),
                  flat_parts > 1 ? "they are left out" : "it is left out");
   }
+  return shapes;
+}
+
+ShapePtr united(std::vector<ShapePtr> shapes) {
+  std::erase(shapes, nullptr);
+  if (shapes.empty()) return nullptr;
   return shapes.size() == 1 ? shapes[0] : make_union(shapes);
+}
+
+// What hangs together by common places; for each part the number of its object.
+std::vector<Object> parts_of(Mesh& mesh, std::vector<std::size_t>& objects) {
+  const std::vector<std::size_t> places = same_places(mesh.points);
+  std::vector<Object> parts;
+  for (std::size_t i = 0; i < mesh.objects.size(); ++i) {
+    for (auto& triangle : mesh.objects[i].triangles)
+      for (std::size_t& corner : triangle) corner = places[corner];
+    const std::vector<Object> pieces = connected(mesh.objects[i], mesh.points.size());
+    parts.insert(parts.end(), pieces.begin(), pieces.end());
+    objects.resize(parts.size(), i);
+  }
+  return parts;
+}
+
+// The names of a file, those that come again or are missing with numbers.
+std::vector<std::string> names_of(const std::vector<Object>& objects) {
+  std::map<std::string, int> times;
+  std::vector<std::string> names;
+  for (const Object& object : objects) {
+    const std::string name = object.name.empty() ? "object" : object.name;
+    const int before = times[name]++;
+    names.push_back(before == 0 && !object.name.empty() ? name
+                                                        : name + "-" + std::to_string(before + 1));
+  }
+  return names;
+}
+
+}  // namespace
+
+ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
+  Mesh mesh = read_mesh(file, options);
+  std::vector<std::size_t> objects;
+  const std::vector<Object> parts = parts_of(mesh, objects);
+  return united(hulls_of(file, mesh.points, parts, options, mending));
+}
+
+std::vector<NamedShape> read_objects(const std::string& file, const SolidOptions& options,
+                                     Mending& mending) {
+  Mesh mesh = read_mesh(file, options);
+  std::vector<std::size_t> objects;
+  const std::vector<Object> parts = parts_of(mesh, objects);
+  // a file that names nothing has its parts as objects
+  const bool whole = mesh.objects.size() == 1;
+  const std::vector<ShapePtr> hulls = hulls_of(file, mesh.points, parts, options, mending);
+  const std::vector<std::string> names = names_of(whole ? parts : mesh.objects);
+  std::vector<NamedShape> named;
+  for (std::size_t i = 0, next = 0; i < parts.size(); i = next) {
+    for (next = i + 1; !whole && next < parts.size() && objects[next] == objects[i];) ++next;
+    const auto from = hulls.begin() + static_cast<std::ptrdiff_t>(i),
+               to = hulls.begin() + static_cast<std::ptrdiff_t>(next);
+    if (const ShapePtr shape = united({from, to}))
+      named.push_back({names[whole ? i : objects[i]], shape});
+  }
+  return named;
 }
 
 }  // namespace tw

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/mesh-faces.h"
 #include "geometry/shape.h"
@@ -24,6 +25,17 @@ struct SolidOptions {
 // and with the name of the object where one is not convex, by more than 1e-4 of its size, and
 // hulls are not wanted.
 ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending);
+
+struct NamedShape {
+  std::string name;
+  ShapePtr shape;
+};
+
+// The same, object by object, with the names of the file: each the union of the hulls of what hangs
+// together in it.  Of a file with a single object each part that hangs together is one.  Names that
+// come twice have numbers, as in wall, wall-2.  Flat ones are mended: left out.
+std::vector<NamedShape> read_objects(const std::string& file, const SolidOptions& options,
+                                     Mending& mending);
 
 // The same triangles as ground, however concave (geometry/mesh-ground.h): all objects in one.  Of
 // SolidOptions `hulls` says nothing.  What is wrong with triangles is mended.

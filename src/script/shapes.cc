@@ -129,8 +129,11 @@ Vec3 to_scale(SCM scale) {
 
 }  // namespace
 
-TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM kind, SCM y_up, SCM strict),
-             "Return (SHAPE . NOTES) of a mesh file; kind: convex, hulls or concave.") {
+TW_PRIMITIVE(
+    load_shape, "%load-shape",
+    (SCM file, SCM scale, SCM kind, SCM by_objects, SCM y_up, SCM strict),
+    "Return (SHAPE . NOTES) of a mesh file, or (((NAME . SHAPE) ...) . NOTES); kind: convex, "
+    "hulls or concave.") {
   SolidOptions options;
   const std::string wanted = to_symbol_name(kind, "the kind");
   options.hulls = wanted == "hulls";
@@ -138,6 +141,12 @@ TW_PRIMITIVE(load_shape, "%load-shape", (SCM file, SCM scale, SCM kind, SCM y_up
   options.scale = to_scale(scale);
   Mending mending(scm_is_true(strict));
   const std::string name = to_file_name(file, "the file");
+  if (scm_is_true(by_objects)) {
+    SCM all = SCM_EOL;
+    for (const NamedShape& one : read_objects(name, options, mending))
+      all = scm_acons(from_string(one.name), from_shape(one.shape), all);
+    return scm_cons(scm_reverse_x(all, SCM_EOL), from_strings(mending.take_notes()));
+  }
   const ShapePtr shape = wanted == "concave" ? read_ground(name, options, mending)
                                              : read_solid(name, options, mending);
   return scm_cons(from_shape(shape), from_strings(mending.take_notes()));

@@ -50,6 +50,24 @@
   "ell.obj: the object bracket isn't convex.*#:convex-hull\\? #t" (load-shape ell))
 (test-assert "its hull is to be had"
   (close? 3.5 (shape-volume (load-shape ell #:convex-hull? #t)) 1e-13))
+;; objects as bodies of their own
+(define named (load-shape two #:objects? #t))
+(test-equal "the objects of a file have its names" '("left" "right") (map car named))
+(test-assert "each is a shape, where it is in the file"
+  (and (close? 1.0 (shape-volume (cdar named)) 1e-13) (close? 2.0 (shape-volume (cdadr named)) 1e-13)
+       (close? #(2.5 0.5 1) (shape-centroid (cdadr named)) 1e-12)))
+(test-equal "parts without names are objects, too" '("object-1" "object-2")
+  (map car (load-shape (apply write-file "bare.obj" (append (box-lines #f 1 '(0 0 0) '(1 1 1))
+                                                            (box-lines #f 9 '(2 0 0) '(3 1 2))))
+                       #:objects? #t)))
+(test-equal "a name that comes again has a number" '("a" "a-2")
+  (map car (load-shape (apply write-file "twice.obj" (append (box-lines "a" 1 '(0 0 0) '(1 1 1))
+                                                             (box-lines "a" 9 '(2 0 0) '(3 1 2))))
+                       #:objects? #t)))
+(test-message "an object that isn't convex is named" "the object bracket isn't convex"
+  (load-shape ell #:objects? #t))
+(test-message "ground is one body" "ground is one body" (load-shape ell #:objects? #t #:concave? #t))
+
 (test-message "a missing file" "nowhere.obj is missing" (load-shape "nowhere.obj"))
 
 ;; beside the file that the call stands in, whatever there is in the current folder

@@ -1,6 +1,7 @@
 ;; Meshes as ground: rolling, sliding, being carried, nothing through, and what is told.
 ;; SPDX-License-Identifier: LGPL-3.0-or-later
 (load "helpers.scm")
+(use-modules (timewarp vectors))
 
 (define pi (* 4 (atan 1)))
 
