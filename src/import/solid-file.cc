@@ -216,23 +216,36 @@ void mend_triangles(const std::string& where, const MeshFaults& faults, Mending&
                  "none of them is taken for the other's neighbour", "two triangles at a side");
 }
 
-ShapePtr read_ground(const std::string& file, const SolidOptions& options, Mending& mending) {
+void GroundReader::add(const std::string& file, const SolidOptions& options, const Pose& pose) {
   const Mesh mesh = read_mesh(file, options);
-  std::vector<MeshTriangle> triangles;
+  Object all;
+  for (const Object& object : mesh.objects)
+    all.triangles.insert(all.triangles.end(), object.triangles.begin(), object.triangles.end());
+  const auto first = static_cast<std::uint32_t>(points_.size());
+  for (const Vec3& p : mesh.points) points_.push_back(pose.q * p + pose.p);
   // a scale of odd sign turns all of them inside out
   const bool mirrored = options.scale.prod() < 0;
-  for (const Object& object : mesh.objects)
-    for (const auto& [a, b, c] : object.triangles)
-      triangles.push_back({static_cast<std::uint32_t>(a),
-                           static_cast<std::uint32_t>(mirrored ? c : b),
-                           static_cast<std::uint32_t>(mirrored ? b : c)});
+  for (const auto& [a, b, c] : all.triangles)
+    triangles_.push_back({first + static_cast<std::uint32_t>(a),
+                          first + static_cast<std::uint32_t>(mirrored ? c : b),
+                          first + static_cast<std::uint32_t>(mirrored ? b : c)});
+  if (file_.empty()) file_ = file;
+  if (!convex_) return;
+  try {
+    convex_ = deepest_dent(all, mesh.points, *hull_of(all, mesh.points)) <= flat;
+  } catch (const UserError&) {
+    convex_ = false;
+  }
+}
+
+ShapePtr GroundReader::shape() {
   MeshFaults faults;
   try {
-    ShapePtr shape = make_mesh(mesh.points, triangles, &faults);
-    mend_triangles("the mesh " + file + ": ", faults, mending);
+    ShapePtr shape = make_mesh(points_, triangles_, &faults);
+    mend_triangles("the mesh " + file_ + ": ", faults, mending_);
     return shape;
   } catch (const UserError& error) {
-    throw UserError("the mesh " + file + ": " + error.what());
+    throw UserError("the mesh " + file_ + ": " + error.what());
   }
 }
 

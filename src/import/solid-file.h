@@ -37,11 +37,28 @@ struct NamedShape {
 std::vector<NamedShape> read_objects(const std::string& file, const SolidOptions& options,
                                      Mending& mending);
 
-// The same triangles as ground, however concave (geometry/mesh-ground.h): all objects in one.  Of
-// SolidOptions `hulls` says nothing.  What is wrong with triangles is mended.
+// The triangles of mesh files as ground, however concave (geometry/mesh-ground.h): all objects of
+// all files in one.
 //
 // Errors: UserError, with the file's name, where it is missing, is no mesh, or has no triangles.
-ShapePtr read_ground(const std::string& file, const SolidOptions& options, Mending& mending);
+class GroundReader {
+ public:
+  explicit GroundReader(Mending& mending) : mending_(mending) {}
+
+  // Of the options `hulls` says nothing.  `pose`: of the file's frame in the shape's.
+  void add(const std::string& file, const SolidOptions& options, const Pose& pose = {});
+  // Whether each of the files is as its hull.
+  bool is_convex() const { return convex_; }
+  // What is wrong with triangles is mended.
+  ShapePtr shape();
+
+ private:
+  Mending& mending_;
+  std::string file_;  // the first
+  std::vector<Vec3> points_;
+  std::vector<MeshTriangle> triangles_;
+  bool convex_ = true;
+};
 
 // Tells what was wrong with triangles; `where` begins each sentence.
 void mend_triangles(const std::string& where, const MeshFaults& faults, Mending& mending);

@@ -3,26 +3,20 @@
 #include "import/urdf.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "base/error.h"
-#include "import/find-mesh.h"
-#include "import/mesh-file.h"
-#include "import/surface-file.h"
 #include "import/urdf-file.h"
+#include "import/urdf-joints.h"
+#include "import/urdf-shapes.h"
 
 namespace tw {
 
-using multibody::AxisSpec;
 using multibody::JointKind;
 using multibody::JointSpec;
-using urdf::GeometryKind;
 using urdf::JointType;
 
 namespace {
@@ -46,12 +40,6 @@ class Builder {
   UrdfRobot build();
 
  private:
-  // What a link is made of so far: its own shapes and those of parts without mass.
-  struct Shapes {
-    std::vector<ShapePtr> touching;
-    Visual visual;
-    std::optional<Vec3> color;
-  };
   static constexpr std::size_t base = static_cast<std::size_t>(-1), none = base - 1;
 
   // ---- places ----
@@ -78,26 +66,6 @@ class Builder {
   bool root_hangs_alone() const;
   double total_mass() const;
 
-  // ---- joints ----
-
-  JointSpec spec_of(const urdf::Joint& joint);
-  void set_limits(const urdf::Joint& joint, JointSpec& spec);
-  static void lock(JointSpec& spec, double position);
-  void set_followers();
-
-  // ---- shapes ----
-
-  ShapePtr shape_of(const urdf::Geometry& geometry);
-  ShapePtr placed_shape(const urdf::Piece& piece, const Pose& part, const std::string& link);
-  void add_shapes(const urdf::Link& link, const Pose& part, Shapes& shapes);
-  VisualPart seen_part(const urdf::Piece& visual, const Pose& part);
-  static VisualPtr visual_of(Visual visual);
-  static ShapePtr together(const std::vector<ShapePtr>& shapes) {
-    if (shapes.empty()) return nullptr;
-    return shapes.size() == 1 ? shapes.front() : make_union(shapes);
-  }
-  void finish(std::size_t number);
-
   // ---- links ----
 
   void add(std::size_t link, std::size_t owner, const Pose& part);
@@ -106,6 +74,7 @@ class Builder {
   std::size_t add_link(std::size_t link, std::size_t owner, JointSpec spec);
   void add_planar(const urdf::Joint& joint, std::size_t& owner, JointSpec& spec);
   void set_mass(const urdf::Link& link, LinkDef& def);
+  void finish(std::size_t number);
 
   const std::string& file_;
   const UrdfOptions& options_;
@@ -115,19 +84,16 @@ class Builder {
   std::vector<std::size_t> joint_of_;               // that moves a link; none: of the root
   std::vector<std::vector<std::size_t>> children_;  // joints, of a link
   std::vector<JointSpec> specs_;                    // of each joint
-  std::map<std::size_t, double> locked_at_;         // joints whose limits are equal
   std::size_t root_ = 0;
   bool root_is_link_ = false;
   double mass_ = 0;  // of the robot, kg
 
   UrdfRobot robot_;
-  std::vector<Shapes> shapes_;              // of each link of the robot
+  urdf::Shapes shapes_{file_, options_.packages, mending_};
+  std::vector<urdf::BodyPieces> pieces_;    // of each link of the robot
   std::vector<const urdf::Link*> sources_;  // null: of a planar joint's inside
-  Shapes stand_;                            // what is fixed to the base, and the first link of it
+  urdf::BodyPieces stand_;                  // what is fixed to the base, and the first link of it
   std::string stand_name_;
-  std::map<std::string, std::vector<Vec3>> points_;  // of mesh files
-  std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const SurfaceMesh>>
-      surfaces_;  // by file and scale
   // of a free robot: its first link in the root's frame, and parts of it that came before
   Pose first_;
   std::vector<std::pair<std::size_t, Pose>> waiting_;
@@ -214,237 +180,6 @@ bool Builder::root_hangs_alone() const {
   return first == 1;
 }
 
-// ---- joints ----
-
-void Builder::set_limits(const urdf::Joint& joint, JointSpec& spec) {
-  AxisSpec& axis = spec.axes[0];
-  if (joint.limit) {
-    // nobody means that a joint can do nothing
-    if (joint.limit->effort.value_or(0) > 0) axis.effort = *joint.limit->effort;
-    if (joint.limit->velocity.value_or(0) > 0) axis.speed = *joint.limit->velocity;
-  }
-  if (joint.type != JointType::revolute && joint.type != JointType::prismatic) return;
-  const std::string of = "the joint " + joint.name;
-  // one that follows another has the limits of that, at least
-  const bool limited = joint.limit && (joint.limit->lower || joint.limit->upper);
-  if (joint.mimic && !limited) return;
-  if (!joint.limit) {
-    mend(joint.line, of + " has no <limit>", "it moves without end",
-         "<limit lower=\"...\" upper=\"...\"/>");
-    return;
-  }
-  const double lower = joint.limit->lower.value_or(0), upper = joint.limit->upper.value_or(0);
-  if (lower < upper) {
-    axis.lower = lower, axis.upper = upper;
-    return;
-  }
-  const std::string are =
-      "the limits of " + of + " are " +
-      (joint.limit->lower || joint.limit->upper ? show(lower) + " and " + show(upper)
-                                                : "not given, and so 0 and 0");
-  constexpr const char* expected = "a lower one and a greater upper one";
-  if (lower > upper) {
-    mend(joint.limit->line, are, "it has none", expected);
-    return;
-  }
-  mend(joint.limit->line, are, "it is locked", expected);
-  lock(spec, lower);
-  locked_at_[static_cast<std::size_t>(&joint - model_.joints.data())] = lower;
-}
-
-void Builder::lock(JointSpec& spec, double position) {
-  const Vec3 unit = spec.axis.normalized();
-  const Pose there = spec.kind == JointKind::revolute
-                         ? Pose{Vec3::Zero(), Quat(Eigen::AngleAxisd(position, unit))}
-                         : Pose{position * unit, Quat::Identity()};
-  spec.placement = spec.placement * there;
-  spec.kind = JointKind::weld;
-}
-
-JointSpec Builder::spec_of(const urdf::Joint& joint) {
-  JointSpec spec;
-  switch (joint.type) {
-    case JointType::fixed: spec.kind = JointKind::weld; break;
-    case JointType::revolute:
-    case JointType::continuous:
-    case JointType::planar: spec.kind = JointKind::revolute; break;
-    case JointType::prismatic: spec.kind = JointKind::prismatic; break;
-    case JointType::spherical: spec.kind = JointKind::spherical; break;
-    case JointType::floating: spec.kind = JointKind::free; break;
-  }
-  spec.name = joint.name;
-  spec.placement = joint.origin;
-  spec.axis = joint.axis;
-  if (spec.kind == JointKind::weld) return spec;
-  if (spec.kind != JointKind::free && spec.kind != JointKind::spherical && !(spec.axis.norm() > 0))
-    fail(joint.line, "the axis of the joint " + joint.name + " is 0 0 0; expected a direction");
-  for (const auto& [value, name, member] :
-       {std::tuple(joint.damping, "damping", &AxisSpec::damping),
-        std::tuple(joint.friction, "friction", &AxisSpec::friction)}) {
-    if (value < 0)
-      mend(joint.line, std::string(name) + " of the joint " + joint.name + " is " + show(value),
-           "it has none", "0 or more");
-    spec.axes[0].*member = std::max(0.0, value);
-  }
-  set_limits(joint, spec);
-  return spec;
-}
-
-// Which joints follow which: those at the ends of chains, whose limits are those of all that
-// follow; what follows a joint that is locked is locked, too.
-void Builder::set_followers() {
-  std::map<std::string, std::size_t> names;
-  for (std::size_t i = 0; i < model_.joints.size(); ++i) names[joint(i).name] = i;
-  const auto one_freedom = [&](std::size_t i) {
-    return specs_[i].kind == JointKind::revolute || specs_[i].kind == JointKind::prismatic;
-  };
-  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    if (!joint(i).mimic || specs_[i].kind == JointKind::weld) continue;
-    multibody::FollowSpec follows{joint(i).name, 1, 0};
-    std::size_t leader = i, steps = 0;
-    std::string wrong;
-    while (joint(leader).mimic && specs_[leader].kind != JointKind::weld) {
-      const urdf::Mimic& mimic = *joint(leader).mimic;
-      const auto found = names.find(mimic.joint);
-      if (found == names.end())
-        wrong = mimic.joint + ", which is no joint of the robot";
-      else if (++steps > model_.joints.size())
-        wrong = mimic.joint + ", and so itself";
-      if (!wrong.empty()) break;
-      follows.offset += follows.ratio * mimic.offset;
-      follows.ratio *= mimic.multiplier;
-      leader = found->second;
-    }
-    if (!wrong.empty()) {
-      mend(joint(i).mimic->line, "the joint " + joint(i).name + " follows " + wrong,
-           "it moves by itself", "the name of a joint that moves by itself");
-      continue;
-    }
-    follows.joint = joint(leader).name;
-    JointSpec& own = specs_[i];
-    JointSpec& leads = specs_[leader];
-    if (leads.kind == JointKind::weld) {
-      const double position = follows.offset + follows.ratio * locked_at_[leader];
-      mend(joint(i).mimic->line,
-           "the joint " + joint(i).name + " follows " + follows.joint + ", which does not move",
-           "it is locked at " + show(position), "the name of a joint that moves by itself");
-      lock(own, position);
-      continue;
-    }
-    if (!one_freedom(i) || !one_freedom(leader) || joint(i).type == JointType::planar ||
-        joint(leader).type == JointType::planar)
-      fail(joint(i).mimic->line, "the joint " + joint(i).name + " follows " + follows.joint +
-                                     "; expected two joints that turn or slide");
-    AxisSpec& axis = own.axes[0];
-    AxisSpec& most = leads.axes[0];
-    if (follows.ratio != 0) {
-      const double a = (axis.lower - follows.offset) / follows.ratio;
-      const double b = (axis.upper - follows.offset) / follows.ratio;
-      const double lower = std::max(most.lower, std::min(a, b));
-      const double upper = std::min(most.upper, std::max(a, b));
-      if (lower < upper)
-        most.lower = lower, most.upper = upper;
-      else
-        mend(joint(i).mimic->line,
-             "the limits of the joint " + joint(i).name + " leave nothing to " + follows.joint +
-                 ", which it follows",
-             "it has none", "limits that both can keep");
-    }
-    axis.lower = -std::numeric_limits<double>::infinity();
-    axis.upper = std::numeric_limits<double>::infinity();
-    own.follows = follows;
-  }
-}
-
-// ---- shapes ----
-
-ShapePtr Builder::shape_of(const urdf::Geometry& geometry) {
-  switch (geometry.kind) {
-    case GeometryKind::sphere: return make_sphere(geometry.radius);
-    case GeometryKind::box: return make_box(geometry.size);
-    case GeometryKind::cylinder: return make_cylinder(geometry.radius, geometry.length);
-    case GeometryKind::capsule: return make_capsule(geometry.radius, geometry.length);
-    case GeometryKind::plane: return make_half_space(geometry.size.normalized(), 0);
-    case GeometryKind::mesh: break;
-  }
-  const std::string path = find_mesh(geometry.file, file_, options_.packages);
-  auto found = points_.find(path);
-  if (found == points_.end()) found = points_.emplace(path, mesh_points(path)).first;
-  std::vector<Vec3> points = found->second;
-  for (Vec3& p : points) p = p.cwiseProduct(geometry.size);
-  return make_hull(points);
-}
-
-ShapePtr Builder::placed_shape(const urdf::Piece& piece, const Pose& part,
-                               const std::string& link) {
-  try {
-    return place_shape(shape_of(piece.geometry), part * piece.origin);
-  } catch (const UserError& error) {
-    const bool mesh = piece.geometry.kind == GeometryKind::mesh;
-    if (mesh && find_mesh(piece.geometry.file, file_, options_.packages) == piece.geometry.file &&
-        piece.geometry.file.find("://") != std::string::npos)
-      fail(piece.geometry.line, "<mesh> of the link " + link + ": the mesh " + piece.geometry.file +
-                                    " is missing; expected the package in a folder above the "
-                                    "file, or in one of #:package-path");
-    fail(piece.geometry.line,
-         std::string(mesh ? "<mesh>" : "a shape") + " of the link " + link + ": " + error.what());
-  }
-}
-
-// Shapes of a link that lies at `part` in what it belongs to.
-void Builder::add_shapes(const urdf::Link& link, const Pose& part, Shapes& shapes) {
-  const std::size_t touching_before = shapes.touching.size();
-  const std::size_t seen_before = shapes.visual.size();
-  for (const urdf::Piece& collision : link.collisions)
-    shapes.touching.push_back(placed_shape(collision, part, link.name));
-  for (const urdf::Piece& visual : link.visuals) {
-    if (visual.color && !shapes.color) shapes.color = visual.color;
-    try {
-      shapes.visual.push_back(seen_part(visual, part));
-    } catch (const UserError& error) {
-      mending_.mend(at(visual.geometry.line), "<visual> of the link " + link.name + ": ", error,
-                    "it is not drawn");
-    }
-  }
-  // one whose visuals are all missing is drawn as what touches
-  if (link.visuals.empty() || shapes.visual.size() > seen_before) return;
-  for (std::size_t i = touching_before; i < shapes.touching.size(); ++i)
-    shapes.visual.push_back({shapes.touching[i], nullptr, Pose{}, std::nullopt});
-}
-
-VisualPart Builder::seen_part(const urdf::Piece& visual, const Pose& part) {
-  VisualPart seen;
-  TW_REQUIRE(visual.geometry.kind != GeometryKind::plane,
-             "a <plane> is drawn where it is a <collision> alone; expected another shape");
-  seen.pose = part * visual.origin;
-  seen.color = visual.color;
-  const urdf::Geometry& geometry = visual.geometry;
-  if (geometry.kind != GeometryKind::mesh) {
-    seen.shape = shape_of(geometry);
-    return seen;
-  }
-  const std::string path = find_mesh(geometry.file, file_, options_.packages);
-  const auto key = std::tuple(path, geometry.size.x(), geometry.size.y(), geometry.size.z());
-  auto found = surfaces_.find(key);
-  if (found == surfaces_.end())
-    found = surfaces_.emplace(key, read_surface(path, geometry.size, false)).first;
-  seen.mesh = found->second;
-  return seen;
-}
-
-VisualPtr Builder::visual_of(Visual visual) {
-  return visual.empty() ? nullptr : std::make_shared<const Visual>(std::move(visual));
-}
-
-void Builder::finish(std::size_t number) {
-  const Shapes& shapes = shapes_[number];
-  LinkDef& def = robot_.links[number];
-  def.body.color = shapes.color;
-  def.body.shape = together(shapes.touching);
-  def.body.visual = visual_of(shapes.visual);
-  if (sources_[number]) set_mass(*sources_[number], def);
-}
-
 // ---- links ----
 
 void Builder::set_mass(const urdf::Link& link, LinkDef& def) {
@@ -498,7 +233,7 @@ std::size_t Builder::add_link(std::size_t number, std::size_t owner, JointSpec s
   def.joint = std::move(spec);
   robot_.links.push_back(std::move(def));
   sources_.push_back(&link(number));
-  add_shapes(link(number), Pose{}, shapes_.emplace_back());
+  shapes_.add(link(number), Pose{}, pieces_.emplace_back());
   return robot_.links.size() - 1;
 }
 
@@ -519,7 +254,7 @@ void Builder::add_planar(const urdf::Joint& joint, std::size_t& owner, JointSpec
     def.body.center_of_mass = Vec3::Zero();
     robot_.links.push_back(std::move(def));
     sources_.push_back(nullptr);
-    shapes_.emplace_back();
+    pieces_.emplace_back();
     owner = robot_.links.size() - 1;
     spec.placement = Pose{};
   }
@@ -571,31 +306,41 @@ void Builder::add(std::size_t number, std::size_t owner, const Pose& part) {
 }
 
 void Builder::add_part(std::size_t number, std::size_t owner, const Pose& place) {
-  if (owner != base) return add_shapes(link(number), place, shapes_[owner]);
+  if (owner != base) return shapes_.add(link(number), place, pieces_[owner]);
   if (robot_.free) {
     // a part of the first link with a mass, which may come later
-    if (shapes_.empty()) return waiting_.emplace_back(number, place), void();
-    return add_shapes(link(number), inverse(first_) * place, shapes_.front());
+    if (pieces_.empty()) return waiting_.emplace_back(number, place), void();
+    return shapes_.add(link(number), inverse(first_) * place, pieces_.front());
   }
-  if (stand_.touching.empty() && stand_.visual.empty()) stand_name_ = link(number).name;
-  add_shapes(link(number), place, stand_);
+  if (stand_.empty()) stand_name_ = link(number).name;
+  shapes_.add(link(number), place, stand_);
+}
+
+void Builder::finish(std::size_t number) {
+  LinkDef& def = robot_.links[number];
+  def.body.color = pieces_[number].color;
+  const urdf::BodyLooks looks = shapes_.finish(std::move(pieces_[number]), false);
+  def.body.shape = looks.shape;
+  def.body.visual = looks.visual;
+  if (sources_[number]) set_mass(*sources_[number], def);
 }
 
 void Builder::make_stand() {
-  if (stand_.touching.empty() && stand_.visual.empty()) return;
+  if (stand_.empty()) return;
   BodyDef& stand = robot_.stand.emplace();
   stand.name = stand_name_;
   stand.color = stand_.color;
   stand.fixed = true;
-  stand.shape = together(stand_.touching);
-  stand.visual = visual_of(stand_.visual);
+  const bool scenery = robot_.links.empty();
+  const urdf::BodyLooks looks = shapes_.finish(std::move(stand_), scenery);
+  stand.shape = looks.shape;
+  stand.visual = looks.visual;
 }
 
 UrdfRobot Builder::build() {
   connect();
   mass_ = total_mass();
-  for (const urdf::Joint& j : model_.joints) specs_.push_back(spec_of(j));
-  set_followers();
+  specs_ = urdf::joint_specs(file_, model_, mending_);
   // a world of its own that the robot floats in
   bool floats = false;
   const std::vector<std::size_t>& first = children_[root_];
@@ -622,7 +367,7 @@ UrdfRobot Builder::build() {
     for (urdf::Link& l : model_.links) l.inertial.reset();
   }
   add(root_, base, Pose{});
-  for (std::size_t i = 0; i < shapes_.size(); ++i) finish(i);
+  for (std::size_t i = 0; i < pieces_.size(); ++i) finish(i);
   make_stand();
   if (robot_.links.empty() && !robot_.stand)
     fail(link(root_).line, "the robot " + robot_.name +

@@ -147,8 +147,12 @@ TW_PRIMITIVE(
       all = scm_acons(from_string(one.name), from_shape(one.shape), all);
     return scm_cons(scm_reverse_x(all, SCM_EOL), from_strings(mending.take_notes()));
   }
-  const ShapePtr shape = wanted == "concave" ? read_ground(name, options, mending)
-                                             : read_solid(name, options, mending);
+  const auto ground = [&] {
+    GroundReader reader(mending);
+    reader.add(name, options);
+    return reader.shape();
+  };
+  const ShapePtr shape = wanted == "concave" ? ground() : read_solid(name, options, mending);
   return scm_cons(from_shape(shape), from_strings(mending.take_notes()));
 }
 

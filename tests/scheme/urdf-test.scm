@@ -198,29 +198,50 @@
     (test-equal "a robot that floats in an empty root is free" '(trunk j) (joint-names bot))))
 
 ;; links 1 and 3 overlap, neighbours of 2 both
-(let ((file (robot (link-text 'one #:more a-box) (link-text 'two #:more a-box)
-                   (link-text 'three #:more a-box)
-                   (joint-text 'j 'one 'two #:at "0.1 0 0") (joint-text 'k 'two 'three #:at "0 0.1 0"))))
+(define (three-boxes first)
+  (robot first (link-text 'two #:more a-box) (link-text 'three #:more a-box)
+         (joint-text 'j 'one 'two #:at "0.1 0 0") (joint-text 'k 'two 'three #:at "0 0.1 0")))
+(define (overlapping name first pattern)
   (in-world ()
-    (call-with-values (lambda () (loaded file))
+    (call-with-values (lambda () (loaded (three-boxes first)))
       (lambda (bot warned)
-        (test-assert "links that overlap at the start"
-          (string-match "bot/one and bot/three overlap by 0.1.* do not touch each other" warned))
-        (run! #:until 0.1))))
-  (in-world ()
-    (call-with-values (lambda () (loaded file #:self-collisions? #f))
-      (lambda (bot warned) (test-equal "none of them touch" "" warned)))))
-;; the first of them stands
-(let ((file (robot (format #f "<link name=\"one\">~a</link>" a-box) (link-text 'two #:more a-box)
-                   (link-text 'three #:more a-box)
-                   (joint-text 'j 'one 'two #:at "0.1 0 0") (joint-text 'k 'two 'three #:at "0 0.1 0"))))
-  (in-world ()
-    (call-with-values (lambda () (loaded file))
-      (lambda (bot warned)
-        (test-assert "one that overlaps what stands"
-          (string-match "bot/one and bot/three|bot/three and bot/one" warned))
+        (test-assert (format #f "~a: ~a" name warned) (string-match pattern warned))
         (run! #:until 0.1)))))
+(overlapping "links that overlap at the start" (link-text 'one #:more a-box)
+             "bot/one and bot/three overlap by 0.1.* do not touch each other")
+(overlapping "one that overlaps what stands" (format #f "<link name=\"one\">~a</link>" a-box)
+             "bot/one and bot/three|bot/three and bot/one")
+(in-world ()
+  (call-with-values
+      (lambda () (loaded (three-boxes (link-text 'one #:more a-box)) #:self-collisions? #f))
+    (lambda (bot warned) (test-equal "none of them touch" "" warned))))
 
+;; ---- scenery of meshes ----
+
+(write-file "ell.obj" "o bracket"
+            "v 0 0 0" "v 2 0 0" "v 2 1 0" "v 1 1 0" "v 1 2 0" "v 0 2 0"
+            "v 0 0 1" "v 2 0 1" "v 2 1 1" "v 1 1 1" "v 1 2 1" "v 0 2 1"
+            "f 6 5 4 3 2 1" "f 7 8 9 10 11 12"
+            "f 1 2 8 7" "f 2 3 9 8" "f 3 4 10 9" "f 4 5 11 10" "f 5 6 12 11" "f 6 1 7 12")
+(write-file "sheet.obj" "v -5 -5 0" "v 5 -5 0" "v 5 5 0" "v -5 5 0" "f 1 2 3 4")
+(define (mesh-text file scale at)
+  (format #f "<collision><origin xyz=\"~a\"/><geometry><mesh filename=\"~a\" scale=\"~a\"/></geometry></collision>"
+          at file scale))
+;; where a ball that falls at x, y ends, m
+(define (ends-at x y . pieces)
+  (in-world ()
+    (scene #:gravity #(0 0 -9.81))
+    (loaded (robot (format #f "<link name=\"ground\">~a</link>" (string-concatenate pieces))))
+    (let ((ball (add-body! #:shape (sphere 0.1) #:position (vector x y 2.2))))
+      (run! #:until 2)
+      (vector-ref (position ball) 2))))
+(test-assert "concave meshes are scenery as they are"
+  (let ((ell (mesh-text "ell.obj" "1 1 1" "0 0 1")))
+    (and (close? (ends-at 0.5 0.5 ell) 2.1 1e-3) (< (ends-at 1.5 1.5 ell) -5))))
+(test-assert "flat ones, too, and several are one"
+  (let ((pieces (list (mesh-text "sheet.obj" "1 1 1" "0 0 0") (mesh-text "ell.obj" "1 1 1" "0 0 0"))))
+    (and (close? (apply ends-at 1.5 1.5 pieces) 0.1 1e-3)
+         (close? (apply ends-at 0.5 0.5 pieces) 1.1 1e-3))))
 ;; ---- joints that follow others ----
 
 (in-world ()
