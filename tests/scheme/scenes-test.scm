@@ -190,6 +190,31 @@
            (iota 16))))
 
 (in-world ()
+  (load-scene-named "gallery/marble-run" '((marbles . "5")))
+  (run! #:until 8)
+  (test-equal "marbles stay in their gutter, on their way down" '()
+    (filter-map (lambda (k)
+                  (match (position (find-body (format #f "marble-~a" k)))
+                    (#(x y z) (and (not (and (< 1.05 (sqrt (+ (* x x) (* y y))) 1.35) (< 0.3 z 1.8)))
+                                   (list k x y z)))))
+                (iota 5))))
+
+(in-world ()
+  (load-scene-named "gallery/mesh-road" '((lengthwise . "800")))
+  (run! #:until 1.5)
+  (match (position (car (multibody-links (find-multibody "car"))))
+    (#(x y z)
+     (test-assert (format #f "the car is on its road, and drives: ~a ~a ~a" x y z)
+       (and (> x 4) (< (abs (- y (* 4 (sin (* 0.09 x))))) 0.7)
+            (< 0.2 (- z (* 0.9 (sin (* 0.13 x)))) 0.8))))))
+
+(in-world ()
+  (load-scene-named "gallery/fractured-wall" '((columns . "5") (rows . "4") (speed . "0")))
+  (run! #:until 0.3)
+  (test-assert "stones that fit each other stand"
+    (every (lambda (k) (< (norm (velocity (find-body (format #f "stone-~a" k)))) 1e-3)) (iota 20))))
+
+(in-world ()
   (load-scene-named "gallery/fan")
   (define (inside? body)
     (< (let ((p (position body))) (norm (vector (vector-ref p 0) (vector-ref p 1) 0))) 1.4))
