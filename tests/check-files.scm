@@ -1,4 +1,5 @@
 ;; One file of others: whether it loads, and, of a robot, whether it falls on the ground and lies there.
+;; With GROUND=yes in the environment a mesh is loaded as ground, and things fall on that.
 ;;
 ;;   timewarp -q --quiet -l check-files.scm -c '(check-file "FILE")'
 ;;
@@ -67,10 +68,39 @@
                    (tell "sinks" (format #f "~,4f m below the ground after ~a s" (- low) seconds)))
                   (else (tell-loaded notes ""))))))))
 
+;; Balls and boxes of a thirtieth of the ground's size fall on it from above.  How deep the deepest is in
+;; it, in sizes.
+(define (rain-on ground)
+  (parameterize ((current-world (make-world)))
+    (call-with-values (lambda () (bounding-box (add-body! #:name "ground" #:shape ground #:fixed? #t)))
+      (lambda (low high)
+        (let* ((sides (map - (vector->list high) (vector->list low)))
+               (size (* 1/30 (apply max sides)))
+               (at (lambda (axis share)
+                     (+ (vector-ref low axis) (* share (list-ref sides axis))))))
+          (do ((k 0 (1+ k))) ((= k 9))
+            (add-body! #:shape (if (even? k) (sphere size) (box size (* 1.5 size) (* 2 size)))
+                       #:position (vector (at 0 (/ (+ 0.5 (modulo k 3)) 3))
+                                          (at 1 (/ (+ 0.5 (quotient k 3)) 3))
+                                          (+ (vector-ref high 2) (* 3 size)))))
+          ;; as long as it takes to fall by the whole
+          (run! #:until (sqrt (/ (apply max sides) 4)))
+          (/ (assq-ref (statistics) 'max_penetration) size))))))
+
+(define (check-ground file)
+  (call-with-values (lambda () (noting (lambda () (load-shape file #:concave? #t))))
+    (lambda (shape notes)
+      (let ((depth (rain-on shape)))
+        (if (> depth 0.02)
+            (tell "sinks" (format #f "~,3f of what lies on it" depth))
+            (tell-loaded notes ", as ground"))))))
+
 (define (check-mesh file)
   (call-with-values (lambda () (noting (lambda () (load-shape file #:convex-hull? #t))))
     (lambda (shape notes)
       (tell-loaded notes (if (error? (lambda () (load-shape file))) ", as hulls" "")))))
 
 (define (check-file file)
-  (or-refused (if (string-suffix-ci? ".urdf" file) (check-robot file) (check-mesh file))))
+  (or-refused (cond ((string-suffix-ci? ".urdf" file) (check-robot file))
+                    ((getenv "GROUND") (check-ground file))
+                    (else (check-mesh file)))))
