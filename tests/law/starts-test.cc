@@ -130,8 +130,10 @@ TEST(Starts, a_heap_stands_where_its_poses_are_read_back) {
       world.set_contact({}, {}, rolling);
       const Course course = course_of(world, 2);
       EXPECT_LT(course.way, 1e-4 * 0.3) << heap;
-      EXPECT_LT(course.kinetic, 5e-4) << heap;
-      EXPECT_LT(course.rise, 5e-4) << heap;
+      // of some 300 J; the worst of these heaps moves with 1.5e-4 J and rises by 1.3e-4
+      const double energy = heap == 0 ? 1e-4 : 5e-4;
+      EXPECT_LT(course.kinetic, energy) << heap;
+      EXPECT_LT(course.rise, energy) << heap;
     }
   }
   EXPECT_GE(at_rest, 3);
