@@ -57,8 +57,7 @@ void parts_around(const Shape& shape, const Frame& frame, const Aabb& place,
                   std::vector<std::uint32_t>& out);
 
 // Of two shapes with at least one tree: whether each part of a is looked for in the tree of b, or
-// the other way round.  That of more parts is searched; one of lazy parts always is, as some of its
-// numbers may stand for no part.
+// the other way round.  That of more parts is searched, and one of lazy parts before one without.
 inline bool searches_second(const Shape& a, const Shape& b) {
   if (!a.tree() || !b.tree()) return b.tree() != nullptr;
   const bool lazy_a = a.has_lazy_parts(), lazy_b = b.has_lazy_parts();
@@ -89,6 +88,7 @@ void visit_near_parts(const Shape& a, const Frame& frame_a, const Shape& b, cons
   std::vector<std::uint32_t> near;
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < few.part_count(); ++i) {
+    if (!few.has_part(i)) continue;
     parts_near(many, few.part(i), frame, reach, near);
     for (const std::size_t j : near) pairs.emplace_back(in_b ? i : j, in_b ? j : i);
   }

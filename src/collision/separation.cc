@@ -422,6 +422,7 @@ Separation separation_by_trees(const Shape& a, const Frame& frame_a, const Shape
   const Shape& few = in_b ? a : b;
   const Frame frame = in_b ? seen_from(frame_b, frame_a) : seen_from(frame_a, frame_b);
   for (std::size_t i = 0; i < few.part_count(); ++i) {
+    if (!few.has_part(i)) continue;
     const Aabb box = part_bounds(few.part(i), frame);
     const PartTree::Node& root = many.tree()->root();
     search(nearest, *many.tree(), root, box_gap(root.box, box), in_b, i, box);

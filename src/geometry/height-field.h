@@ -39,7 +39,7 @@ class HeightField final : public LazyParts {
 
   // Parts have two numbers for each cell.  A rectangle has the first number of its first cell; its
   // other ones stand for no part.
-  bool exists(std::size_t number) const {
+  bool exists(std::size_t number) const override {
     const Rectangle& cells = rectangles_[number / 2];
     return number % 2 == 0 ? cells.rows > 0 : cells.is_cut;
   }

@@ -22,6 +22,8 @@ class LazyParts {
   LazyParts& operator=(const LazyParts&) = delete;
 
   std::size_t part_count() const { return parts_.size(); }
+  // Whether the number stands for a part.
+  virtual bool exists(std::size_t) const { return true; }
   // Any number of threads may ask at once.
   const ConvexPart& part(std::size_t number) const;
   // Numbers that stand for no part are not in it.

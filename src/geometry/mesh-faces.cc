@@ -11,16 +11,20 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/limits.h"
+#include "math/aabb.h"
 
 namespace tw {
 namespace {
 
-constexpr double same = 1e-7;  // relative to the largest coordinate
+constexpr double same = 1e-7;  // relative to the size
 
 // ---- points ----
 
-// For each point the first one as near as that.
-std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& points, double tolerance) {
+// For each point of triangles the first one as near as that.
+std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& points,
+                                          const std::vector<MeshTriangle>& triangles,
+                                          double tolerance) {
   using Cell = std::array<std::int64_t, 3>;
   struct Hash {
     std::size_t operator()(const Cell& cell) const {
@@ -33,8 +37,12 @@ std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& points, doubl
   const double size = 2 * tolerance;
   std::unordered_multimap<Cell, std::uint32_t, Hash> cells;
   cells.reserve(points.size());
+  std::vector<bool> used(points.size(), false);
+  for (const MeshTriangle& t : triangles)
+    for (const std::uint32_t corner : t) used[corner] = true;
   std::vector<std::uint32_t> first(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!used[i]) continue;
     Cell at;
     for (int k = 0; k < 3; ++k)
       at[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(points[i][k] / size));
@@ -265,9 +273,36 @@ class Joining {
     }
   }
 
+  // No corner lies farther inside the hull of all than points that are one.
   bool is_convex(const MeshFace& face) const {
+    return face.corners.size() >= 3 && turns_one_way(face) && is_near_its_hull(face);
+  }
+
+  bool is_near_its_hull(const MeshFace& face) const {
     const std::size_t n = face.corners.size();
-    if (n < 3) return false;
+    const auto at = [&](std::size_t i) -> const Vec3& { return point(face.corners[i % n]); };
+    // how far b is on the right of the line from a to c
+    const auto outside = [&](std::size_t a, std::size_t b, std::size_t c) {
+      const Vec3 way = at(c) - at(a);
+      return face.normal.dot((at(b) - at(a)).cross(way)) / way.norm();
+    };
+    std::size_t first = 0;  // the corner farthest from the first one is one of the hull
+    for (std::size_t i = 1; i < n; ++i)
+      if ((at(i) - at(0)).squaredNorm() > (at(first) - at(0)).squaredNorm()) first = i;
+    std::vector<std::size_t> hull{first};
+    for (std::size_t i = first + 1; i <= first + n; ++i) {
+      while (hull.size() > 1 && !(outside(hull[hull.size() - 2], hull.back(), i) > 0))
+        hull.pop_back();
+      hull.push_back(i);
+    }
+    for (std::size_t k = 0; k + 1 < hull.size(); ++k)
+      for (std::size_t i = hull[k] + 1; i < hull[k + 1]; ++i)
+        if (!(outside(hull[k], i, hull[k + 1]) >= -mesh_.tolerance)) return false;
+    return true;
+  }
+
+  bool turns_one_way(const MeshFace& face) const {
+    const std::size_t n = face.corners.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3& a = point(face.corners[i]);
       const Vec3& b = point(face.corners[(i + 1) % n]);
@@ -306,12 +341,20 @@ MeshFaces mesh_faces(const std::vector<Vec3>& points, const std::vector<MeshTria
                      MeshFaults& faults) {
   faults = {};
   MeshFaces mesh;
-  double largest = 0;
-  for (const Vec3& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  mesh.tolerance = same * largest;
-  const std::vector<std::uint32_t> first = largest > 0
-                                               ? first_at_place(points, mesh.tolerance)
-                                               : std::vector<std::uint32_t>(points.size(), 0);
+  Aabb box;
+  for (const MeshTriangle& t : triangles)
+    for (const std::uint32_t corner : t) box.add(points[corner]);
+  double size = 0, largest = 0;
+  if (!triangles.empty()) {
+    size = 0.5 * box.size().maxCoeff();
+    largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
+  }
+  TW_REQUIRE(size >= least_length, "a mesh has no triangle with an area among its " +
+                                       std::to_string(triangles.size()) +
+                                       "; expected some that make a surface");
+  // what rounding makes of coordinates, too
+  mesh.tolerance = same * size + 8e-16 * largest;
+  const std::vector<std::uint32_t> first = first_at_place(points, triangles, mesh.tolerance);
   Triangles cleaned(points, mesh.tolerance, faults);
   for (const MeshTriangle& t : triangles) cleaned.add({first[t[0]], first[t[1]], first[t[2]]});
   TW_REQUIRE(!cleaned.all().empty(), "a mesh has no triangle with an area among its " +

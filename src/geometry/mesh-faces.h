@@ -1,8 +1,8 @@
 // The surface of a mesh as convex polygons: triangles side by side in one plane joined.
 //
-// Points within 1e-7 of the largest coordinate are the same point, what single precision makes of
-// one, and points so near a plane lie in it.  Triangles that are thinner, and those that lie on
-// others, are left out; those that face the other way than their neighbours are turned.
+// Points within 1e-7 of the size are the same point, what single precision makes of one, and points
+// so near a plane lie in it.  Triangles that are thinner, and those that lie on others, are left
+// out; those that face the other way than their neighbours are turned.
 //
 // Frames: the mesh's own, metres.
 //
@@ -30,7 +30,7 @@ struct MeshFaults {
 struct MeshFace {
   static constexpr std::int32_t none = -1;
 
-  std::vector<std::uint32_t> corners;  // counter-clockwise from outside; some may lie on sides
+  std::vector<std::uint32_t> corners;  // counter-clockwise from outside; some lie on straight sides
   std::vector<std::int32_t>
       neighbours;  // the face beyond the side that begins at a corner, or none
   Vec3 normal = Vec3::UnitZ();

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/error.h"
 #include "geometry/hull.h"
 
 namespace tw {
@@ -42,12 +43,6 @@ double area(const std::vector<Vec3>& polygon) {
   return 0.5 * twice.norm();
 }
 
-bool have_a_point_in_common(const MeshFace& a, const MeshFace& b) {
-  return std::any_of(a.corners.begin(), a.corners.end(), [&](std::uint32_t corner) {
-    return std::find(b.corners.begin(), b.corners.end(), corner) != b.corners.end();
-  });
-}
-
 Aabb bounds(const std::vector<Vec3>& points) {
   Aabb box;
   for (const Vec3& p : points) box.add(p);
@@ -61,6 +56,7 @@ MeshGround::MeshGround(MeshFaces faces)
       faces_(std::move(faces)),
       depths_(faces_.faces.size()),
       upright_(faces_.faces.size()) {
+  set_faces_at_points();
   const std::size_t count = faces_.faces.size();
   std::vector<double> areas;
   std::vector<Aabb> boxes;
@@ -70,16 +66,20 @@ MeshGround::MeshGround(MeshFaces faces)
   }
   const PartTree tops(boxes);
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
-  const double mean_width = std::sqrt(all / static_cast<double>(count));
+  std::vector<double> sorted = areas;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count / 2),
+                   sorted.end());
+  const double median_width = std::sqrt(sorted[count / 2]);
   std::vector<double> solid(count, unlimited);
   for (std::size_t i = 0; i < count; ++i) {
     const std::vector<Wall> sides = walls(i);
-    const double most = widths_deep * std::max(mean_width, std::sqrt(areas[i]));
+    const double most = widths_deep * std::max(median_width, std::sqrt(areas[i]));
     const double free = depth_until_walls_meet(i, sides, most);
     const double found = depth_until_a_surface(i, sides, 2 * free, tops);
     if (found < 2 * free) solid[i] = found;
     depths_[i] = std::min(free, 0.5 * found);
-    const double least = std::max(least_depth * std::sqrt(areas[i]), 4 * faces_.tolerance);
+    const double least =
+        std::max(std::min(least_depth * std::sqrt(areas[i]), 0.5 * found), 4 * faces_.tolerance);
     upright_[i] = depths_[i] < least;
     depths_[i] = std::max(depths_[i], least);
     boxes[i] = box(i);
@@ -97,6 +97,27 @@ MeshGround::MeshGround(MeshFaces faces)
     thinner += areas[i];
     if (thinner >= 0.01 * all) break;
   }
+}
+
+void MeshGround::set_faces_at_points() {
+  first_face_.assign(faces_.points.size() + 1, 0);
+  for (const MeshFace& face : faces_.faces)
+    for (const std::uint32_t corner : face.corners) ++first_face_[corner + 1];
+  std::partial_sum(first_face_.begin(), first_face_.end(), first_face_.begin());
+  faces_at_.resize(first_face_.back());
+  std::vector<std::uint32_t> next(first_face_.begin(), first_face_.end() - 1);
+  for (std::uint32_t i = 0; i < faces_.faces.size(); ++i)
+    for (const std::uint32_t corner : faces_.faces[i].corners) faces_at_[next[corner]++] = i;
+}
+
+std::vector<std::uint32_t> MeshGround::around(std::size_t number) const {
+  std::vector<std::uint32_t> all;
+  for (const std::uint32_t corner : faces_.faces[number].corners)
+    for (std::uint32_t k = first_face_[corner]; k < first_face_[corner + 1]; ++k)
+      if (faces_at_[k] != number) all.push_back(faces_at_[k]);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 bool MeshGround::is_open() const {
@@ -132,12 +153,58 @@ std::vector<MeshGround::Wall> MeshGround::walls(std::size_t number) const {
     if (face.neighbours[i] != MeshFace::none) {
       const Vec3& other = faces_.faces[static_cast<std::size_t>(face.neighbours[i])].normal;
       const double into = -other.dot(wall.inward), half = 1 + face.normal.dot(other);
-      wall.slope = into > 0 && into > most_inward * half ? most_inward
-                                                         : std::max(into / half, -most_outward);
+      // folded back it is a sheet
+      if (half > 0 && into <= most_inward * half)
+        wall.slope = std::max(into / half, -most_outward);
+      else
+        wall.slope = most_inward;
     }
     all.push_back(wall);
   }
+  add_walls_at_points(number, all);
   return all;
+}
+
+// Of a face with a corner in common that comes in between the walls, a plane through that corner
+// parts what is nearer to either: depths under both planes are the same there.  At a point q of the
+// polygon's plane, d beneath it, the depth under the other one is o - m.q + d (n.m); so with the
+// part t of -m along the polygon's plane t.q >= (n.m) (n.q) - o + d (1 - n.m).
+void MeshGround::add_walls_at_points(std::size_t number, std::vector<Wall>& walls) const {
+  const MeshFace& face = faces_.faces[number];
+  const std::size_t sides = walls.size();
+  const auto over = [&](const Wall& wall, const Vec3& p) {
+    return (wall.inward + wall.slope * face.normal).dot(p) -
+           (wall.offset + wall.slope * face.offset);
+  };
+  for (const std::uint32_t i : around(number)) {
+    const MeshFace& other = faces_.faces[i];
+    if (std::find(face.neighbours.begin(), face.neighbours.end(), static_cast<std::int32_t>(i)) !=
+        face.neighbours.end())
+      continue;
+    const auto none_over = [&](const auto& height) {
+      return std::all_of(other.corners.begin(), other.corners.end(), [&](std::uint32_t corner) {
+        return height(faces_.points[corner]) <= faces_.tolerance;
+      });
+    };
+    if (none_over([&](const Vec3& p) { return face.offset - face.normal.dot(p); })) continue;
+    bool apart = false;
+    for (std::size_t k = 0; k < sides && !apart; ++k)
+      apart = none_over([&](const Vec3& p) { return over(walls[k], p); });
+    const double along = face.normal.dot(other.normal);
+    const Vec3 tangent = along * face.normal - other.normal;
+    const double length = tangent.norm();
+    if (apart || !(length > 1e-6)) continue;
+    Wall wall;
+    wall.inward = tangent / length;
+    wall.offset = (along * face.offset - other.offset) / length;
+    wall.slope = std::min((1 - along) / length, most_inward);
+    // where the polygon itself is beyond the other plane that is no ridge
+    const std::vector<Vec3> corners = top(number);
+    if (std::all_of(corners.begin(), corners.end(), [&](const Vec3& p) {
+          return wall.inward.dot(p) >= wall.offset - faces_.tolerance;
+        }))
+      walls.push_back(wall);
+  }
 }
 
 std::vector<Vec3> MeshGround::section(std::size_t number, const std::vector<Wall>& walls,
@@ -175,9 +242,9 @@ double MeshGround::depth_until_a_surface(std::size_t number, const std::vector<W
   for (const Vec3& p : section(number, walls, most)) place.add(p);
   for (const Vec3& p : top(number)) place.add(p - most * face.normal);
   double least = most;
+  const std::vector<std::uint32_t> near = around(number);
   tops.overlapping(place, [&](std::uint32_t i) {
-    const MeshFace& other = faces_.faces[i];
-    if (i == number || have_a_point_in_common(face, other)) return;
+    if (i == number || std::binary_search(near.begin(), near.end(), i)) return;
     std::vector<Vec3> within = cut(top(i), -face.normal, faces_.tolerance - face.offset);
     for (const Wall& wall : walls) {
       // inward.x >= offset + depth slope, where depth = face.offset - n.x
@@ -192,9 +259,16 @@ double MeshGround::depth_until_a_surface(std::size_t number, const std::vector<W
 
 std::vector<Vec3> MeshGround::bottom(std::size_t number) const {
   std::vector<Wall> sides = walls(number);
-  if (upright_[number])
+  if (upright_[number]) {
+    // those of the polygon's own sides come first
+    sides.resize(std::min(sides.size(), faces_.faces[number].corners.size()));
     for (Wall& wall : sides) wall.slope = 0;
-  return section(number, sides, depths_[number]);
+  }
+  std::vector<Vec3> corners = section(number, sides, depths_[number]);
+  if (corners.size() >= 3) return corners;
+  corners = top(number);
+  for (Vec3& p : corners) p -= depths_[number] * normal(number);
+  return corners;
 }
 
 Aabb MeshGround::box(std::size_t number) const {
@@ -209,7 +283,14 @@ ConvexPart MeshGround::make_part(std::size_t number) const {
   // short coordinates
   const Vec3 middle = bounds(points).center();
   for (Vec3& p : points) p -= middle;
-  return part_about(middle, std::make_shared<const Polyhedron>(convex_hull(points)));
+  try {
+    return part_about(middle, std::make_shared<const Polyhedron>(convex_hull(points)));
+  } catch (const UserError&) {
+    // a few points that are one, to all purposes: a grain beneath them
+    const Vec3 beneath = top(number).front() - 2 * faces_.tolerance * normal(number);
+    return part_about(beneath, std::make_shared<const Polyhedron>(
+                                   Polyhedron::box(Vec3::Constant(faces_.tolerance))));
+  }
 }
 
 }  // namespace tw

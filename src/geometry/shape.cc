@@ -246,6 +246,7 @@ const std::vector<ConvexPart>& Shape::parts() const {
 }
 
 std::size_t Shape::lazy_count() const { return lazy_->part_count(); }
+bool Shape::lazy_has(std::size_t i) const { return lazy_->exists(i); }
 const ConvexPart& Shape::lazy_part(std::size_t i) const { return lazy_->part(i); }
 
 const HeightField* Shape::height_field() const {
@@ -392,16 +393,19 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
 
 ShapePtr make_mesh(const std::vector<Vec3>& points, const std::vector<MeshTriangle>& triangles,
                    MeshFaults* faults) {
-  for (const Vec3& p : points)
-    TW_REQUIRE(is_finite(p) && p.cwiseAbs().maxCoeff() <= greatest_length,
-               "a point of a mesh is " + show(p) + "; expected coordinates of at most " +
-                   tw::show(greatest_length) + " m");
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (const std::uint32_t corner : triangles[i])
       TW_REQUIRE(corner < points.size(), "triangle " + std::to_string(i) +
                                              " of a mesh has the corner " + std::to_string(corner) +
                                              "; expected a number below " +
                                              std::to_string(points.size()) + ", that of a point");
+  for (const MeshTriangle& triangle : triangles)
+    for (const std::uint32_t corner : triangle) {
+      const Vec3& p = points[corner];
+      TW_REQUIRE(is_finite(p) && p.cwiseAbs().maxCoeff() <= greatest_length,
+                 "a point of a mesh is " + show(p) + "; expected coordinates of at most " +
+                     tw::show(greatest_length) + " m");
+    }
   MeshFaults found;
   auto mesh = std::make_shared<const MeshGround>(mesh_faces(points, triangles, found));
   if (faults) *faults = found;

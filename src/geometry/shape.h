@@ -78,6 +78,8 @@ class Shape {
   // Of any shape.  A number may be that of no part: of lazy ones those that the tree does not name.
   std::size_t part_count() const { return lazy_ ? lazy_count() : parts_.size(); }
   const ConvexPart& part(std::size_t i) const { return lazy_ ? lazy_part(i) : parts_[i]; }
+  // Whether the number is that of a part.
+  bool has_part(std::size_t i) const { return !lazy_ || lazy_has(i); }
   // Over the parts, in the shape's frame; null: they are few.
   const PartTree* tree() const { return tree_.get(); }
   // Whether its parts are made when they are asked for.
@@ -95,7 +97,8 @@ class Shape {
   // least of its sides, of a mesh the middle one of its three, infinite if unbounded.
   double least_width() const { return least_width_; }
   // Least width of the boxes of its parts, each along the axes of its own frame, m: a wall's
-  // thickness, however large the room is.
+  // thickness, however large the room is.  Of a mesh what is solid beneath nearly all of it, of a
+  // height field the least of its sides.
   double thickness() const { return thickness_; }
   // The smallest ball around the frame's origin that holds the shape (bound by the parts' farthest
   // points, exact but for ellipsoids about another centre), m.
@@ -120,6 +123,7 @@ class Shape {
   friend ShapePtr finish_ground(std::shared_ptr<const LazyParts> parts, std::string kind_name,
                                 double least_width, double thickness);
   std::size_t lazy_count() const;
+  bool lazy_has(std::size_t i) const;
   const ConvexPart& lazy_part(std::size_t i) const;
 
   std::vector<ConvexPart> parts_;

@@ -1,4 +1,4 @@
-// Solids from mesh files.
+// Solids and ground from mesh files.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "import/solid-file.h"
 
@@ -15,6 +15,8 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
+#include <span>
 #include <sstream>
 
 #include "base/error.h"
@@ -218,34 +220,58 @@ void mend_triangles(const std::string& where, const MeshFaults& faults, Mending&
 
 void GroundReader::add(const std::string& file, const SolidOptions& options, const Pose& pose) {
   const Mesh mesh = read_mesh(file, options);
-  Object all;
-  for (const Object& object : mesh.objects)
-    all.triangles.insert(all.triangles.end(), object.triangles.begin(), object.triangles.end());
   const auto first = static_cast<std::uint32_t>(points_.size());
   for (const Vec3& p : mesh.points) points_.push_back(pose.q * p + pose.p);
   // a scale of odd sign turns all of them inside out
   const bool mirrored = options.scale.prod() < 0;
-  for (const auto& [a, b, c] : all.triangles)
-    triangles_.push_back({first + static_cast<std::uint32_t>(a),
-                          first + static_cast<std::uint32_t>(mirrored ? c : b),
-                          first + static_cast<std::uint32_t>(mirrored ? b : c)});
-  if (file_.empty()) file_ = file;
-  if (!convex_) return;
+  for (const Object& object : mesh.objects)
+    for (const auto& [a, b, c] : object.triangles)
+      triangles_.push_back({first + static_cast<std::uint32_t>(a),
+                            first + static_cast<std::uint32_t>(mirrored ? c : b),
+                            first + static_cast<std::uint32_t>(mirrored ? b : c)});
+  files_.push_back({file, triangles_.size()});
+}
+
+// A closed surface without dents has the volume of its hull; one that is open has less, seen from
+// the hull's middle.
+static bool is_its_hull(const std::vector<Vec3>& points, std::span<const MeshTriangle> triangles) {
+  std::vector<Vec3> corners;
+  for (const MeshTriangle& t : triangles)
+    for (const std::uint32_t corner : t) corners.push_back(points[corner]);
   try {
-    convex_ = deepest_dent(all, mesh.points, *hull_of(all, mesh.points)) <= flat;
+    const ShapePtr hull = make_hull(corners);
+    const MassProperties& mass = hull->mass_properties();
+    double volume = 0;
+    for (const MeshTriangle& t : triangles) {
+      const Vec3 a = points[t[0]] - mass.centroid, b = points[t[1]] - mass.centroid,
+                 c = points[t[2]] - mass.centroid;
+      volume += a.dot(b.cross(c)) / 6;
+    }
+    return std::abs(std::abs(volume) - mass.volume) <= flat * mass.volume;
   } catch (const UserError&) {
-    convex_ = false;
+    return false;
   }
 }
 
+bool GroundReader::is_convex() const {
+  std::size_t first = 0;
+  for (const File& file : files_) {
+    if (!is_its_hull(points_, std::span(triangles_).subspan(first, file.end - first))) return false;
+    first = file.end;
+  }
+  return true;
+}
+
 ShapePtr GroundReader::shape() {
+  const std::string what =
+      "the mesh " + files_.front().name + (files_.size() > 1 ? " and others: " : ": ");
   MeshFaults faults;
   try {
     ShapePtr shape = make_mesh(points_, triangles_, &faults);
-    mend_triangles("the mesh " + file_ + ": ", faults, mending_);
+    mend_triangles(what, faults, mending_);
     return shape;
   } catch (const UserError& error) {
-    throw UserError("the mesh " + file_ + ": " + error.what());
+    throw UserError(what + error.what());
   }
 }
 
@@ -309,13 +335,18 @@ std::vector<Object> parts_of(Mesh& mesh, std::vector<std::size_t>& objects) {
 
 // The names of a file, those that come again or are missing with numbers.
 std::vector<std::string> names_of(const std::vector<Object>& objects) {
+  std::set<std::string> taken;
+  for (const Object& object : objects) taken.insert(object.name);
   std::map<std::string, int> times;
   std::vector<std::string> names;
   for (const Object& object : objects) {
-    const std::string name = object.name.empty() ? "object" : object.name;
-    const int before = times[name]++;
-    names.push_back(before == 0 && !object.name.empty() ? name
-                                                        : name + "-" + std::to_string(before + 1));
+    std::string name = object.name.empty() ? "object" : object.name;
+    int& time = times[name];
+    if (++time > 1 || object.name.empty()) {
+      const std::string stem = name + "-";
+      while (!taken.insert(name = stem + std::to_string(time)).second) ++time;
+    }
+    names.push_back(name);
   }
   return names;
 }

@@ -47,17 +47,21 @@ class GroundReader {
 
   // Of the options `hulls` says nothing.  `pose`: of the file's frame in the shape's.
   void add(const std::string& file, const SolidOptions& options, const Pose& pose = {});
-  // Whether each of the files is as its hull.
-  bool is_convex() const { return convex_; }
+  // Whether each of the files is closed and as its hull, to 1e-4 of the volume.
+  bool is_convex() const;
   // What is wrong with triangles is mended.
   ShapePtr shape();
 
  private:
+  struct File {
+    std::string name;
+    std::size_t end;  // of its triangles
+  };
+
   Mending& mending_;
-  std::string file_;  // the first
+  std::vector<File> files_;
   std::vector<Vec3> points_;
   std::vector<MeshTriangle> triangles_;
-  bool convex_ = true;
 };
 
 // Tells what was wrong with triangles; `where` begins each sentence.

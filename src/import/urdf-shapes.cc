@@ -110,7 +110,8 @@ BodyLooks Shapes::finish(BodyPieces pieces, bool scenery) {
   if (looks.shape) {
     for (const BodyPieces::Touching& touching : pieces.touching)
       if (touching.seen && !visual.empty())
-        visual.push_back(seen_part(*touching.piece, touching.pose));
+        visual.push_back(
+            at_its_line(touching, [&] { return seen_part(*touching.piece, touching.pose); }));
   } else {
     std::vector<ShapePtr> shapes;
     for (const BodyPieces::Touching& touching : pieces.touching) {

@@ -166,7 +166,7 @@ TW_PRIMITIVE(triangle_mesh, "%triangle-mesh", (SCM points, SCM triangles, SCM st
     if (corners.size() != 3) throw BadValue{"a triangle", one, expected};
     MeshTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!scm_is_unsigned_integer(corners[k], 0, places.size() - 1))
+      if (places.empty() || !scm_is_unsigned_integer(corners[k], 0, places.size() - 1))
         throw BadValue{"a triangle", one, expected};
       triangle[k] = scm_to_uint32(corners[k]);
     }

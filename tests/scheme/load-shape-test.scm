@@ -64,6 +64,11 @@
   (map car (load-shape (apply write-file "twice.obj" (append (box-lines "a" 1 '(0 0 0) '(1 1 1))
                                                              (box-lines "a" 9 '(2 0 0) '(3 1 2))))
                        #:objects? #t)))
+(test-equal "which no other object has" '("a" "a-3" "a-2")
+  (map car (load-shape (apply write-file "thrice.obj" (append (box-lines "a" 1 '(0 0 0) '(1 1 1))
+                                                              (box-lines "a" 9 '(2 0 0) '(3 1 2))
+                                                              (box-lines "a-2" 17 '(5 0 0) '(6 1 2))))
+                       #:objects? #t)))
 (test-message "an object that isn't convex is named" "the object bracket isn't convex"
   (load-shape ell #:objects? #t))
 (test-message "ground is one body" "ground is one body" (load-shape ell #:objects? #t #:concave? #t))

@@ -238,6 +238,11 @@
 (test-assert "concave meshes are scenery as they are"
   (let ((ell (mesh-text "ell.obj" "1 1 1" "0 0 1")))
     (and (close? (ends-at 0.5 0.5 ell) 2.1 1e-3) (< (ends-at 1.5 1.5 ell) -5))))
+;; seen from inside, without a lid
+(write-file "tray.obj" "v 0 0 0" "v 2 0 0" "v 2 2 0" "v 0 2 0" "v 0 0 1" "v 2 0 1" "v 2 2 1" "v 0 2 1"
+            "f 1 2 3 4" "f 1 5 6 2" "f 2 6 7 3" "f 3 7 8 4" "f 4 8 5 1")
+(test-assert "a tray is no block"
+  (close? (ends-at 1 1 (mesh-text "tray.obj" "1 1 1" "0 0 0")) 0.1 1e-3))
 (test-assert "flat ones, too, and several are one"
   (let ((pieces (list (mesh-text "sheet.obj" "1 1 1" "0 0 0") (mesh-text "ell.obj" "1 1 1" "0 0 0"))))
     (and (close? (apply ends-at 1.5 1.5 pieces) 0.1 1e-3)

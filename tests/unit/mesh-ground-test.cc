@@ -222,6 +222,99 @@ TEST(MeshGround, a_thin_wall_does_not_come_out_behind) {
   }
 }
 
+TEST(MeshGround, a_plate_is_as_thick_as_it_is_however_wide) {
+  for (const double wide : {1.0, 10.0, 1000.0, 20000.0}) {
+    Surface s = cube(1);
+    for (Vec3& p : s.points) p = Vec3(wide * (p.x() - 0.5), wide * (p.y() - 0.5), 0.1 * p.z());
+    const ShapePtr shape = make_mesh(s.points, s.triangles);
+    for (const double z : {0.11, 0.15, 0.4, -0.01, -0.3})
+      EXPECT_NEAR(distance_to_point(*shape, Vec3(0.011, 0.007, z)), std::max(z - 0.1, -z), 1e-6);
+    EXPECT_LT(distance_to_point(*shape, Vec3(0.011, 0.007, 0.09)), 0);
+  }
+}
+
+TEST(MeshGround, a_finely_divided_bend_has_no_ground_beside_it) {
+  Surface s;
+  const std::uint32_t steps = 900;
+  for (std::uint32_t i = 0; i <= steps; ++i)
+    for (const double r : {100.0, 104.0}) {
+      const double a = 1e-3 * i;
+      s.points.emplace_back(1000 + r * std::cos(a), r * std::sin(a), 0);
+    }
+  for (std::uint32_t i = 0; i < steps; ++i) s.add_cell(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2);
+  const ShapePtr shape = make_mesh(s.points, s.triangles);
+  for (const double a : {0.1, 0.3, 0.5, 0.7}) {
+    const auto at = [&](double r) { return Vec3(1000 + r * std::cos(a), r * std::sin(a), 0.5); };
+    EXPECT_NEAR(distance_to_point(*shape, at(102)), 0.5, 1e-6);
+    EXPECT_NEAR(distance_to_point(*shape, at(99.5)), std::hypot(0.5, 0.5), 1e-4);
+  }
+}
+
+// Top and underside have one corner in common and no side; and a ridge that is divided on one side.
+TEST(MeshGround, faces_that_share_a_corner_part_what_is_between_them) {
+  const Surface plate{{{0, 0, 0}, {1, -0.4, 0}, {1, 0.4, 0}, {1, -0.4, -0.05}, {1, 0.4, -0.05}},
+                      {{0, 1, 2}, {0, 4, 3}, {1, 3, 4}, {1, 4, 2}, {0, 3, 1}, {0, 2, 4}}};
+  const Surface wedge{
+      {{0, 0, 1}, {1, 0, 1}, {0.5, 0, 1}, {0, -0.15, 0}, {1, -0.15, 0}, {0, 0.15, 0}, {1, 0.15, 0}},
+      {{0, 3, 4},
+       {0, 4, 1},
+       {0, 2, 5},
+       {2, 1, 6},
+       {2, 6, 5},
+       {0, 5, 3},
+       {1, 4, 6},
+       {3, 5, 6},
+       {3, 6, 4}}};
+  Engine random(7);
+  for (const Surface& s : {plate, wedge}) {
+    const ShapePtr shape = make_mesh(s.points, s.triangles);
+    Aabb box;
+    for (const Vec3& p : s.points) box.add(p);
+    box.grow(0.1);
+    for (int i = 0; i < 1000; ++i) {
+      Vec3 x;
+      for (int k = 0; k < 3; ++k) x[k] = uniform(random, box.lo[k], box.hi[k]);
+      double above = -1e9;  // both are convex
+      for (const auto& [a, b, c] : s.triangles) {
+        const Vec3 normal =
+            (s.points[b] - s.points[a]).cross(s.points[c] - s.points[a]).normalized();
+        above = std::max(above, normal.dot(x - s.points[a]));
+      }
+      if (above > 1e-6) {
+        EXPECT_NEAR(distance_to_point(*shape, x), distance_to_surface(x, s), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(MeshGround, far_from_the_origin_and_beside_unused_points_it_is_the_same) {
+  Engine random(8);
+  const Surface s = sheet(random, 6, 0.3);
+  const ShapePtr near = make_mesh(s.points, s.triangles);
+  Surface far = s;
+  for (Vec3& p : far.points) p += Vec3(1 << 20, 0, 0);
+  const ShapePtr moved = make_mesh(far.points, far.triangles);
+  far = s;
+  far.points.emplace_back(1e12, 0, 0);
+  const ShapePtr beside = make_mesh(far.points, far.triangles);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 x(uniform(random, -2, 2), uniform(random, -2, 2), uniform(random, 0.3, 1));
+    EXPECT_NEAR(distance_to_point(*moved, x + Vec3(1 << 20, 0, 0)), distance_to_point(*near, x),
+                1e-6);
+    EXPECT_EQ(distance_to_point(*beside, x), distance_to_point(*near, x));
+  }
+}
+
+TEST(MeshGround, beside_a_height_field_distances_are_those_of_their_parts) {
+  const Surface s = cube(1);
+  const ShapePtr mesh = make_mesh(s.points, s.triangles);
+  const ShapePtr field = make_height_field({0, 0, 0, 0, 0, 0, 0, 0, 0}, 3, 1, 1);
+  const Frame above(Mat3::Identity(), Vec3(0, 0, 2));
+  EXPECT_NEAR(signed_distance(*mesh, above, *field, Frame()), 2, 1e-9);
+  EXPECT_NEAR(signed_distance(*field, Frame(), *mesh, above), 2, 1e-9);
+  EXPECT_NEAR(signed_distance(*field, Frame(), *field, above), 1, 1e-9);
+}
+
 TEST(MeshGround, any_triangles_make_parts) {
   Engine random(6);
   for (int round = 0; round < 60; ++round) {
