@@ -103,6 +103,7 @@
                  (set! fault (format #f "is refused (~a), and has changed poses or hash"
                                      message)))))))
     (setitimer ITIMER_REAL 0 0 0 0)
+    (keep-observed!)
     (let ((taken (/ (- (get-internal-real-time) start) 1.0 internal-time-units-per-second)))
       (when (> taken 0.3) (say "slow " (format #f "~,2f s" taken))))
     (or fault
