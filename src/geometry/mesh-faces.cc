@@ -105,7 +105,6 @@ class Triangles {
   struct Owner {
     std::uint32_t triangle;
     std::uint8_t side;
-    bool forward;
   };
 
   void find_neighbours() {
@@ -114,7 +113,7 @@ class Triangles {
     for (std::uint32_t i = 0; i < all_.size(); ++i)
       for (std::uint8_t k = 0; k < 3; ++k) {
         const std::uint32_t a = all_[i][k], b = all_[i][(k + 1u) % 3u];
-        sides_[std::minmax(a, b)].push_back({i, k, a < b});
+        sides_[std::minmax(a, b)].push_back({i, k});
       }
     for (const auto& [ends, owners] : sides_) {
       if (owners.size() != 2) continue;
@@ -344,22 +343,17 @@ MeshFaces mesh_faces(const std::vector<Vec3>& points, const std::vector<MeshTria
   Aabb box;
   for (const MeshTriangle& t : triangles)
     for (const std::uint32_t corner : t) box.add(points[corner]);
-  double size = 0, largest = 0;
-  if (!triangles.empty()) {
-    size = 0.5 * box.size().maxCoeff();
-    largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
-  }
-  TW_REQUIRE(size >= least_length, "a mesh has no triangle with an area among its " +
-                                       std::to_string(triangles.size()) +
-                                       "; expected some that make a surface");
+  const std::string none = "a mesh has no triangle with an area among its " +
+                           std::to_string(triangles.size()) + "; expected some that make a surface";
+  const double size = triangles.empty() ? 0 : 0.5 * box.size().maxCoeff();
+  TW_REQUIRE(size >= least_length, none);
   // what rounding makes of coordinates, too
+  const double largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
   mesh.tolerance = same * size + 8e-16 * largest;
   const std::vector<std::uint32_t> first = first_at_place(points, triangles, mesh.tolerance);
   Triangles cleaned(points, mesh.tolerance, faults);
   for (const MeshTriangle& t : triangles) cleaned.add({first[t[0]], first[t[1]], first[t[2]]});
-  TW_REQUIRE(!cleaned.all().empty(), "a mesh has no triangle with an area among its " +
-                                         std::to_string(triangles.size()) +
-                                         "; expected some that make a surface");
+  TW_REQUIRE(!cleaned.all().empty(), none);
   cleaned.face_one_way();
   cleaned.count_sides();
 

@@ -82,7 +82,7 @@ MeshGround::MeshGround(MeshFaces faces)
         std::max(std::min(least_depth * std::sqrt(areas[i]), 0.5 * found), 4 * faces_.tolerance);
     upright_[i] = depths_[i] < least;
     depths_[i] = std::max(depths_[i], least);
-    boxes[i] = box(i);
+    for (const Vec3& p : bottom(i, sides)) boxes[i].add(p);
   }
   set_boxes(boxes);
 
@@ -257,29 +257,22 @@ double MeshGround::depth_until_a_surface(std::size_t number, const std::vector<W
   return least;
 }
 
-std::vector<Vec3> MeshGround::bottom(std::size_t number) const {
-  std::vector<Wall> sides = walls(number);
+std::vector<Vec3> MeshGround::bottom(std::size_t number, std::vector<Wall> walls) const {
   if (upright_[number]) {
     // those of the polygon's own sides come first
-    sides.resize(std::min(sides.size(), faces_.faces[number].corners.size()));
-    for (Wall& wall : sides) wall.slope = 0;
+    walls.resize(std::min(walls.size(), faces_.faces[number].corners.size()));
+    for (Wall& wall : walls) wall.slope = 0;
   }
-  std::vector<Vec3> corners = section(number, sides, depths_[number]);
+  std::vector<Vec3> corners = section(number, walls, depths_[number]);
   if (corners.size() >= 3) return corners;
   corners = top(number);
   for (Vec3& p : corners) p -= depths_[number] * normal(number);
   return corners;
 }
 
-Aabb MeshGround::box(std::size_t number) const {
-  Aabb box = bounds(top(number));
-  for (const Vec3& p : bottom(number)) box.add(p);
-  return box;
-}
-
 ConvexPart MeshGround::make_part(std::size_t number) const {
   std::vector<Vec3> points = top(number);
-  for (const Vec3& p : bottom(number)) points.push_back(p);
+  for (const Vec3& p : bottom(number, walls(number))) points.push_back(p);
   // short coordinates
   const Vec3 middle = bounds(points).center();
   for (Vec3& p : points) p -= middle;

@@ -57,8 +57,7 @@ class MeshGround final : public LazyParts {
                                 double most) const;
   double depth_until_a_surface(std::size_t number, const std::vector<Wall>& walls, double most,
                                const PartTree& tops) const;
-  std::vector<Vec3> bottom(std::size_t number) const;
-  Aabb box(std::size_t number) const;
+  std::vector<Vec3> bottom(std::size_t number, std::vector<Wall> walls) const;
   ConvexPart make_part(std::size_t number) const override;
 
   MeshFaces faces_;

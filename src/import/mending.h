@@ -42,4 +42,24 @@ class Mending {
   std::vector<std::string> notes_;
 };
 
+// The same at lines of one file.
+class LineMending {
+ public:
+  LineMending(const std::string& file, Mending& mending) : file_(file), mending_(mending) {}
+
+  // "FILE:LINE: "
+  std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw UserError(at(line) + what);
+  }
+  void mend(int line, const std::string& wrong, const std::string& done,
+            const std::string& expected) {
+    mending_.mend(at(line), wrong, done, expected);
+  }
+
+ protected:
+  const std::string& file_;
+  Mending& mending_;
+};
+
 }  // namespace tw

@@ -36,16 +36,15 @@ bool is_among(const char* const (&names)[count], const std::string& name) {
 
 std::string tag(const Element& e) { return "<" + std::string(e.Name()) + ">"; }
 
-class FileReader {
+class FileReader : LineMending {
  public:
-  FileReader(const std::string& file, Mending& mending) : file_(file), mending_(mending) {}
+  FileReader(const std::string& file, Mending& mending) : LineMending(file, mending) {}
 
   Robot read();
 
  private:
-  std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
   [[noreturn]] void fail(const Element& e, const std::string& what) const {
-    throw UserError(at(e.GetLineNum()) + what);
+    LineMending::fail(e.GetLineNum(), what);
   }
 
   // ---- values ----
@@ -78,8 +77,6 @@ class FileReader {
   JointType type_of(const Element& e) const;
   Joint joint_of(const Element& e) const;
 
-  const std::string& file_;
-  Mending& mending_;
   std::map<std::string, Vec3> colors_;  // of the robot's materials
 };
 

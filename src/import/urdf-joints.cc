@@ -18,10 +18,10 @@ using multibody::JointSpec;
 
 namespace {
 
-class Joints {
+class Joints : LineMending {
  public:
   Joints(const std::string& file, const Robot& model, Mending& mending)
-      : file_(file), model_(model), mending_(mending) {}
+      : LineMending(file, mending), model_(model) {}
 
   std::vector<JointSpec> specs() {
     for (const Joint& joint : model_.joints) specs_.push_back(spec_of(joint));
@@ -36,18 +36,8 @@ class Joints {
   void set_followers();
 
   const Joint& joint(std::size_t i) const { return model_.joints[i]; }
-  std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
-  [[noreturn]] void fail(int line, const std::string& what) const {
-    throw UserError(at(line) + what);
-  }
-  void mend(int line, const std::string& wrong, const std::string& done,
-            const std::string& expected) {
-    mending_.mend(at(line), wrong, done, expected);
-  }
 
-  const std::string& file_;
   const Robot& model_;
-  Mending& mending_;
   std::vector<JointSpec> specs_;             // of each joint
   std::map<std::size_t, double> locked_at_;  // joints whose limits are equal
 };

@@ -46,10 +46,11 @@ auto Shapes::at_its_line(const BodyPieces::Touching& touching, const Make& make)
     const std::string of = " of the link " + touching.link->name + ": ";
     if (mesh && mesh_path(geometry) == geometry.file &&
         geometry.file.find("://") != std::string::npos)
-      throw UserError(at(geometry.line) + "<mesh>" + of + "the mesh " + geometry.file +
-                      " is missing; expected the package in a folder above the file, or in one of "
-                      "#:package-path");
-    throw UserError(at(geometry.line) + (mesh ? "<mesh>" : "a shape") + of + error.what());
+      fail(geometry.line,
+           "<mesh>" + of + "the mesh " + geometry.file +
+               " is missing; expected the package in a folder above the file, or in one of "
+               "#:package-path");
+    fail(geometry.line, (mesh ? "<mesh>" : "a shape") + of + error.what());
   }
 }
 

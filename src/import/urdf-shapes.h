@@ -35,11 +35,11 @@ struct BodyLooks {
   VisualPtr visual;  // null: nothing is seen but the shape
 };
 
-class Shapes {
+class Shapes : LineMending {
  public:
   // Meshes are looked for from `file` on and in `packages` (import/find-mesh.h).
   Shapes(const std::string& file, const std::vector<std::string>& packages, Mending& mending)
-      : file_(file), packages_(packages), mending_(mending) {}
+      : LineMending(file, mending), packages_(packages) {}
 
   // The pieces of a link that has its frame at `part` in the body.  A <visual> that cannot be drawn
   // is mended.
@@ -49,7 +49,6 @@ class Shapes {
   BodyLooks finish(BodyPieces pieces, bool scenery);
 
  private:
-  std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
   std::string mesh_path(const Geometry& geometry) const;
   ShapePtr shape_of(const Geometry& geometry);
   template <class Make>
@@ -57,9 +56,7 @@ class Shapes {
   ShapePtr ground_of(const std::vector<BodyPieces::Touching>& all);
   VisualPart seen_part(const Piece& visual, const Pose& pose);
 
-  const std::string& file_;
   const std::vector<std::string>& packages_;
-  Mending& mending_;
   std::map<std::string, std::vector<Vec3>> points_;  // of mesh files
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const SurfaceMesh>>
       surfaces_;  // by file and scale

@@ -32,26 +32,15 @@ Mat3 inertia_of_ball(double mass) {
   return 0.4 * mass * radius * radius * Mat3::Identity();
 }
 
-class Builder {
+class Builder : LineMending {
  public:
   Builder(const std::string& file, const UrdfOptions& options, Mending& mending)
-      : file_(file), options_(options), mending_(mending), model_(urdf::read_file(file, mending)) {}
+      : LineMending(file, mending), options_(options), model_(urdf::read_file(file, mending)) {}
 
   UrdfRobot build();
 
  private:
   static constexpr std::size_t base = static_cast<std::size_t>(-1), none = base - 1;
-
-  // ---- places ----
-
-  std::string at(int line) const { return file_ + ":" + std::to_string(line) + ": "; }
-  [[noreturn]] void fail(int line, const std::string& what) const {
-    throw UserError(at(line) + what);
-  }
-  void mend(int line, const std::string& wrong, const std::string& done,
-            const std::string& expected) {
-    mending_.mend(at(line), wrong, done, expected);
-  }
 
   // ---- the tree ----
 
@@ -76,9 +65,7 @@ class Builder {
   void set_mass(const urdf::Link& link, LinkDef& def);
   void finish(std::size_t number);
 
-  const std::string& file_;
   const UrdfOptions& options_;
-  Mending& mending_;
   urdf::Robot model_;
   std::map<std::string, std::size_t> links_;        // by name
   std::vector<std::size_t> joint_of_;               // that moves a link; none: of the root
