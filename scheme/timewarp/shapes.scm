@@ -198,21 +198,26 @@ warning.
     (tell-mended (cdr made))
     (car made)))
 
-(define-keyword-procedure (load-visual file #:key scale up color position orientation)
-  "Return what is seen of the mesh FILE, for #:visual of add-body! and link: OBJ with the colours of its
-mtl, STL, Collada, or what else of meshes Assimp reads.  It touches nothing, and need not be convex or
-closed.  FILE is looked for as by load-shape.  Textures are left out.
+(define-keyword-procedure (load-visual file #:key scale up color position orientation strict?)
+  "Return what is seen of the mesh FILE, for #:visual of add-body! and link: OBJ with the colours and
+textures of its mtl, STL, Collada, or what else of meshes Assimp reads.  It touches nothing, and need not
+be convex or closed.  FILE is looked for as by load-shape.
+
+A texture, PNG, JPEG, TGA or BMP, is looked for where the mesh says, beside the mesh, and in
+materials/textures/ beside its folder; one that is missing or cannot be read is left out, with a warning.
 
 #:scale        metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:up           'y: the file's y is up, and becomes z here, its z becomes -y; 'z
-#:color        #(r g b), sRGB, 0 to 1, of all of it; those of its materials, or the body's
+#:color        #(r g b), sRGB, 0 to 1, of all of it, times a texture; those of its materials, or the body's
 #:position     m, in the body's frame; #(0 0 0)
-#:orientation  there, a quaternion #(w x y z); #(1 0 0 0)"
+#:orientation  there, a quaternion #(w x y z); #(1 0 0 0)
+#:strict?      #t: what is wrong with a texture is an error; #f"
   (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
   (let* ((found (beside-caller file (caller-place)))
-         (visual (%load-visual found (or scale 1) (eq? up 'y) color position orientation)))
+         (made (%load-visual found (or scale 1) (eq? up 'y) color position orientation strict?)))
     (note-file-read found)
-    visual))
+    (tell-mended (cdr made))
+    (car made)))
 
 ;; ---- rocks ----
 

@@ -26,11 +26,17 @@ class Mending {
   // The same of what an error says, "WRONG; expected EXPECTED", after `before`.
   void mend(const std::string& where, const std::string& before, const UserError& error,
             const std::string& done) {
+    const auto [wrong, expected] = halves(error);
+    mend(where, before + wrong, done, expected);
+  }
+
+  // WRONG and EXPECTED of that.
+  static std::pair<std::string, std::string> halves(const UserError& error) {
     const std::string text = error.what();
     const std::size_t split = text.rfind(between);
     const bool whole = split == std::string::npos;
-    mend(where, before + text.substr(0, split), done,
-         whole ? "what can be read" : text.substr(split + std::string(between).size()));
+    return {text.substr(0, split),
+            whole ? "what can be read" : text.substr(split + std::string(between).size())};
   }
 
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }

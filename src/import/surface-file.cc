@@ -11,12 +11,17 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "import/assimp-file.h"
 #include "import/bytes.h"
+#include "import/texture-file.h"
 
 namespace tw {
 
@@ -31,24 +36,81 @@ bool is_stl(const std::string& file) {
   return suffix == ".stl";
 }
 
-// The colour of a mesh, where it has one.
+// The colour of a material, where the file says one.
 std::optional<Vec3> color_of(const aiMaterial& material) {
   aiColor4D color;
   aiString name;
   material.Get(AI_MATKEY_NAME, name);
   // Assimp's own, where the file has none
   if (name == aiString(AI_DEFAULT_MATERIAL_NAME)) return std::nullopt;
-  if (material.GetTextureCount(aiTextureType_DIFFUSE) > 0) return Vec3(Vec3::Ones());
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return std::nullopt;
   return Vec3(color.r, color.g, color.b).cwiseMax(0).cwiseMin(1);
 }
 
-void add_mesh(const aiMesh& mesh, const aiMaterial& material, const Mat3& place,
-              SurfaceMesh& surface) {
+// The surface of a scene, gathered from its meshes.
+class Gathering {
+ public:
+  Gathering(const std::string& file, const aiScene& scene, const Mat3& place)
+      : file_(file), scene_(scene), place_(place) {}
+
+  void add(const aiMesh& mesh);
+
+  SurfaceMesh surface;
+  // of textures: what is wrong, and what is expected
+  std::vector<std::pair<std::string, std::string>> faults;
+
+ private:
+  // Its number and that of the coordinates in it; -1: none.
+  std::pair<std::int32_t, unsigned> texture_of(const aiMaterial& material);
+  std::int32_t load_texture(const std::string& name);
+
+  const std::string& file_;
+  const aiScene& scene_;
+  const Mat3& place_;
+  std::map<std::string, std::int32_t> textures_;
+};
+
+std::int32_t Gathering::load_texture(const std::string& name) {
+  const std::string what = "the texture " + name;
+  try {
+    if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str())) {
+      TW_REQUIRE(inside->mHeight == 0,
+                 what + " lies in the mesh as bare pixels; expected a picture");
+      surface.textures.push_back(decode_texture(
+          {reinterpret_cast<const std::uint8_t*>(inside->pcData), inside->mWidth}, what));
+    } else {
+      const std::optional<std::string> found = find_texture(file_, name);
+      TW_REQUIRE(found, what + " is missing; expected it where the mesh says, beside it, or in " +
+                            "materials/textures/ beside its folder");
+      surface.textures.push_back(read_texture(*found));
+    }
+  } catch (const UserError& error) {
+    faults.push_back(Mending::halves(error));
+    return -1;
+  }
+  return static_cast<std::int32_t>(surface.textures.size()) - 1;
+}
+
+std::pair<std::int32_t, unsigned> Gathering::texture_of(const aiMaterial& material) {
+  aiString name;
+  unsigned coordinates = 0;
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name, nullptr, &coordinates) !=
+      aiReturn_SUCCESS)
+    return {-1, 0};
+  const auto [found, fresh] = textures_.emplace(name.C_Str(), -1);
+  if (fresh) found->second = load_texture(name.C_Str());
+  return {found->second, coordinates};
+}
+
+void Gathering::add(const aiMesh& mesh) {
   if (!mesh.HasFaces() || !mesh.HasNormals()) return;
-  const bool mirrored = place.determinant() < 0;
-  const Mat3 turn = place.inverse().transpose();  // of normals, but for their length
-  const std::optional<Vec3> color = color_of(material);
+  const aiMaterial& material = *scene_.mMaterials[mesh.mMaterialIndex];
+  auto [texture, coordinates] = texture_of(material);
+  if (!mesh.HasTextureCoords(coordinates)) texture = -1;
+  const bool mirrored = place_.determinant() < 0;
+  const Mat3 turn = place_.inverse().transpose();  // of normals, but for their length
+  const std::optional<Vec3> color =
+      texture >= 0 ? std::optional<Vec3>(Vec3::Ones()) : color_of(material);
   surface.colored = surface.colored || color || mesh.HasVertexColors(0);
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -56,7 +118,7 @@ void add_mesh(const aiMesh& mesh, const aiMaterial& material, const Mat3& place,
     const Vec3 normal = turn * Vec3(n.x, n.y, n.z);
     const double length = normal.norm();
     SurfaceMesh::Vertex vertex;
-    vertex.position = (place * Vec3(p.x, p.y, p.z)).cast<float>();
+    vertex.position = (place_ * Vec3(p.x, p.y, p.z)).cast<float>();
     vertex.normal =
         (length > 0 && std::isfinite(length) ? Vec3(normal / length) : Vec3(Vec3::UnitZ()))
             .cast<float>();
@@ -66,8 +128,14 @@ void add_mesh(const aiMesh& mesh, const aiMaterial& material, const Mat3& place,
       own = Vec3(c.r, c.g, c.b).cwiseMax(0).cwiseMin(1);
     }
     vertex.color = own.cast<float>();
+    if (texture >= 0) {
+      // Assimp counts from below
+      const aiVector3D& at = mesh.mTextureCoords[coordinates][v];
+      if (std::isfinite(at.x) && std::isfinite(at.y)) vertex.place = {at.x, 1 - at.y};
+    }
     surface.vertices.push_back(vertex);
   }
+  const auto before = static_cast<std::uint32_t>(surface.indices.size());
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
@@ -76,6 +144,8 @@ void add_mesh(const aiMesh& mesh, const aiMaterial& material, const Mat3& place,
     if (mirrored) std::swap(corner[1], corner[2]);
     surface.indices.insert(surface.indices.end(), corner, corner + 3);
   }
+  const auto count = static_cast<std::uint32_t>(surface.indices.size()) - before;
+  if (count > 0) surface.patches.push_back({before, count, texture});
 }
 
 // Whether each edge of a triangle is, the other way round, that of another: by places, for corners
@@ -106,24 +176,74 @@ bool is_closed(const SurfaceMesh& surface) {
   return edges == reversed;
 }
 
-// What is no closed surface is seen from behind, too.
-void add_back_sides(SurfaceMesh& surface) {
-  const auto count = static_cast<std::uint32_t>(surface.vertices.size());
-  for (std::uint32_t v = 0; v < count; ++v) {
-    SurfaceMesh::Vertex back = surface.vertices[v];
-    back.normal = -back.normal;
-    surface.vertices.push_back(back);
+// ---- between the processes ----
+
+// The numbers of a vertex, one part after the other.
+template <class Vertex, class Visit>
+void each_part(Vertex& v, const Visit& visit) {
+  visit(v.position.data(), v.position.size());
+  visit(v.normal.data(), v.normal.size());
+  visit(v.color.data(), v.color.size());
+  visit(v.place.data(), v.place.size());
+}
+constexpr std::size_t numbers_of_vertex = 11;
+
+std::vector<char> packed(const Gathering& gathered) {
+  const SurfaceMesh& surface = gathered.surface;
+  ByteWriter bytes;
+  std::vector<float> numbers;
+  for (const SurfaceMesh::Vertex& v : surface.vertices)
+    each_part(v, [&](const float* part, Eigen::Index count) {
+      numbers.insert(numbers.end(), part, part + count);
+    });
+  bytes.put(numbers);
+  bytes.put(surface.indices);
+  bytes.put(surface.patches);
+  bytes.put(std::vector<std::uint8_t>{surface.colored, surface.closed});
+  bytes.put(std::vector<std::uint64_t>{surface.textures.size(), gathered.faults.size()});
+  for (const Texture& texture : surface.textures) {
+    bytes.put(std::vector<int>{texture.width, texture.height});
+    bytes.put(texture.rgba);
   }
-  const std::size_t corners = surface.indices.size();
-  for (std::size_t i = 0; i + 2 < corners; i += 3)
-    for (const std::size_t k : {i, i + 2, i + 1})
-      surface.indices.push_back(count + surface.indices[k]);
+  for (const auto& [wrong, expected] : gathered.faults) {
+    bytes.put(wrong);
+    bytes.put(expected);
+  }
+  return bytes.take();
+}
+
+SurfaceMesh unpacked(const std::vector<char>& bytes, const std::string& where, Mending& mending) {
+  ByteReader reader(bytes);
+  SurfaceMesh surface;
+  const std::vector<float> numbers = reader.get<float>();
+  surface.vertices.resize(numbers.size() / numbers_of_vertex);
+  const float* next = numbers.data();
+  for (SurfaceMesh::Vertex& v : surface.vertices)
+    each_part(v, [&](float* part, Eigen::Index count) {
+      std::copy_n(next, count, part);
+      next += count;
+    });
+  surface.indices = reader.get<std::uint32_t>();
+  surface.patches = reader.get<SurfaceMesh::Patch>();
+  const std::vector<std::uint8_t> flags = reader.get<std::uint8_t>();
+  surface.colored = flags.at(0);
+  surface.closed = flags.at(1);
+  const std::vector<std::uint64_t> counts = reader.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < counts.at(0); ++i) {
+    const std::vector<int> size = reader.get<int>();
+    surface.textures.push_back({size.at(0), size.at(1), reader.get<std::uint8_t>()});
+  }
+  for (std::uint64_t i = 0; i < counts.at(1); ++i) {
+    const std::string wrong = reader.get_text();
+    mending.mend(where, wrong, "the colour of its material is drawn", reader.get_text());
+  }
+  return surface;
 }
 
 }  // namespace
 
 std::shared_ptr<const SurfaceMesh> read_surface(const std::string& file, const Vec3& scale,
-                                                bool y_up) {
+                                                bool y_up, Mending& mending) {
   Mat3 place = scale.asDiagonal();
   if (y_up) place = place * (Mat3() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
   const auto prepare = [&](Assimp::Importer& importer) {
@@ -131,41 +251,20 @@ std::shared_ptr<const SurfaceMesh> read_surface(const std::string& file, const V
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                                 aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     unsigned steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
-                     aiProcess_JoinIdenticalVertices;
+                     aiProcess_TransformUVCoords | aiProcess_JoinIdenticalVertices;
     if (!is_stl(file)) return steps;
     // its normals are those of its facets
     importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS);
     return steps | aiProcess_RemoveComponent;
   };
   const auto take = [&](const aiScene& scene) {
-    SurfaceMesh surface;
-    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
-      add_mesh(*scene.mMeshes[m], *scene.mMaterials[scene.mMeshes[m]->mMaterialIndex], place,
-               surface);
-    if (!is_closed(surface)) add_back_sides(surface);
-    ByteWriter bytes;
-    std::vector<float> numbers;
-    for (const SurfaceMesh::Vertex& v : surface.vertices)
-      for (const Eigen::Vector3f* part : {&v.position, &v.normal, &v.color})
-        numbers.insert(numbers.end(), part->data(), part->data() + 3);
-    bytes.put(numbers);
-    bytes.put(surface.indices);
-    bytes.put(std::vector<char>(surface.colored ? 1 : 0));
-    return bytes.take();
+    Gathering gathered(file, scene, place);
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) gathered.add(*scene.mMeshes[m]);
+    gathered.surface.closed = is_closed(gathered.surface);
+    return packed(gathered);
   };
-  const std::vector<char> bytes = read_with_assimp(file, prepare, take);
-  ByteReader reader(bytes);
-  auto surface = std::make_shared<SurfaceMesh>();
-  const std::vector<float> numbers = reader.get<float>();
-  surface->vertices.resize(numbers.size() / 9);
-  const float* next = numbers.data();
-  for (SurfaceMesh::Vertex& v : surface->vertices)
-    for (Eigen::Vector3f* part : {&v.position, &v.normal, &v.color}) {
-      *part = Eigen::Map<const Eigen::Vector3f>(next);
-      next += 3;
-    }
-  surface->indices = reader.get<std::uint32_t>();
-  surface->colored = !reader.get<char>().empty();
+  auto surface = std::make_shared<SurfaceMesh>(
+      unpacked(read_with_assimp(file, prepare, take), "the mesh " + file + ": ", mending));
   for (const SurfaceMesh::Vertex& vertex : surface->vertices) {
     const Vec3 point = vertex.position.cast<double>();
     TW_REQUIRE(is_finite(point),

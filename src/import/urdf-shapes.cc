@@ -85,7 +85,7 @@ VisualPart Shapes::seen_part(const Piece& visual, const Pose& pose) {
   const auto key = std::tuple(path, geometry.size.x(), geometry.size.y(), geometry.size.z());
   auto found = surfaces_.find(key);
   if (found == surfaces_.end())
-    found = surfaces_.emplace(key, read_surface(path, geometry.size, false)).first;
+    found = surfaces_.emplace(key, read_surface(path, geometry.size, false, mending_)).first;
   seen.mesh = found->second;
   return seen;
 }

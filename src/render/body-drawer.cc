@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 
 namespace tw {
 
@@ -71,7 +73,7 @@ void BodyDrawer::add_visual(const DrawBody& body, std::size_t index) {
       const bool tinted = part.mesh->colored && !part.color;
       const auto [found, fresh] =
           group_index_.emplace(MeshKey(part.mesh.get(), tinted, 0, 0), groups_.size());
-      if (fresh) groups_.push_back(make_group(surface_mesh(*part.mesh, tinted)));
+      if (fresh) groups_.push_back(make_surface_group(*part.mesh, tinted));
       groups_[found->second].parts.push_back(record);
       continue;
     }
@@ -184,14 +186,45 @@ BodyDrawer::MeshGroup BodyDrawer::make_group(const Mesh& mesh) {
   declare_input(*gl_, 0, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, position), 0);
   declare_input(*gl_, 1, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, normal), 0);
   declare_input(*gl_, 6, 3, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, tint), 0);
+  declare_input(*gl_, 7, 2, sizeof(Mesh::Vertex), offsetof(Mesh::Vertex, place), 0);
   make_buffer(*gl_, GL_ELEMENT_ARRAY_BUFFER, mesh.indices, mesh.indices.size());
   gl_->GenBuffers(1, &group.instance_buffer);
   gl_->BindBuffer(GL_ARRAY_BUFFER, group.instance_buffer);
   // three rows and the colour, one after the other
   for (GLuint i = 0; i < 4; ++i)
     declare_input(*gl_, 2 + i, 4, sizeof(MeshInstance), 4 * sizeof(float) * i, 1);
-  group.index_count = static_cast<GLsizei>(mesh.indices.size());
+  group.closed = mesh.closed;
+  group.patches.push_back({0, {{0, static_cast<std::uint32_t>(mesh.indices.size()), 0}}});
   return group;
+}
+
+BodyDrawer::MeshGroup BodyDrawer::make_surface_group(const SurfaceMesh& surface, bool tinted) {
+  Mesh mesh = surface_mesh(surface, tinted);
+  std::vector<GLuint> textures;
+  for (const Texture& texture : surface.textures) textures.push_back(make_texture_of(texture));
+  std::vector<Patch> patches;
+  for (const SurfaceMesh::Patch& patch : surface.patches) {
+    const bool textured = patch.texture >= 0;
+    textured_ = textured_ || textured;
+    patches.push_back({textured ? textures.at(static_cast<std::size_t>(patch.texture)) : 0,
+                       add_levels(mesh, patch)});
+  }
+  MeshGroup group = make_group(mesh);
+  group.patches = std::move(patches);
+  group.radius = surface.radius;
+  return group;
+}
+
+GLuint BodyDrawer::make_texture_of(const Texture& texture) const {
+  const GLuint name = make_texture(*gl_, GL_SRGB8_ALPHA8, texture.width, texture.height);
+  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, texture.width, texture.height, 0, GL_RGBA,
+                  GL_UNSIGNED_BYTE, texture.rgba.data());
+  gl_->GenerateMipmap(GL_TEXTURE_2D);
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl_->TexParameteri(GL_TEXTURE_2D, axis, GL_REPEAT);
+  return name;
 }
 
 void BodyDrawer::upload(GLuint buffer, const void* data, std::size_t size) const {
@@ -199,7 +232,7 @@ void BodyDrawer::upload(GLuint buffer, const void* data, std::size_t size) const
   gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(size), data, GL_STREAM_DRAW);
 }
 
-void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye) {
+void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye, double pixel) {
   const auto drawn = [&](const Part& part) {
     return is_finite(poses[part.body].p) && is_finite(poses[part.body].q);
   };
@@ -216,26 +249,46 @@ void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye) {
   upload(ball_buffer_, ball_instances_.data(), ball_instances_.size() * sizeof(BallInstance));
   for (MeshGroup& group : groups_) {
     group.instances.clear();
+    double nearest = std::numeric_limits<double>::infinity();
     for (const Part& part : group.parts) {
       if (!drawn(part)) continue;
       const Frame frame = Frame(poses[part.body]) * part.placement;
+      nearest = std::min(nearest, (frame.p - eye).norm() - group.radius);
       MeshInstance instance;
       instance.rows << frame.R.cast<float>(), (frame.p - eye).cast<float>();
       instance.color = part.color;
       group.instances.push_back(instance);
     }
+    group.allowed = 0.2 * pixel * nearest;
     upload(group.instance_buffer, group.instances.data(),
            group.instances.size() * sizeof(MeshInstance));
   }
 }
 
-void BodyDrawer::draw_meshes() const {
+void BodyDrawer::draw_meshes(Which which) const {
+  gl_->Enable(GL_CULL_FACE);
+  bool culls = true;
   for (const MeshGroup& group : groups_) {
     if (group.instances.empty()) continue;
     gl_->BindVertexArray(group.vertex_array);
-    gl_->DrawElementsInstanced(GL_TRIANGLES, group.index_count, GL_UNSIGNED_INT, nullptr,
-                               static_cast<GLsizei>(group.instances.size()));
+    if (culls != group.closed)
+      group.closed ? gl_->Enable(GL_CULL_FACE) : gl_->Disable(GL_CULL_FACE);
+    culls = group.closed;
+    for (const Patch& patch : group.patches) {
+      if (which == Which::plain && patch.texture != 0) continue;
+      if (which == Which::textured) {
+        if (patch.texture == 0) continue;
+        gl_->BindTexture(GL_TEXTURE_2D, patch.texture);
+      }
+      const auto level =
+          std::find_if(patch.levels.rbegin(), patch.levels.rend() - 1,
+                       [&](const MeshLevel& one) { return one.error <= group.allowed; });
+      gl_->DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(level->count), GL_UNSIGNED_INT,
+                                 offset_pointer(level->first * sizeof(std::uint32_t)),
+                                 static_cast<GLsizei>(group.instances.size()));
+    }
   }
+  gl_->Disable(GL_CULL_FACE);
 }
 
 void BodyDrawer::draw_spheres() const {

@@ -1,6 +1,8 @@
 // The parts of all bodies on the GL side: one draw call for all spheres, one per different mesh.
 //
-// Cost: instance data is rewritten for every frame, 64 bytes per part.
+// Cost: instance data is rewritten for every frame, 64 bytes per part.  Of a mesh of many triangles
+// that are seen and no more (SurfaceMesh) the coarsest version is drawn that is within half a
+// pixel.
 // Frames: positions go to GL relative to the eye.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -14,6 +16,7 @@
 
 #include "render/draw-list.h"
 #include "render/gl-program.h"
+#include "render/mesh-levels.h"
 #include "render/mesh.h"
 
 namespace tw {
@@ -28,12 +31,15 @@ class BodyDrawer {
   // How many parts have a grain, as those of fixed hulls have.
   int grainy_parts() const { return grainy_parts_; }
 
-  // Sets the instances of all bodies whose pose is finite.
-  void place(std::span<const Pose> poses, const Vec3& eye);
+  // Sets the instances of all bodies whose pose is finite.  `pixel`: the angle of one, rad.
+  void place(std::span<const Pose> poses, const Vec3& eye, double pixel);
 
-  // Draw with the program in use, for the vertex inputs that surface-shaders.cc names.
-  void draw_meshes() const;
+  // Draw with the program in use, for the vertex inputs that surface-shaders.cc names.  What is
+  // closed is seen from outside only.  Textures are bound to the first unit.
+  enum class Which { all, plain, textured };
+  void draw_meshes(Which which) const;
   void draw_spheres() const;
+  bool has_textures() const { return textured_; }
 
  private:
   // One part of a visible body.
@@ -50,9 +56,17 @@ class BodyDrawer {
   struct BallInstance {
     Eigen::Vector4f ball, color;
   };
+  // Triangles with one texture (0: none).
+  struct Patch {
+    GLuint texture = 0;
+    std::vector<MeshLevel> levels;  // finest first
+  };
   struct MeshGroup {
     GLuint vertex_array = 0, instance_buffer = 0;
-    GLsizei index_count = 0;
+    bool closed = true;
+    double radius = 0;   // of what has levels, about its origin
+    double allowed = 0;  // m, of the error of a level
+    std::vector<Patch> patches;
     std::vector<Part> parts;
     std::vector<MeshInstance> instances;
   };
@@ -66,10 +80,13 @@ class BodyDrawer {
   void add_mesh_ground(const DrawBody& body, Part record);
   MeshGroup& group_of(const ConvexPart& part, bool smooth);
   MeshGroup make_group(const Mesh& mesh);
+  MeshGroup make_surface_group(const SurfaceMesh& surface, bool tinted);
+  GLuint make_texture_of(const Texture& texture) const;
   void upload(GLuint buffer, const void* data, std::size_t size) const;
 
   const GlApi* gl_;
   int grainy_parts_ = 0;
+  bool textured_ = false;
   std::vector<MeshGroup> groups_;
   std::map<MeshKey, std::size_t> group_index_;
   // keeps the cores alive whose addresses are keys

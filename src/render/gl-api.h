@@ -47,6 +47,7 @@
   X(GenSamplers, GENSAMPLERS)                         \
   X(GenTextures, GENTEXTURES)                         \
   X(GenVertexArrays, GENVERTEXARRAYS)                 \
+  X(GenerateMipmap, GENERATEMIPMAP)                   \
   X(GetError, GETERROR)                               \
   X(GetIntegerv, GETINTEGERV)                         \
   X(GetProgramInfoLog, GETPROGRAMINFOLOG)             \

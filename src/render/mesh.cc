@@ -115,20 +115,15 @@ Mesh mesh_ground_mesh(const MeshGround& ground, bool smooth) {
       }
   }
   Mesh mesh;
-  const auto add = [&](const MeshFace& face, bool back) {
+  mesh.closed = !ground.is_open();
+  for (const MeshFace& face : faces.faces) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const std::size_t n = face.corners.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::uint32_t corner = face.corners[back ? n - 1 - i : i];
+    for (const std::uint32_t corner : face.corners) {
       const Vec3 normal = smooth ? Vec3(normals[corner].normalized()) : face.normal;
-      mesh.vertices.push_back(
-          {faces.points[corner].cast<float>(), ((back ? -1 : 1) * normal).cast<float>()});
+      mesh.vertices.push_back({faces.points[corner].cast<float>(), normal.cast<float>()});
     }
-    add_fan(mesh, first, static_cast<int>(n));
-  };
-  for (const MeshFace& face : faces.faces) add(face, false);
-  if (ground.is_open())
-    for (const MeshFace& face : faces.faces) add(face, true);
+    add_fan(mesh, first, static_cast<int>(face.corners.size()));
+  }
   return mesh;
 }
 
@@ -136,9 +131,11 @@ Mesh surface_mesh(const SurfaceMesh& surface, bool tinted) {
   Mesh mesh;
   for (const SurfaceMesh::Vertex& v : surface.vertices) {
     mesh.vertices.push_back({v.position, v.normal});
+    mesh.vertices.back().place = v.place;
     if (tinted) mesh.vertices.back().tint = linear_color(v.color.cast<double>()).cast<float>();
   }
   mesh.indices = surface.indices;
+  mesh.closed = surface.closed;
   return mesh;
 }
 

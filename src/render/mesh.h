@@ -16,10 +16,12 @@ namespace tw {
 struct Mesh {
   struct Vertex {
     Eigen::Vector3f position, normal;
-    Eigen::Vector3f tint = Eigen::Vector3f::Ones();  // times the body's colour, linear
+    Eigen::Vector3f tint = Eigen::Vector3f::Ones();   // times the body's colour, linear
+    Eigen::Vector2f place = Eigen::Vector2f::Zero();  // in a texture
   };
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
+  bool closed = true;  // else it is seen from behind, too
 };
 
 // Flat faces: every face has corners of its own, with the face's normal.
@@ -29,8 +31,7 @@ Mesh smooth_mesh(const Polyhedron& polyhedron);
 // The ground with its rim and its underside.  Smooth: the normals of what the heights are samples
 // of.  Tints are the ground's colours, where it has some.
 Mesh height_field_mesh(const HeightField& field, bool smooth);
-// The surface of a mesh; where that is open, its back as well.  Smooth: the mean of the normals of
-// the faces at a point.
+// The surface of a mesh.  Smooth: the mean of the normals of the faces at a point.
 Mesh mesh_ground_mesh(const MeshGround& ground, bool smooth);
 // Tints are the surface's own colours, where it has some and they are wanted.
 Mesh surface_mesh(const SurfaceMesh& surface, bool tinted);

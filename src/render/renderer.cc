@@ -73,8 +73,8 @@ struct Renderer::Programs {
   const GlApi& gl;
   const Effort effort;
   GlProgram mesh, sphere, ground, mesh_shadow, sphere_shadow, light, sky, fxaa, average;
-  // made when a scene first has a grain
-  std::optional<GlProgram> light_with_grain;
+  // made when a scene first has a grain, a texture
+  std::optional<GlProgram> light_with_grain, textured;
 
   Programs(const GlApi& api, const Effort& pays)
       : gl(api),
@@ -99,6 +99,13 @@ struct Renderer::Programs {
     if (grain == 0) return light;
     if (!light_with_grain) light_with_grain = make_light("#define GRAIN\n");
     return *light_with_grain;
+  }
+  const GlProgram& for_textures() {
+    if (textured) return *textured;
+    std::string preamble = "#define TEXTURED\n";
+    preamble += shaders::surface_preamble;
+    textured = GlProgram(gl, shaders::mesh_vertex, shaders::mesh_fragment, preamble);
+    return *textured;
   }
 };
 
@@ -233,11 +240,16 @@ void Renderer::draw_surfaces() {
 }
 
 void Renderer::draw_bodies() {
-  gl_->Enable(GL_CULL_FACE);
   programs_->mesh.use();
   programs_->mesh.set("projection", projection_);
-  bodies_.draw_meshes();
-  gl_->Disable(GL_CULL_FACE);
+  bodies_.draw_meshes(BodyDrawer::Which::plain);
+  if (bodies_.has_textures()) {
+    const GlProgram& textured = programs_->for_textures();
+    textured.use();
+    textured.set("projection", projection_);
+    textured.set("surface_map", 0);
+    bodies_.draw_meshes(BodyDrawer::Which::textured);
+  }
   programs_->sphere.use();
   programs_->sphere.set("projection", projection_);
   programs_->sphere.set("forward", view_.forward);
@@ -413,7 +425,7 @@ Image Renderer::draw(const DrawFrame& frame) {
   set_looks(frame);
   set_poses(frame);
   set_view(frame.time);
-  bodies_.place(poses_, view_.eye);
+  bodies_.place(poses_, view_.eye, 2 * view_.tan_half_fov / surface_height_);
   fit_shadows();
   sun_map_.draw(bodies_, programs_->mesh_shadow, programs_->sphere_shadow, view_.eye);
   if (effort_.overhead_taps > 0)

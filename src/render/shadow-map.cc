@@ -80,15 +80,13 @@ void ShadowMap::draw(const BodyDrawer& bodies, const GlProgram& mesh_program,
   // the outermost texels stay infinitely deep: what lies beyond the edge is lit
   gl_->Enable(GL_SCISSOR_TEST);
   gl_->Scissor(1, 1, side_ - 2, side_ - 2);
-  gl_->Enable(GL_CULL_FACE);
   gl_->Enable(GL_POLYGON_OFFSET_FILL);
   gl_->PolygonOffset(1.5f, 2.0f);
   const Matrix4f projection = to_clip(eye);
   mesh_program.use();
   mesh_program.set("projection", projection);
-  bodies.draw_meshes();
+  bodies.draw_meshes(BodyDrawer::Which::all);
   gl_->Disable(GL_POLYGON_OFFSET_FILL);
-  gl_->Disable(GL_CULL_FACE);
   sphere_program.use();
   sphere_program.set("projection", projection);
   sphere_program.set("light_right", right_);

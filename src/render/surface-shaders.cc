@@ -13,8 +13,10 @@ layout(location = 3) in vec4 row_y;
 layout(location = 4) in vec4 row_z;
 layout(location = 5) in vec4 color;   // linear; gloss
 layout(location = 6) in vec3 tint;    // linear
+layout(location = 7) in vec2 place;   // in the texture
 out vec3 surface_normal;
 out vec3 surface_tint;
+out vec2 surface_place;
 flat out vec4 surface_color;
 void main() {
   vec4 p = vec4(position, 1);
@@ -24,6 +26,7 @@ void main() {
                         dot(cross(row_z.xyz, row_x.xyz), normal),
                         dot(cross(row_x.xyz, row_y.xyz), normal));
   surface_tint = tint;
+  surface_place = place;
   surface_color = color;
 }
 )";
@@ -40,13 +43,25 @@ layout(location = 0) out vec4 out_color;
 layout(location = 1) out vec2 out_normal;
 )";
 
+// Backs are seen of what is open only: what is closed is culled there.
 const char* const mesh_fragment = R"(
 in vec3 surface_normal;
 in vec3 surface_tint;
 flat in vec4 surface_color;
+#ifdef TEXTURED
+uniform sampler2D surface_map;
+in vec2 surface_place;
+#endif
 void main() {
-  out_color = vec4(surface_tint * surface_color.rgb, surface_color.a);
-  out_normal = encode_normal(normalize(surface_normal));
+  vec3 color = surface_tint * surface_color.rgb;
+#ifdef TEXTURED
+  vec4 texel = texture(surface_map, surface_place);
+  if (texel.a < 0.5) discard;
+  color *= texel.rgb;
+#endif
+  out_color = vec4(color, surface_color.a);
+  vec3 normal = normalize(surface_normal);
+  out_normal = encode_normal(gl_FrontFacing ? normal : -normal);
 }
 )";
 

@@ -180,8 +180,8 @@ TW_PRIMITIVE(triangle_mesh, "%triangle-mesh", (SCM points, SCM triangles, SCM st
 }
 
 TW_PRIMITIVE(load_visual, "%load-visual",
-             (SCM file, SCM scale, SCM y_up, SCM color, SCM position, SCM orientation),
-             "Return what is seen of a mesh file.") {
+             (SCM file, SCM scale, SCM y_up, SCM color, SCM position, SCM orientation, SCM strict),
+             "Return (VISUAL . NOTES) of what is seen of a mesh file.") {
   const Vec3 factors = to_scale(scale);
   VisualPart part;
   if (scm_is_true(color)) part.color = to_vec3(color, "color");
@@ -192,8 +192,10 @@ TW_PRIMITIVE(load_visual, "%load-visual",
       throw BadValue{"orientation", orientation, "a quaternion #(w x y z) that is not zero"};
     part.pose.q.normalize();
   }
-  part.mesh = read_surface(to_file_name(file, "the file"), factors, scm_is_true(y_up));
-  return from_visual(std::make_shared<const Visual>(Visual{part}));
+  Mending mending(scm_is_true(strict));
+  part.mesh = read_surface(to_file_name(file, "the file"), factors, scm_is_true(y_up), mending);
+  return scm_cons(from_visual(std::make_shared<const Visual>(Visual{part})),
+                  from_strings(mending.take_notes()));
 }
 
 TW_PRIMITIVE(half_space, "%half-space", (SCM normal, SCM offset),

@@ -131,7 +131,13 @@
             file-texts))
 
 (define file-texts
-  '(("tetra.obj" . "v 0 0 0\nv 0.4 0 0\nv 0 0.4 0\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+  '(("tetra.obj" . "mtllib tetra.mtl
+v 0 0 0\nv 0.4 0 0\nv 0 0.4 0\nv 0 0 0.4
+vt 0 0\nvt 1 0\nvt 0 1
+usemtl skin
+f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nusemtl bare\nf 2/1 3/2 4/3\nf 3/1 1/2 4/3\n")
+    ("tetra.mtl" . "newmtl skin\nmap_Kd tetra.pgm\nnewmtl bare\nKd 0 0 1\nmap_Kd none.png\n")
+    ("tetra.pgm" . "P5\n2 2\n255\nabcd")
     ("tetra.stl" . "solid tetra
 facet normal 0 0 -1 outer loop vertex 0 0 0 vertex 0 0.4 0 vertex 0.4 0 0 endloop endfacet
 facet normal 0 -1 0 outer loop vertex 0 0 0 vertex 0.4 0 0 vertex 0 0 0.4 endloop endfacet

@@ -16,6 +16,7 @@
 #include "base/random.h"
 #include "import/solid-file.h"
 #include "import/surface-file.h"
+#include "import/texture-file.h"
 #include "import/urdf.h"
 
 namespace tw::test {
@@ -125,6 +126,17 @@ const char* const collada = R"(<?xml version="1.0" encoding="utf-8"?>
 <scene><instance_visual_scene url="#w"/></scene></COLLADA>
 )";
 
+// A PNG of one red pixel.
+std::string picture() {
+  static constexpr unsigned char bytes[] = {
+      0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,   0,    0,    13,   'I',  'H',
+      'D',  'R',  0,    0,    0,    1,    0,    0,    0,   1,    8,    2,    0,    0,
+      0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,    12,  'I',  'D',  'A',  'T',  0x78,
+      0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    3,    1,   1,    0,    0xc9, 0xfe, 0x92,
+      0xef, 0,    0,    0,    0,    'I',  'E',  'N',  'D', 0xae, 0x42, 0x60, 0x82};
+  return std::string(reinterpret_cast<const char*>(bytes), sizeof bytes);
+}
+
 std::string mutated(std::string text, Random& random) {
   for (std::uint64_t times = 1 + random.below(2); times > 0 && !text.empty(); --times) {
     const std::size_t at = random.below(text.size()), length = 1 + random.below(40);
@@ -171,10 +183,11 @@ int load(const std::string& file) {
            loads([&] {
              read_urdf(file, {UrdfBase::free, {}}, mending);
            });
+  if (file.ends_with(".png")) return loads([&] { read_texture(file); });
   SolidOptions hulls;
   hulls.hulls = true;
   return loads([&] { read_solid(file, hulls, mending); }) +
-         loads([&] { read_surface(file, Vec3::Ones(), false); });
+         loads([&] { read_surface(file, Vec3::Ones(), false, mending); });
 }
 
 TEST(MutatedFiles, load_or_are_refused) {
@@ -184,10 +197,11 @@ TEST(MutatedFiles, load_or_are_refused) {
     std::ofstream(folder.path + "/" + name, std::ios::binary) << text;
     return folder.path + "/" + name;
   };
-  put("a.mtl", "newmtl paint\nKd 1 0 0\n");
+  put("a.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd a.png\n");
+  put("a.png", picture());
   put("p/a.stl", solid);
   std::vector<fs::path> files{put("a.urdf", robot), put("a.obj", object), put("a.stl", solid),
-                              put("a.dae", collada)};
+                              put("a.dae", collada), folder.path + "/a.png"};
   if (const char* given = std::getenv("MUTATED")) {
     files.clear();
     std::istringstream names(given);
@@ -198,7 +212,8 @@ TEST(MutatedFiles, load_or_are_refused) {
   Random random(7);
   for (const fs::path& file : files) {
     const std::string text = text_of(file);
-    EXPECT_EQ(load(file.string()), 2) << file;
+    const int ways = file.extension() == ".png" ? 1 : 2;
+    EXPECT_EQ(load(file.string()), ways) << file;
     int loaded = 0;
     const fs::path trial = file.parent_path() / ("mutated" + file.extension().string());
     for (int i = 0; i < count; ++i) {
@@ -206,7 +221,7 @@ TEST(MutatedFiles, load_or_are_refused) {
       loaded += load(trial.string());
     }
     fs::remove(trial);
-    EXPECT_LT(loaded, 2 * count) << file;
+    EXPECT_LT(loaded, ways * count) << file;
   }
 }
 
