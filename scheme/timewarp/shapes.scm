@@ -169,31 +169,41 @@ others are left out, those that face the other way than their neighbours are tur
     (tell-mended (cdr made))
     (car made)))
 
-(define-keyword-procedure (load-shape file #:key scale convex-hull? concave? objects? up strict?)
+(define-keyword-procedure (load-shape file #:key scale convex-hull? concave? decompose objects? up strict?)
   "Return the shape of FILE: OBJ, STL, or what else of meshes Assimp reads.  FILE is looked for
 beside the file that the call stands in, then beside the scene that is being loaded, then in the current
 folder.
 
 What hangs together in it by common vertices is a convex part, several make a union; the frame is
 that of the file.  A part that isn't convex is an error that names its object: split it in a
-modelling program, or take the hull, or all of it as ground.  A part that is flat is left out, with a
-warning.
+modelling program, or decompose it, or take the hull, or all of it as ground.  A part that is flat is
+left out, with a warning.
 
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:convex-hull?  whether the hull is taken of parts that are not convex; #f
 #:concave?      whether all is ground with the file's surface, as triangle-mesh makes it; #f
+#:decompose     #t, or a number of triangles, 20 to 5000: parts that are not convex are split into convex
+                pieces; those of more than so many triangles, 400, and half as many concave edges are
+                simplified to them first.  The change of the volume is told.  More triangles take
+                longer, by the square of their number, and make more pieces; #f
 #:objects?      #t: a list ((NAME . SHAPE) ...) of the file's objects, NAME a string, is returned, to be
                 bodies each; where there is but one, of the parts in it; #f
 #:up            'y: the file's y is up, and becomes z here, its z becomes -y; 'z
-#:strict?       #t: a flat part is an error, and what is wrong with triangles of ground; #f"
+#:strict?       #t: a flat part is an error, holes of what is decomposed, and what is wrong with triangles
+                of ground; #f"
   (unless (memq up '(#f y z)) (bad-value "up" up "'y or 'z"))
   (when (and convex-hull? concave?)
     (bad-value "concave?" concave? "#f where #:convex-hull? is given"))
+  (when (and decompose (or convex-hull? concave?))
+    (bad-value "decompose" decompose "#f where #:convex-hull? or #:concave? is given"))
+  (unless (or (memq decompose '(#t #f)) (and (exact-integer? decompose) (<= 20 decompose 5000)))
+    (bad-value "decompose" decompose "#t, or a number of triangles, 20 to 5000"))
   (when (and objects? concave?)
     (bad-value "objects?" objects? "#f where #:concave? is given: ground is one body"))
   (let* ((found (beside-caller file (caller-place)))
-         (kind (cond (concave? 'concave) (convex-hull? 'hulls) (else 'convex)))
-         (made (%load-shape found (or scale 1) kind objects? (eq? up 'y) strict?)))
+         (kind (cond (concave? 'concave) (convex-hull? 'hulls) (decompose 'pieces) (else 'convex)))
+         (triangles (if (number? decompose) decompose 400))
+         (made (%load-shape found (or scale 1) kind triangles objects? (eq? up 'y) strict?)))
     (note-file-read found)
     (tell-mended (cdr made))
     (car made)))

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interruption.h"
 #include "base/limits.h"
 #include "math/aabb.h"
 
@@ -177,8 +178,10 @@ class Joining {
   void join_all() {
     for (bool again = true; again;) {
       again = false;
-      for (std::int32_t i = 0; i < static_cast<std::int32_t>(into_.size()); ++i)
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(into_.size()); ++i) {
+        raise_if_interrupted();
         while (into_[static_cast<std::size_t>(i)] == i && join_with_one(i)) again = true;
+      }
     }
     compress();
   }

@@ -8,14 +8,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <new>
 
 #include "base/error.h"
+#include "base/interruption.h"
 
 namespace tw {
 
@@ -80,6 +83,7 @@ void write_all(int to, const char* data, std::size_t size) {
 }
 
 // Ends the process where it is not done in time by the clock, as one that waits for something.
+// Asks meanwhile whether it is to be given up.
 std::vector<char> read_all(int from, pid_t child, unsigned seconds) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::seconds(seconds);
@@ -89,8 +93,10 @@ std::vector<char> read_all(int from, pid_t child, unsigned seconds) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd ready{from, POLLIN, 0};
-    const int count = left > 0 ? poll(&ready, 1, static_cast<int>(left)) : 0;
+    const int count = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(left, 0, 100)));
+    raise_if_interrupted();
     if (count < 0 && errno == EINTR) continue;
+    if (count == 0 && left > 0) continue;
     if (count <= 0) {
       kill(child, SIGXCPU);
       return all;
@@ -121,25 +127,35 @@ std::vector<char> done_within(const Bounds& bounds, const std::string& what,
   }
   close(ends[1]);
   // twice as long by the clock: the machine may be busy
-  std::vector<char> all = read_all(ends[0], child, 2 * bounds.seconds);
-  close(ends[0]);
+  std::vector<char> all;
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  const auto finish = [&] {
+    close(ends[0]);
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+  };
+  try {
+    all = read_all(ends[0], child, 2 * bounds.seconds);
+  } catch (...) {
+    kill(child, SIGKILL);
+    finish();
+    throw;
   }
+  finish();
   const std::string memory = std::to_string(bounds.memory >> 20) + " MB";
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-    throw UserError(what + " takes the library that reads it more than " +
-                    std::to_string(bounds.seconds) + " s; expected a file that is whole");
+    throw UserError(what + " takes " + bounds.worker + " more than " +
+                    std::to_string(bounds.seconds) + " s; expected " + bounds.expected);
   const bool ended = !WIFEXITED(status) || WEXITSTATUS(status) != 0 || all.empty();
   if (ended)
-    throw UserError(what + " ends the library that reads it" +
+    throw UserError(what + " ends " + bounds.worker +
                     (WIFSIGNALED(status) ? std::string(", ") + strsignal(WTERMSIG(status)) : "") +
-                    ", which may have " + memory + "; expected a file that is whole");
+                    ", which may have " + memory + "; expected " + bounds.expected);
   const auto outcome = static_cast<Outcome>(all[0]);
   all.erase(all.begin());
   if (outcome == Outcome::too_large)
-    throw UserError(what + " takes the library that reads it more than " + memory +
-                    "; expected a file that is whole");
+    throw UserError(what + " takes " + bounds.worker + " more than " + memory + "; expected " +
+                    bounds.expected);
   if (outcome == Outcome::refused) throw UserError(std::string(all.begin(), all.end()));
   return all;
 }

@@ -39,6 +39,9 @@ class Mending {
             whole ? "what can be read" : text.substr(split + std::string(between).size())};
   }
 
+  // What is no fault, but to be known.
+  void tell(std::string note) { notes_.push_back(std::move(note)); }
+
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
 
  private:

@@ -11,10 +11,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
@@ -22,6 +25,7 @@
 #include "base/error.h"
 #include "geometry/mesh-faces.h"
 #include "geometry/polyhedron.h"
+#include "import/convex-pieces.h"
 #include "import/mesh-file.h"
 
 namespace tw {
@@ -277,15 +281,87 @@ ShapePtr GroundReader::shape() {
 
 namespace {
 
-// The hull of each part; null where that is flat.
+// Less than 0 where its triangles face inwards.
+double volume_within(const Object& object, const std::vector<Vec3>& points) {
+  const Vec3& middle = points[object.triangles.front()[0]];
+  double volume = 0;
+  for (const auto& [a, b, c] : object.triangles)
+    volume += (points[a] - middle).dot((points[b] - middle).cross(points[c] - middle)) / 6;
+  return volume;
+}
+
+Aabb bounds_of(const Object& object, const std::vector<Vec3>& points) {
+  Aabb bounds;
+  for (const auto& triangle : object.triangles)
+    for (const std::size_t corner : triangle) bounds.add(points[corner]);
+  return bounds;
+}
+
+// Of each part the smallest one that it is a cavity of: it faces inwards, and lies within the
+// other's bounds.
+std::vector<std::optional<std::size_t>> hosts_of_cavities(const std::vector<Object>& parts,
+                                                          const std::vector<Vec3>& points) {
+  std::vector<Aabb> bounds;
+  std::vector<bool> inwards;
+  for (const Object& part : parts) {
+    bounds.push_back(bounds_of(part, points));
+    inwards.push_back(volume_within(part, points) < 0);
+  }
+  std::vector<std::optional<std::size_t>> hosts(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!inwards[i]) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < parts.size(); ++j)
+      if (!inwards[j] && bounds[j].contains(bounds[i].lo) && bounds[j].contains(bounds[i].hi) &&
+          bounds[j].size().prod() < least) {
+        least = bounds[j].size().prod();
+        hosts[i] = j;
+      }
+  }
+  return hosts;
+}
+
+// The pieces of what has these surfaces.
+ShapePtr decomposed(const std::string& what, const std::vector<Vec3>& points,
+                    const std::vector<ClosedSurface>& surfaces, std::size_t most,
+                    Mending& mending) {
+  const ConvexPieces result = convex_pieces(what, points, surfaces, most);
+  if (result.holes > 0)
+    mending.mend(what + " has ", several(result.holes, "hole"),
+                 result.holes == 1 ? "it is closed" : "they are closed", "a closed surface");
+  std::size_t given = 0;
+  for (const ClosedSurface& surface : surfaces) given += surface.triangles.size();
+  const double change = 100 * (result.volume / result.surface_volume - 1);
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.2g %%", std::abs(change));
+  mending.tell(what + " is " + several(result.pieces.size(), "convex piece") +
+               (result.triangles < given ? ", made of " + std::to_string(result.triangles) +
+                                               " of " + several(given, "triangle")
+                                         : "") +
+               (std::abs(change) < 0.01 ? ", of the same volume"
+                                        : ", with a volume " + std::string(percent) +
+                                              (change > 0 ? " larger" : " smaller")));
+  return result.pieces.size() == 1 ? result.pieces[0] : make_union(result.pieces);
+}
+
+// The hull of each part, or its pieces; null where that is flat, or a cavity of another.
 std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>& points,
                                const std::vector<Object>& parts, const SolidOptions& options,
                                Mending& mending) {
   std::vector<ShapePtr> shapes;
   std::size_t flat_parts = 0;
   std::string first_flat;
+  std::vector<std::optional<std::size_t>> hosts(parts.size());
+  if (options.decompose > 0) hosts = hosts_of_cavities(parts, points);
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (hosts[i]) {
+      shapes.push_back(nullptr);
+      continue;
+    }
     const std::string what = title(parts[i], i, parts.size());
+    std::vector<ClosedSurface> surfaces{{parts[i].triangles, false}};
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (hosts[k] == i) surfaces.push_back({parts[k].triangles, true});
     try {
       shapes.push_back(hull_of(parts[i], points));
     } catch (const UserError& error) {
@@ -295,11 +371,16 @@ std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>&
       continue;
     }
     const double dent = deepest_dent(parts[i], points, *shapes.back());
+    if (options.decompose > 0 && (dent > flat || surfaces.size() > 1)) {
+      shapes.back() = decomposed("the mesh " + file + ": " + what, points, surfaces,
+                                 options.decompose, mending);
+      continue;
+    }
     TW_REQUIRE(options.hulls || dent <= flat,
                "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
                    " of its size over one of its faces; expected objects that are convex each, "
-                   "which make a union, or #:concave? #t for ground as it is, or #:convex-hull? "
-                   "#t for the hull of each");
+                   "which make a union, or #:concave? #t for ground as it is, #:decompose #t for "
+                   "convex pieces, or #:convex-hull? #t for the hull of each");
   }
   if (flat_parts == shapes.size()) throw UserError("the mesh " + file + ": " + first_flat);
   if (flat_parts > 0) {

@@ -15,15 +15,19 @@ struct SolidOptions {
   Vec3 scale = Vec3::Ones();  // metres in a unit of the file
   bool hulls = false;         // the hull of what is not convex is wanted all the same
   bool y_up = false;          // the file's y is up: it becomes z, and its z becomes -y
+  // what is not convex is to be decomposed, into pieces of surfaces of so many triangles; 0: not
+  std::size_t decompose = 0;
 };
 
 // The shape of an OBJ file (coordinates as they are written) or of any other that Assimp reads, STL
 // among them: a hull, or the union of the hulls of what hangs together in it by common vertices,
-// object by object in the file's order.  Parts that are flat are mended: left out.
+// object by object in the file's order.  Parts that are flat are mended: left out.  What is
+// decomposed (import/convex-pieces.h) is told, with the change of its volume; surfaces in others
+// that face inwards are their cavities then, and holes are mended: closed.
 //
 // Errors: UserError, with the file's name, where it is missing, is no mesh, or is flat as a whole;
 // and with the name of the object where one is not convex, by more than 1e-4 of its size, and
-// hulls are not wanted.
+// neither hulls nor decomposition are wanted.
 ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending);
 
 struct NamedShape {

@@ -1,5 +1,6 @@
 // Scheme primitives: shapes.
 // SPDX-License-Identifier: LGPL-3.0-or-later
+#include "base/interruption.h"
 #include "geometry/shape.h"
 
 #include "import/solid-file.h"
@@ -131,12 +132,14 @@ Vec3 to_scale(SCM scale) {
 
 TW_PRIMITIVE(
     load_shape, "%load-shape",
-    (SCM file, SCM scale, SCM kind, SCM by_objects, SCM y_up, SCM strict),
+    (SCM file, SCM scale, SCM kind, SCM decompose, SCM by_objects, SCM y_up, SCM strict),
     "Return (SHAPE . NOTES) of a mesh file, or (((NAME . SHAPE) ...) . NOTES); kind: convex, "
-    "hulls or concave.") {
+    "hulls, pieces or concave; decompose: of pieces, the number of triangles.") {
+  const InterruptionCheck check(look_for_signals);
   SolidOptions options;
   const std::string wanted = to_symbol_name(kind, "the kind");
   options.hulls = wanted == "hulls";
+  if (wanted == "pieces") options.decompose = scm_to_size_t(decompose);
   options.y_up = scm_is_true(y_up);
   options.scale = to_scale(scale);
   Mending mending(scm_is_true(strict));
@@ -172,6 +175,7 @@ TW_PRIMITIVE(triangle_mesh, "%triangle-mesh", (SCM points, SCM triangles, SCM st
     }
     all.push_back(triangle);
   }
+  const InterruptionCheck check(look_for_signals);
   MeshFaults faults;
   const ShapePtr shape = make_mesh(places, all, &faults);
   Mending mending(scm_is_true(strict));
@@ -182,6 +186,7 @@ TW_PRIMITIVE(triangle_mesh, "%triangle-mesh", (SCM points, SCM triangles, SCM st
 TW_PRIMITIVE(load_visual, "%load-visual",
              (SCM file, SCM scale, SCM y_up, SCM color, SCM position, SCM orientation, SCM strict),
              "Return (VISUAL . NOTES) of what is seen of a mesh file.") {
+  const InterruptionCheck check(look_for_signals);
   const Vec3 factors = to_scale(scale);
   VisualPart part;
   if (scm_is_true(color)) part.color = to_vec3(color, "color");

@@ -1,6 +1,7 @@
 // Scheme primitive: a multibody from a URDF file.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "import/urdf.h"
+#include "base/interruption.h"
 
 #include "collision/separation.h"
 #include "script/body-def.h"
@@ -119,7 +120,10 @@ TW_PRIMITIVE(
     options.packages.push_back(to_file_name(folder, "a folder of package-path"));
   const std::string path = to_file_name(file, "the file");
   Mending mending(scm_is_true(strict));
-  UrdfRobot robot = read_urdf(path, options, mending);
+  UrdfRobot robot = [&] {
+    const InterruptionCheck check(look_for_signals);
+    return read_urdf(path, options, mending);
+  }();
   std::vector<std::string> notes = mending.take_notes();
   World& to = to_world(world);
   def.free = robot.free;
