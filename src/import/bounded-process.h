@@ -17,13 +17,13 @@ namespace tw {
 struct Bounds {
   std::uint64_t memory = 0;  // bytes, beyond what the program has
   unsigned seconds = 0;      // of CPU time
-  // for messages: "a.dae takes WORKER more than ...; expected EXPECTED"
+  // for messages: "a.dae takes WORKER more than 9 s; expected EXPECTED"
   std::string worker = "the library that reads it", expected = "a file that is whole";
 };
 
 // What `work` returns, of bytes that the process writes back.  `what` is done, for messages: "the
-// mesh a.dae".  It is given up where this thread is (base/interruption.h).  Errors: UserError, those
-// of the work, or that it needs more than its bounds, or was ended by a signal.
+// mesh a.dae".  It is given up where this thread is (base/interruption.h).  Errors: UserError,
+// those of the work, or that it needs more than its bounds, or was ended by a signal.
 std::vector<char> done_within(const Bounds& bounds, const std::string& what,
                               const std::function<std::vector<char>()>& work);
 
