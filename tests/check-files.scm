@@ -76,12 +76,13 @@
       (lambda (low high)
         (let* ((sides (map - (vector->list high) (vector->list low)))
                (size (* 1/30 (apply max sides)))
-               (at (lambda (axis share)
-                     (+ (vector-ref low axis) (* share (list-ref sides axis))))))
+               ;; of the middle one of three, or one beside it; past the edge of what is narrow
+               (at (lambda (axis which)
+                     (+ (* 1/2 (+ (vector-ref low axis) (vector-ref high axis)))
+                        (* (- which 1) (max (* 1/3 (list-ref sides axis)) (* 3 size)))))))
           (do ((k 0 (1+ k))) ((= k 9))
             (add-body! #:shape (if (even? k) (sphere size) (box size (* 1.5 size) (* 2 size)))
-                       #:position (vector (at 0 (/ (+ 0.5 (modulo k 3)) 3))
-                                          (at 1 (/ (+ 0.5 (quotient k 3)) 3))
+                       #:position (vector (at 0 (modulo k 3)) (at 1 (quotient k 3))
                                           (+ (vector-ref high 2) (* 3 size)))))
           ;; as long as it takes to fall by the whole
           (run! #:until (sqrt (/ (apply max sides) 4)))

@@ -382,7 +382,8 @@ std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>&
                    "which make a union, or #:concave? #t for ground as it is, #:decompose #t for "
                    "convex pieces, or #:convex-hull? #t for the hull of each");
   }
-  if (flat_parts == shapes.size()) throw UserError("the mesh " + file + ": " + first_flat);
+  if (flat_parts == shapes.size())
+    throw UserError("the mesh " + file + ": " + first_flat + ", or #:concave? #t for ground");
   if (flat_parts > 0) {
     std::string others;
     if (flat_parts > 1)
