@@ -11,7 +11,7 @@
 // triangles, the points and the triangles, by numbers of points from 0.
 // Output: "cells", the volume within the surfaces, the number of holes that were closed, that of
 // triangles that were decomposed, the number of cells, and of each its number of points and the
-// points; or "error" and what is wrong.
+// points, and "end"; or "error" and what is wrong.
 //
 // The licence of the parts of CGAL that this program consists of is the GPL.
 //
@@ -85,7 +85,8 @@ Soup read_soup() {
   return soup;
 }
 
-// Closed surfaces that hang together, each outside outside; the holes that were closed are counted.
+// Closed surfaces that hang together, outside outside: those within others face inwards.  The holes
+// that were closed are counted.
 std::vector<Surface> closed_surfaces(Soup soup, std::size_t& holes) {
   pmp::repair_polygon_soup(soup.points, soup.triangles);
   pmp::orient_polygon_soup(soup.points, soup.triangles);
@@ -99,10 +100,9 @@ std::vector<Surface> closed_surfaces(Soup soup, std::size_t& holes) {
     pmp::triangulate_hole(all, border, std::back_inserter(lid));
   }
   if (!CGAL::is_closed(all)) throw std::runtime_error("has holes that cannot be closed");
+  pmp::orient_to_bound_a_volume(all);
   std::vector<Surface> surfaces;
   pmp::split_connected_components(all, surfaces);
-  for (Surface& surface : surfaces)
-    if (!pmp::is_outward_oriented(surface)) pmp::reverse_face_orientations(surface);
   return surfaces;
 }
 
@@ -170,23 +170,29 @@ void add_cells(Nef solid, std::vector<Polyhedron>& cells) {
 
 void decompose() {
   const auto most = read<std::size_t>();
-  std::vector<Nef> solids, cavities;
+  std::vector<Nef> solids;
+  Surface cavities;
   std::size_t holes = 0, triangles = 0;
   double volume = 0;
   for (auto surfaces = read<std::size_t>(); surfaces > 0; --surfaces) {
-    const bool is_solid = read<int>() > 0;
-    for (const Surface& whole : closed_surfaces(read_soup(), holes)) {
+    const bool is_cavity = read<int>() < 0;
+    for (Surface& whole : closed_surfaces(read_soup(), holes)) {
+      const bool faces_in = !pmp::is_outward_oriented(whole);
+      if (faces_in) pmp::reverse_face_orientations(whole);
+      const bool solid = is_cavity == faces_in;
       const Surface surface = prepared(whole, most);
-      volume += (is_solid ? 1 : -1) * CGAL::to_double(pmp::volume(whole));
+      volume += (solid ? 1 : -1) * CGAL::to_double(pmp::volume(whole));
       triangles += surface.number_of_faces();
-      (is_solid ? solids : cavities).push_back(solid_of(surface));
+      if (solid)
+        solids.push_back(solid_of(surface));
+      else
+        cavities += surface;
     }
   }
+  const bool hollow = cavities.number_of_faces() > 0;
+  const Nef all_cavities = hollow ? solid_of(cavities) : Nef();
   std::vector<Polyhedron> cells;
-  for (Nef& solid : solids) {
-    for (const Nef& cavity : cavities) solid -= cavity;
-    add_cells(solid, cells);
-  }
+  for (const Nef& solid : solids) add_cells(hollow ? solid - all_cavities : solid, cells);
   std::printf("cells %.17g %zu %zu %zu\n", volume, holes, triangles, cells.size());
   for (const Polyhedron& cell : cells) {
     std::printf("%zu\n", cell.size_of_vertices());
@@ -194,6 +200,7 @@ void decompose() {
       std::printf("%.17g %.17g %.17g\n", CGAL::to_double(p->x()), CGAL::to_double(p->y()),
                   CGAL::to_double(p->z()));
   }
+  std::puts("end");
 }
 
 }  // namespace
@@ -216,5 +223,5 @@ int main(int argc, char**) {
   } catch (const std::exception& error) {
     std::printf("error %s\n", error.what());
   }
-  return 0;
+  return std::fflush(stdout) == 0 ? 0 : 1;
 }

@@ -182,10 +182,11 @@ left out, with a warning.
 #:scale         metres in a unit of the file, or #(x y z) of them, not 0; 1
 #:convex-hull?  whether the hull is taken of parts that are not convex; #f
 #:concave?      whether all is ground with the file's surface, as triangle-mesh makes it; #f
-#:decompose     #t, or a number of triangles, 20 to 5000: parts that are not convex are split into convex
-                pieces; those of more than so many triangles, 400, and half as many concave edges are
-                simplified to them first.  The change of the volume is told.  More triangles take
-                longer, by the square of their number, and make more pieces; #f
+#:decompose     #t, or a number N of triangles, 20 to 2000: parts that are not convex are split into
+                convex pieces; those of more than N triangles, 400, and half as many concave edges are
+                simplified to N first.  Pieces are joined where that adds at most 4/N of the size
+                over the surface, 1 %; the mass is that before they are.  The change of the volume is
+                told.  More triangles take longer, by their square, and make more pieces; #f
 #:objects?      #t: a list ((NAME . SHAPE) ...) of the file's objects, NAME a string, is returned, to be
                 bodies each; where there is but one, of the parts in it; #f
 #:up            'y: the file's y is up, and becomes z here, its z becomes -y; 'z
@@ -196,8 +197,8 @@ left out, with a warning.
     (bad-value "concave?" concave? "#f where #:convex-hull? is given"))
   (when (and decompose (or convex-hull? concave?))
     (bad-value "decompose" decompose "#f where #:convex-hull? or #:concave? is given"))
-  (unless (or (memq decompose '(#t #f)) (and (exact-integer? decompose) (<= 20 decompose 5000)))
-    (bad-value "decompose" decompose "#t, or a number of triangles, 20 to 5000"))
+  (unless (or (memq decompose '(#t #f)) (and (exact-integer? decompose) (<= 20 decompose 2000)))
+    (bad-value "decompose" decompose "#t, or a number of triangles, 20 to 2000"))
   (when (and objects? concave?)
     (bad-value "objects?" objects? "#f where #:concave? is given: ground is one body"))
   (let* ((found (beside-caller file (caller-place)))

@@ -418,17 +418,22 @@ ShapePtr make_mesh(const std::vector<Vec3>& points, const std::vector<MeshTriang
 }
 
 ShapePtr make_union(const std::vector<ShapePtr>& shapes) {
+  std::vector<MassProperties> masses;
+  for (const ShapePtr& shape : shapes)
+    if (shape) masses.push_back(shape->mass_properties());
+  return make_union(shapes, summed_mass(masses));
+}
+
+ShapePtr make_union(const std::vector<ShapePtr>& shapes, const MassProperties& mass) {
   TW_REQUIRE(!shapes.empty(), "a union has no parts; expected at least one shape");
   std::vector<ConvexPart> parts;
-  std::vector<MassProperties> masses;
   for (const ShapePtr& shape : shapes) {
     TW_REQUIRE(shape != nullptr, "a part of a union is not a shape");
     TW_REQUIRE(!shape->has_lazy_parts(), "a part of a union is a " + shape->kind_name() +
                                              "; expected it to be a body of its own");
     parts.insert(parts.end(), shape->parts().begin(), shape->parts().end());
-    masses.push_back(shape->mass_properties());
   }
-  return finish_shape(std::move(parts), "union", summed_mass(masses));
+  return finish_shape(std::move(parts), "union", mass);
 }
 
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose) {

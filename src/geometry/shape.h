@@ -161,6 +161,8 @@ ShapePtr make_height_field(std::vector<double> heights, std::size_t columns, dou
 ShapePtr make_mesh(const std::vector<Vec3>& points, const std::vector<MeshTriangle>& triangles,
                    MeshFaults* faults = nullptr);
 ShapePtr make_union(const std::vector<ShapePtr>& shapes);
+// With a mass of its own, where overlaps are not to count twice.
+ShapePtr make_union(const std::vector<ShapePtr>& shapes, const MassProperties& mass);
 // The shape moved by `pose` within the body's frame.
 ShapePtr place_shape(const ShapePtr& shape, const Pose& pose);
 // The bounds of one part when the frame of its shape is placed at `frame`, m.  Exact.

@@ -22,7 +22,7 @@ std::vector<char> read_with_assimp(const std::string& file,
   TW_REQUIRE(std::filesystem::is_regular_file(file, ignored),
              "the mesh " + file + " is missing; expected a file that can be read");
   const std::uint64_t size = std::filesystem::file_size(file, ignored);
-  const Bounds bounds{.memory = (std::uint64_t{1} << 29) + 100 * size, .seconds = 120};
+  const Bounds bounds{.memory = (std::uint64_t{1} << 30) + 100 * size, .seconds = 120};
   return done_within(bounds, "the mesh " + file, [&] {
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

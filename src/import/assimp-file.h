@@ -15,7 +15,7 @@ namespace tw {
 
 // What `take` makes of the scene, its transforms applied, as bytes.  `prepare` sets what the
 // importer is to do, beside that: the steps of its postprocessing are returned.  Axes are the
-// file's own. Memory: half a gigabyte and a hundred times the size of the file; time: two minutes.
+// file's own. Memory: a gigabyte and a hundred times the size of the file; time: two minutes.
 //
 // Errors: UserError, with the file's name, where it is missing, is no mesh, or cannot be read
 // within the bounds, and those of `take`.

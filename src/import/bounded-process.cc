@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,8 +55,11 @@ void write_all(int to, const char* data, std::size_t size) {
   }
 }
 
-[[noreturn]] void work_and_leave(int to, const Bounds& bounds,
+[[noreturn]] void work_and_leave(int to, pid_t parent, const Bounds& bounds,
                                  const std::function<std::vector<char>()>& work) {
+  // it ends with its parent
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
   // Ctrl-C is for the program, which waits; Guile's collector has a handler of SIGXCPU
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
@@ -115,7 +119,7 @@ std::vector<char> done_within(const Bounds& bounds, const std::string& what,
   int ends[2];
   TW_REQUIRE(pipe2(ends, O_CLOEXEC) == 0,
              what + " cannot be read: no pipe, " + std::strerror(errno));
-  const pid_t child = fork();
+  const pid_t parent = getpid(), child = fork();
   if (child < 0) {
     close(ends[0]);
     close(ends[1]);
@@ -123,7 +127,7 @@ std::vector<char> done_within(const Bounds& bounds, const std::string& what,
   }
   if (child == 0) {
     close(ends[0]);
-    work_and_leave(ends[1], bounds, work);
+    work_and_leave(ends[1], parent, bounds, work);
   }
   close(ends[1]);
   // twice as long by the clock: the machine may be busy

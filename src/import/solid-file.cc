@@ -11,10 +11,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -25,8 +23,8 @@
 #include "base/error.h"
 #include "geometry/mesh-faces.h"
 #include "geometry/polyhedron.h"
-#include "import/convex-pieces.h"
 #include "import/mesh-file.h"
+#include "import/solid-pieces.h"
 
 namespace tw {
 namespace {
@@ -34,15 +32,9 @@ namespace {
 // how deep a dent may be, relative to the size
 constexpr double flat = 1e-4;
 
-// The triangles of one object; points that are no corner of any don't count.
-struct Object {
-  std::string name;
-  std::vector<std::array<std::size_t, 3>> triangles;
-};
-
 struct Mesh {
   std::vector<Vec3> points;
-  std::vector<Object> objects;
+  std::vector<MeshObject> objects;
 };
 
 // The reader takes for 0 what is no number.
@@ -82,7 +74,7 @@ Mesh read_obj(const std::string& file) {
   for (std::size_t i = 0; i + 2 < x.size(); i += 3)
     mesh.points.emplace_back(x[i], x[i + 1], x[i + 2]);
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-    Object object{shape.name, {}};
+    MeshObject object{shape.name, {}};
     const std::vector<tinyobj::index_t>& corners = shape.mesh.indices;
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
       object.triangles.push_back({static_cast<std::size_t>(corners[i].vertex_index),
@@ -103,7 +95,7 @@ Mesh read_obj(const std::string& file) {
 Mesh read_any(const std::string& file) {
   Mesh mesh;
   for (const NamedTriangles& part : mesh_triangles(file)) {
-    Object object{part.name, {}};
+    MeshObject object{part.name, {}};
     for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3)
       object.triangles.push_back(
           {mesh.points.size() + i, mesh.points.size() + i + 1, mesh.points.size() + i + 2});
@@ -124,7 +116,7 @@ std::vector<std::size_t> same_places(const std::vector<Vec3>& points) {
 }
 
 // An object's triangles by what hangs together, in the order of their first ones.
-std::vector<Object> connected(const Object& object, std::size_t points) {
+std::vector<MeshObject> connected(const MeshObject& object, std::size_t points) {
   std::vector<std::size_t> root(points);
   std::iota(root.begin(), root.end(), std::size_t{0});
   const auto find = [&](std::size_t i) {
@@ -136,7 +128,7 @@ std::vector<Object> connected(const Object& object, std::size_t points) {
     root[find(c)] = find(a);
   }
   std::map<std::size_t, std::size_t> number;
-  std::vector<Object> parts;
+  std::vector<MeshObject> parts;
   for (const auto& triangle : object.triangles) {
     const auto [found, fresh] = number.emplace(find(triangle[0]), parts.size());
     if (fresh) parts.push_back({object.name, {}});
@@ -147,7 +139,7 @@ std::vector<Object> connected(const Object& object, std::size_t points) {
 
 // How far the hull stands out over the plane of a triangle, on the side where it does so less, at
 // most, relative to its size: 0 for convex objects.
-double deepest_dent(const Object& object, const std::vector<Vec3>& points, const Shape& hull) {
+double deepest_dent(const MeshObject& object, const std::vector<Vec3>& points, const Shape& hull) {
   const std::vector<Vec3>& corners = hull.parts()[0].core->vertices();
   const double size = 2 * hull.parts()[0].bound_radius;
   double deepest = 0;
@@ -166,12 +158,18 @@ double deepest_dent(const Object& object, const std::vector<Vec3>& points, const
   return deepest;
 }
 
-std::string title(const Object& object, std::size_t number, std::size_t count) {
+// A closed surface with much less within it than its hull, however shallow its dents are: walls.
+bool is_thin_walled(const MeshObject& object, const std::vector<Vec3>& points, const Shape& hull) {
+  return is_closed(object) &&
+         std::abs(volume_within(object, points)) < 0.9 * hull.mass_properties().volume;
+}
+
+std::string title(const MeshObject& object, std::size_t number, std::size_t count) {
   if (!object.name.empty()) return "the object " + object.name;
   return count == 1 ? "it" : "its object " + std::to_string(number + 1);
 }
 
-ShapePtr hull_of(const Object& object, const std::vector<Vec3>& points) {
+ShapePtr hull_of(const MeshObject& object, const std::vector<Vec3>& points) {
   std::vector<Vec3> corners;
   for (const auto& triangle : object.triangles)
     for (const std::size_t corner : triangle) corners.push_back(points[corner]);
@@ -193,10 +191,6 @@ Mesh read_mesh(const std::string& file, const SolidOptions& options) {
     point = point.cwiseProduct(options.scale);
   }
   return mesh;
-}
-
-std::string several(std::size_t count, const std::string& of) {
-  return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -228,7 +222,7 @@ void GroundReader::add(const std::string& file, const SolidOptions& options, con
   for (const Vec3& p : mesh.points) points_.push_back(pose.q * p + pose.p);
   // a scale of odd sign turns all of them inside out
   const bool mirrored = options.scale.prod() < 0;
-  for (const Object& object : mesh.objects)
+  for (const MeshObject& object : mesh.objects)
     for (const auto& [a, b, c] : object.triangles)
       triangles_.push_back({first + static_cast<std::uint32_t>(a),
                             first + static_cast<std::uint32_t>(mirrored ? c : b),
@@ -281,72 +275,9 @@ ShapePtr GroundReader::shape() {
 
 namespace {
 
-// Less than 0 where its triangles face inwards.
-double volume_within(const Object& object, const std::vector<Vec3>& points) {
-  const Vec3& middle = points[object.triangles.front()[0]];
-  double volume = 0;
-  for (const auto& [a, b, c] : object.triangles)
-    volume += (points[a] - middle).dot((points[b] - middle).cross(points[c] - middle)) / 6;
-  return volume;
-}
-
-Aabb bounds_of(const Object& object, const std::vector<Vec3>& points) {
-  Aabb bounds;
-  for (const auto& triangle : object.triangles)
-    for (const std::size_t corner : triangle) bounds.add(points[corner]);
-  return bounds;
-}
-
-// Of each part the smallest one that it is a cavity of: it faces inwards, and lies within the
-// other's bounds.
-std::vector<std::optional<std::size_t>> hosts_of_cavities(const std::vector<Object>& parts,
-                                                          const std::vector<Vec3>& points) {
-  std::vector<Aabb> bounds;
-  std::vector<bool> inwards;
-  for (const Object& part : parts) {
-    bounds.push_back(bounds_of(part, points));
-    inwards.push_back(volume_within(part, points) < 0);
-  }
-  std::vector<std::optional<std::size_t>> hosts(parts.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!inwards[i]) continue;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < parts.size(); ++j)
-      if (!inwards[j] && bounds[j].contains(bounds[i].lo) && bounds[j].contains(bounds[i].hi) &&
-          bounds[j].size().prod() < least) {
-        least = bounds[j].size().prod();
-        hosts[i] = j;
-      }
-  }
-  return hosts;
-}
-
-// The pieces of what has these surfaces.
-ShapePtr decomposed(const std::string& what, const std::vector<Vec3>& points,
-                    const std::vector<ClosedSurface>& surfaces, std::size_t most,
-                    Mending& mending) {
-  const ConvexPieces result = convex_pieces(what, points, surfaces, most);
-  if (result.holes > 0)
-    mending.mend(what + " has ", several(result.holes, "hole"),
-                 result.holes == 1 ? "it is closed" : "they are closed", "a closed surface");
-  std::size_t given = 0;
-  for (const ClosedSurface& surface : surfaces) given += surface.triangles.size();
-  const double change = 100 * (result.volume / result.surface_volume - 1);
-  char percent[32];
-  std::snprintf(percent, sizeof percent, "%.2g %%", std::abs(change));
-  mending.tell(what + " is " + several(result.pieces.size(), "convex piece") +
-               (result.triangles < given ? ", made of " + std::to_string(result.triangles) +
-                                               " of " + several(given, "triangle")
-                                         : "") +
-               (std::abs(change) < 0.01 ? ", of the same volume"
-                                        : ", with a volume " + std::string(percent) +
-                                              (change > 0 ? " larger" : " smaller")));
-  return result.pieces.size() == 1 ? result.pieces[0] : make_union(result.pieces);
-}
-
 // The hull of each part, or its pieces; null where that is flat, or a cavity of another.
 std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>& points,
-                               const std::vector<Object>& parts, const SolidOptions& options,
+                               const std::vector<MeshObject>& parts, const SolidOptions& options,
                                Mending& mending) {
   std::vector<ShapePtr> shapes;
   std::size_t flat_parts = 0;
@@ -359,9 +290,6 @@ std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>&
       continue;
     }
     const std::string what = title(parts[i], i, parts.size());
-    std::vector<ClosedSurface> surfaces{{parts[i].triangles, false}};
-    for (std::size_t k = 0; k < parts.size(); ++k)
-      if (hosts[k] == i) surfaces.push_back({parts[k].triangles, true});
     try {
       shapes.push_back(hull_of(parts[i], points));
     } catch (const UserError& error) {
@@ -371,11 +299,20 @@ std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>&
       continue;
     }
     const double dent = deepest_dent(parts[i], points, *shapes.back());
-    if (options.decompose > 0 && (dent > flat || surfaces.size() > 1)) {
-      shapes.back() = decomposed("the mesh " + file + ": " + what, points, surfaces,
+    const bool hollow = std::find(hosts.begin(), hosts.end(), i) != hosts.end();
+    const bool thin = is_thin_walled(parts[i], points, *shapes.back());
+    if (options.decompose > 0 && (dent > flat || hollow || thin)) {
+      shapes.back() = decomposed("the mesh " + file + ": " + what, i, parts, points, hosts,
                                  options.decompose, mending);
       continue;
     }
+    TW_REQUIRE(
+        options.hulls || !thin,
+        "the mesh " + file + ": " + what +
+            " isn't convex: it encloses less than its hull; "
+            "expected objects that are convex each, which make a union, or #:concave? #t "
+            "for ground as it is, #:decompose #t for convex pieces, or #:convex-hull? #t for "
+            "the hull of each");
     TW_REQUIRE(options.hulls || dent <= flat,
                "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
                    " of its size over one of its faces; expected objects that are convex each, "
@@ -402,13 +339,13 @@ ShapePtr united(std::vector<ShapePtr> shapes) {
 }
 
 // What hangs together by common places; for each part the number of its object.
-std::vector<Object> parts_of(Mesh& mesh, std::vector<std::size_t>& objects) {
+std::vector<MeshObject> parts_of(Mesh& mesh, std::vector<std::size_t>& objects) {
   const std::vector<std::size_t> places = same_places(mesh.points);
-  std::vector<Object> parts;
+  std::vector<MeshObject> parts;
   for (std::size_t i = 0; i < mesh.objects.size(); ++i) {
     for (auto& triangle : mesh.objects[i].triangles)
       for (std::size_t& corner : triangle) corner = places[corner];
-    const std::vector<Object> pieces = connected(mesh.objects[i], mesh.points.size());
+    const std::vector<MeshObject> pieces = connected(mesh.objects[i], mesh.points.size());
     parts.insert(parts.end(), pieces.begin(), pieces.end());
     objects.resize(parts.size(), i);
   }
@@ -416,12 +353,12 @@ std::vector<Object> parts_of(Mesh& mesh, std::vector<std::size_t>& objects) {
 }
 
 // The names of a file, those that come again or are missing with numbers.
-std::vector<std::string> names_of(const std::vector<Object>& objects) {
+std::vector<std::string> names_of(const std::vector<MeshObject>& objects) {
   std::set<std::string> taken;
-  for (const Object& object : objects) taken.insert(object.name);
+  for (const MeshObject& object : objects) taken.insert(object.name);
   std::map<std::string, int> times;
   std::vector<std::string> names;
-  for (const Object& object : objects) {
+  for (const MeshObject& object : objects) {
     std::string name = object.name.empty() ? "object" : object.name;
     int& time = times[name];
     if (++time > 1 || object.name.empty()) {
@@ -438,7 +375,7 @@ std::vector<std::string> names_of(const std::vector<Object>& objects) {
 ShapePtr read_solid(const std::string& file, const SolidOptions& options, Mending& mending) {
   Mesh mesh = read_mesh(file, options);
   std::vector<std::size_t> objects;
-  const std::vector<Object> parts = parts_of(mesh, objects);
+  const std::vector<MeshObject> parts = parts_of(mesh, objects);
   return united(hulls_of(file, mesh.points, parts, options, mending));
 }
 
@@ -446,7 +383,7 @@ std::vector<NamedShape> read_objects(const std::string& file, const SolidOptions
                                      Mending& mending) {
   Mesh mesh = read_mesh(file, options);
   std::vector<std::size_t> objects;
-  const std::vector<Object> parts = parts_of(mesh, objects);
+  const std::vector<MeshObject> parts = parts_of(mesh, objects);
   // a file that names nothing has its parts as objects
   const bool whole = mesh.objects.size() == 1;
   const std::vector<ShapePtr> hulls = hulls_of(file, mesh.points, parts, options, mending);

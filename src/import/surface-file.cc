@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,9 @@ namespace tw {
 namespace {
 
 constexpr float sharp = 40;  // degrees
+// Of textures: pixels a side, and fewer of those beyond so many bytes in all.
+constexpr int large_texture = 2048, small_texture = 512;
+constexpr std::size_t many_bytes = 64 << 20;
 
 bool is_stl(const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
@@ -72,20 +76,26 @@ class Gathering {
 
 std::int32_t Gathering::load_texture(const std::string& name) {
   const std::string what = "the texture " + name;
+  std::size_t so_far = 0;
+  for (const Texture& texture : surface.textures) so_far += texture.rgba.size();
+  const int largest = so_far < many_bytes ? large_texture : small_texture;
   try {
     if (const aiTexture* inside = scene_.GetEmbeddedTexture(name.c_str())) {
       TW_REQUIRE(inside->mHeight == 0,
                  what + " lies in the mesh as bare pixels; expected a picture");
       surface.textures.push_back(decode_texture(
-          {reinterpret_cast<const std::uint8_t*>(inside->pcData), inside->mWidth}, what));
+          {reinterpret_cast<const std::uint8_t*>(inside->pcData), inside->mWidth}, what, largest));
     } else {
       const std::optional<std::string> found = find_texture(file_, name);
       TW_REQUIRE(found, what + " is missing; expected it where the mesh says, beside it, or in " +
                             "materials/textures/ beside its folder");
-      surface.textures.push_back(read_texture(*found));
+      surface.textures.push_back(read_texture(*found, largest));
     }
   } catch (const UserError& error) {
     faults.push_back(Mending::halves(error));
+    return -1;
+  } catch (const std::bad_alloc&) {
+    faults.emplace_back(what + " needs too much memory", "one of fewer pixels");
     return -1;
   }
   return static_cast<std::int32_t>(surface.textures.size()) - 1;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -19,7 +18,8 @@ namespace tw {
 
 namespace {
 
-constexpr int largest = 2048;  // pixels
+constexpr int most_pixels = 8192;                  // a side, that are decoded
+constexpr std::uintmax_t most_bytes = 256u << 20;  // of a file
 
 std::size_t bytes_of(int width, int height) {
   return 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -40,13 +40,15 @@ std::optional<std::string> find_texture(const std::string& mesh_file, const std:
   return std::nullopt;
 }
 
-Texture decode_texture(std::span<const std::uint8_t> bytes, const std::string& what) {
-  TW_REQUIRE(bytes.size() <= std::size_t{1} << 30, what + " is larger than a gigabyte");
+Texture decode_texture(std::span<const std::uint8_t> bytes, const std::string& what, int largest) {
   int width = 0, height = 0, channels = 0;
+  const auto size = static_cast<int>(bytes.size());
+  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
+    TW_REQUIRE(width <= most_pixels && height <= most_pixels,
+               what + " has " + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels; expected at most " + std::to_string(most_pixels) + " a side");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
-                            &channels, 4),
-      &stbi_image_free);
+      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), &stbi_image_free);
   TW_REQUIRE(pixels, what + " cannot be read: " + stbi_failure_reason() +
                          "; expected a PNG, JPEG, TGA or BMP file");
   const int larger = std::max(width, height);
@@ -55,22 +57,32 @@ Texture decode_texture(std::span<const std::uint8_t> bytes, const std::string& w
     return std::max(1, static_cast<int>(std::lround(double(side) * largest / larger)));
   };
   Texture texture{fit(width), fit(height), {}};
-  if (larger <= largest) {
-    texture.rgba.assign(pixels.get(), pixels.get() + bytes_of(width, height));
-    return texture;
-  }
   texture.rgba.resize(bytes_of(texture.width, texture.height));
-  TW_REQUIRE(stbir_resize_uint8_srgb(pixels.get(), width, height, 0, texture.rgba.data(),
-                                     texture.width, texture.height, 0, 4, 3, 0),
-             what + " cannot be made smaller; expected one of at most 2048 pixels a side");
+  if (larger <= largest)
+    std::copy_n(pixels.get(), texture.rgba.size(), texture.rgba.begin());
+  else
+    TW_REQUIRE(stbir_resize_uint8_srgb(pixels.get(), width, height, 0, texture.rgba.data(),
+                                       texture.width, texture.height, 0, 4, 3, 0),
+               what + " cannot be made smaller; expected one of fewer pixels");
+  // alpha that means nothing
+  bool seen = false;
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) seen = seen || texture.rgba[i] >= 128;
+  for (std::size_t i = 3; i < texture.rgba.size() && !seen; i += 4) texture.rgba[i] = 255;
   return texture;
 }
 
-Texture read_texture(const std::string& file) {
+Texture read_texture(const std::string& file, int largest) {
+  const std::string what = "the texture " + file;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  TW_REQUIRE(!error && size <= most_bytes,
+             what + " cannot be read; expected a file of at most 256 MB");
+  std::vector<char> bytes(static_cast<std::size_t>(size));
   std::ifstream in(file, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
-  return decode_texture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-                        "the texture " + file);
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  return decode_texture(
+      {reinterpret_cast<const std::uint8_t*>(bytes.data()), static_cast<std::size_t>(in.gcount())},
+      what, largest);
 }
 
 }  // namespace tw

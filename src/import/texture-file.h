@@ -15,9 +15,10 @@ namespace tw {
 // name in this folder, or in materials/textures/ beside this folder, where robots have theirs.
 std::optional<std::string> find_texture(const std::string& mesh_file, const std::string& name);
 
-// No more than 2048 pixels wide and high: what is larger is made smaller.  Errors (UserError), by
-// the picture's name `what`: it cannot be read.
-Texture decode_texture(std::span<const std::uint8_t> bytes, const std::string& what);
-Texture read_texture(const std::string& file);
+// No more than `largest` pixels wide and high: what is larger is made smaller.  What would not be
+// seen at all is opaque.  Errors (UserError), by the picture's name `what`: it cannot be read, or
+// has more than 8192 pixels a side.
+Texture decode_texture(std::span<const std::uint8_t> bytes, const std::string& what, int largest);
+Texture read_texture(const std::string& file, int largest);
 
 }  // namespace tw

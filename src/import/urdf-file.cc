@@ -225,6 +225,9 @@ std::optional<Vec3> rgb_of(std::string text) {
 
 // `tell`: what cannot be read is told.
 std::optional<Vec3> FileReader::color_of(const Element& material, bool tell) const {
+  if (const Element* texture = material.FirstChildElement("texture"); texture && tell)
+    mending_.mend(at(texture->GetLineNum()), "a <material> has a <texture>", "it is not drawn",
+                  "textures of meshes, which are");
   const Element* color = material.FirstChildElement("color");
   if (const char* rgba = color ? color->Attribute("rgba") : nullptr) {
     const std::optional<Vec3> found = rgb_of(rgba);

@@ -211,7 +211,8 @@ BodyDrawer::MeshGroup BodyDrawer::make_surface_group(const SurfaceMesh& surface,
   }
   MeshGroup group = make_group(mesh);
   group.patches = std::move(patches);
-  group.radius = surface.radius;
+  group.middle = surface.bounds.center();
+  group.radius = 0.5 * surface.bounds.size().norm();
   return group;
 }
 
@@ -253,7 +254,7 @@ void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye, double pixe
     for (const Part& part : group.parts) {
       if (!drawn(part)) continue;
       const Frame frame = Frame(poses[part.body]) * part.placement;
-      nearest = std::min(nearest, (frame.p - eye).norm() - group.radius);
+      nearest = std::min(nearest, (frame * group.middle - eye).norm() - group.radius);
       MeshInstance instance;
       instance.rows << frame.R.cast<float>(), (frame.p - eye).cast<float>();
       instance.color = part.color;

@@ -1,8 +1,8 @@
 // The parts of all bodies on the GL side: one draw call for all spheres, one per different mesh.
 //
 // Cost: instance data is rewritten for every frame, 64 bytes per part.  Of a mesh of many triangles
-// that are seen and no more (SurfaceMesh) the coarsest version is drawn that is within half a
-// pixel.
+// that are seen and no more (SurfaceMesh) the coarsest version is drawn that is within a
+// fifth of a pixel where the nearest of its bodies is.
 // Frames: positions go to GL relative to the eye.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
@@ -64,8 +64,9 @@ class BodyDrawer {
   struct MeshGroup {
     GLuint vertex_array = 0, instance_buffer = 0;
     bool closed = true;
-    double radius = 0;   // of what has levels, about its origin
-    double allowed = 0;  // m, of the error of a level
+    Vec3 middle = Vec3::Zero();  // of what has levels
+    double radius = 0;           // about that
+    double allowed = 0;          // m, of the error of a level
     std::vector<Patch> patches;
     std::vector<Part> parts;
     std::vector<MeshInstance> instances;

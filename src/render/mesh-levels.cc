@@ -35,12 +35,11 @@ struct Rows {
   }
 };
 
-// Vertices at one place as one, so that edges may collapse where normals differ; where they have
-// places in a texture, too, each is kept for itself.
+// Vertices at one place as one, so that edges may collapse where normals differ.
 class Places {
  public:
-  Places(std::span<const Mesh::Vertex> vertices, bool textured)
-      : vertices_(vertices), place_of_(places_of(vertices, textured)) {
+  explicit Places(std::span<const Mesh::Vertex> vertices)
+      : vertices_(vertices), place_of_(places_of(vertices)) {
     positions_.resize(1 + *std::max_element(place_of_.begin(), place_of_.end()));
     for (std::size_t v = 0; v < vertices.size(); ++v)
       positions_[place_of_[v]] = vertices[v].position;
@@ -91,10 +90,8 @@ class Places {
   }
 
  private:
-  static Indices places_of(std::span<const Mesh::Vertex> vertices, bool textured) {
+  static Indices places_of(std::span<const Mesh::Vertex> vertices) {
     Indices places(vertices.size());
-    std::iota(places.begin(), places.end(), 0u);
-    if (textured) return places;
     // compared as bytes: there is to be one 0 only
     std::vector<Eigen::Vector3f> positions;
     for (const Mesh::Vertex& v : vertices) positions.push_back(v.position.array() + 0.f);
@@ -121,19 +118,27 @@ void append(const std::vector<Mesh::Vertex>& corners, Mesh& mesh) {
   for (const std::uint32_t corner : number) mesh.indices.push_back(first + corner);
 }
 
+bool has_one_tint(const Mesh& mesh, const SurfaceMesh::Patch& patch) {
+  const auto begin = mesh.indices.begin() + patch.first;
+  const Eigen::Vector3f& tint = mesh.vertices[*begin].tint;
+  return std::all_of(begin, begin + patch.count,
+                     [&](std::uint32_t index) { return mesh.vertices[index].tint == tint; });
+}
+
 }  // namespace
 
 std::vector<MeshLevel> add_levels(Mesh& mesh, const SurfaceMesh::Patch& patch) {
   const auto [first, count, texture] = patch;
   std::vector<MeshLevel> levels{{first, count, 0}};
-  if (count <= few) return levels;
+  // edges collapse by places alone: what is painted would be smeared
+  if (count <= few || texture >= 0 || !has_one_tint(mesh, patch)) return levels;
   const auto begin = mesh.indices.begin() + first, end = begin + count;
   const auto [least, most] = std::minmax_element(begin, end);
   const std::uint32_t base = *least;
   // a copy: vertices are added
   const std::vector<Mesh::Vertex> own(mesh.vertices.begin() + base,
                                       mesh.vertices.begin() + *most + 1);
-  const Places places(own, texture >= 0);
+  const Places places(own);
   Indices all;
   for (auto index = begin; index != end; ++index) all.push_back(places.of_vertex(*index - base));
   const double size = places.size();

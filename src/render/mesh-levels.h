@@ -9,7 +9,8 @@
 
 namespace tw {
 
-// Indices in a row, of triangles that are nowhere farther than `error` from those of the mesh.
+// Indices in a row, of triangles that are about `error` from those of the mesh, as quadrics
+// estimate.
 struct MeshLevel {
   std::uint32_t first = 0, count = 0;
   double error = 0;  // m

@@ -157,6 +157,14 @@ TEST(MeshLevels, few_triangles_have_none) {
   EXPECT_EQ(mesh.vertices.size(), vertices);
 }
 
+TEST(MeshLevels, what_is_painted_has_none) {
+  Mesh mesh = fine_ball(60);
+  const auto count = static_cast<std::uint32_t>(mesh.indices.size());
+  EXPECT_EQ(add_levels(mesh, {0, count, 0}).size(), 1u);
+  mesh.vertices[mesh.indices[7]].tint = {1, 0, 0};
+  EXPECT_EQ(add_levels(mesh, {0, count, -1}).size(), 1u);
+}
+
 TEST(MeshLevels, a_distant_surface_looks_as_all_of_its_triangles_do) {
   TW_SKIP_WITHOUT_OPENGL();
   const Mesh ball = fine_ball(60);
@@ -169,6 +177,7 @@ TEST(MeshLevels, a_distant_surface_looks_as_all_of_its_triangles_do) {
     for (std::uint32_t i = 0; i < all; i += all / pieces)
       surface->patches.push_back({i, std::min(all / pieces, all - i), -1});
     surface->closed = true;
+    for (const Mesh::Vertex& v : ball.vertices) surface->bounds.add(v.position.cast<double>());
     surface->radius = 1;
     return surface;
   };

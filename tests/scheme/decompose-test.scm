@@ -83,6 +83,21 @@
                   (vector-ref (vector-ref (shape-inertia shape) 0) 0) 1e-7)))))
 
 (when-there
+ (test-assert "so it is whichever way the file faces, and however it is scaled"
+   (let ((inside-out (apply write-file "inside-out.obj"
+                            (append (box-lines 1 -0.5 0.5 #t) (box-lines 9 -0.4 0.4 #f)))))
+     (every (lambda (made) (close? (- 1 0.512) (shape-volume (cdr made)) 1e-7))
+            (list (told (lambda () (load-shape inside-out #:decompose #t)))
+                  (told (lambda () (load-shape hollow #:decompose #t #:scale #(-1 1 1)))))))))
+
+(when-there
+ (test-assert "what stands free in a cup is no cavity of it"
+   (let ((both (apply write-file "both.obj"
+                      (append (lines-of (read-file "cup.obj")) (box-lines 49 -0.002 0.002 #t)))))
+     (close? (+ cup-volume (expt 0.004 3))
+             (shape-volume (cdr (told (lambda () (load-shape both #:decompose #t))))) 1e-9))))
+
+(when-there
  (test-assert "many triangles are simplified, and the change of the volume told"
    (let* ((ring (apply write-file "ring.obj"
                        (turned 200 (map (lambda (i)
@@ -92,6 +107,17 @@
           (made (told (lambda () (load-shape ring #:decompose 200)))))
      (string-match "it is [0-9]+ convex pieces, made of [0-9]+ of [0-9]+ triangles, with a volume"
                    (car made)))))
+
+(when-there
+ (test-assert "small pieces are joined, and not across what is hollow"
+   (in-world ()
+     (let* ((thin (apply write-file "thin.obj"
+                         (turned 24 '((0.05 . 0) (0.05 . 0.1) (0.0495 . 0.1) (0.0495 . 0.0005)))))
+            (shape (cdr (told (lambda () (load-shape thin #:decompose #t)))))
+            (cup (add-body! #:shape shape #:fixed? #t)))
+       ;; from above into it, and from its middle to the wall: within 1 % of its size
+       (and (close? 0.2995 (hit-distance (ray-cast #(0 0 0.3) #(0 0 -1))) 0.0018)
+            (close? 0.0495 (hit-distance (ray-cast #(0 0 0.05) #(1 0 0))) 0.0022))))))
 
 (when-there
  (test-assert "a ball that falls into a cup comes to rest in it"

@@ -183,7 +183,7 @@ int load(const std::string& file) {
            loads([&] {
              read_urdf(file, {UrdfBase::free, {}}, mending);
            });
-  if (file.ends_with(".png")) return loads([&] { read_texture(file); });
+  if (file.ends_with(".png")) return loads([&] { read_texture(file, 2048); });
   SolidOptions hulls;
   hulls.hulls = true;
   return loads([&] { read_solid(file, hulls, mending); }) +
