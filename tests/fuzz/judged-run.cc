@@ -23,8 +23,8 @@ void set_text(Text<size>& text, const std::string& value) {
 
 class JudgedRun {
  public:
-  JudgedRun(const DescribedScene& scene, double budget, Findings& findings)
-      : scene_(scene), budget_(budget), f_(findings) {
+  JudgedRun(const DescribedScene& scene, double budget, int looks, Findings& findings)
+      : scene_(scene), budget_(budget), looks_(looks), f_(findings) {
     for (const DescribedBody& body : scene.bodies) {
       parts_.push_back(parts_of(body));
       widths_.push_back(least_width(parts_.back()));
@@ -44,7 +44,7 @@ class JudgedRun {
         [this](const Collision& c) { told_[c.squeezed].push_back(c.time); },
         CollisionKind::squeezed);
     look(0);
-    for (int i = 1; i <= samples; ++i) {
+    for (int i = 1; i <= looks_; ++i) {
       // to the bit where other schedules end
       const double when = i < samples ? scene_.duration * i / samples : scene_.duration;
       // wall time: twice the CPU, for a machine that is shared
@@ -65,6 +65,10 @@ class JudgedRun {
     const double rejected = static_cast<double>(test::count_of(table, "rejected_steps"));
     const double steps = static_cast<double>(test::count_of(table, "implicit_steps"));
     f_.rejected = rejected / std::max(1.0, rejected + steps);
+    const double queries = static_cast<double>(test::count_of(table, "distance_queries"));
+    const double arcs = static_cast<double>(test::count_of(table, "integrations"));
+    if (f_.reached > 0)
+      f_.work = (rejected + steps + queries + arcs) * scene_.time_unit / f_.reached / moving();
     f_.finished = !f_.out_of_time;
   }
 
@@ -203,14 +207,16 @@ class JudgedRun {
     if (sample % tenth) return;
     const double units = scene_.duration / 10 / scene_.time_unit;
     const double now = cpu();
-    const double moving = static_cast<double>(std::max<std::size_t>(scene_.moving(), 1));
-    f_.pace = std::max(f_.pace, (now - tenth_cpu_) / units / moving);
+    f_.pace = std::max(f_.pace, (now - tenth_cpu_) / units / moving());
     tenth_cpu_ = now;
   }
+
+  double moving() const { return static_cast<double>(std::max<std::size_t>(scene_.moving(), 1)); }
 
   World world_;
   const DescribedScene& scene_;
   double budget_;
+  int looks_;
   Findings& f_;
   std::vector<std::vector<Part>> parts_;
   std::vector<double> widths_;
@@ -238,8 +244,8 @@ void catching(Findings& findings, Run run) {
 
 }  // namespace
 
-void run_judged(const DescribedScene& scene, double budget, Findings& findings) {
-  catching(findings, [&] { JudgedRun(scene, budget, findings).run(); });
+void run_judged(const DescribedScene& scene, double budget, Findings& findings, int looks) {
+  catching(findings, [&] { JudgedRun(scene, budget, looks, findings).run(); });
 }
 
 void run_for_hash(const DescribedScene& scene, const test::Schedule& schedule, bool vain_edits,

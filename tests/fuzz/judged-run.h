@@ -4,7 +4,7 @@
 // - lost: a dynamic body's centre outside the room
 // - energy: kinetic, weight and springs, less the work of kinematic bodies, above the least so far;
 //   as a share of the scale: the most energy that was at play
-// - pace: CPU time per time unit and moving body
+// - pace: CPU time per time unit and moving body; work: the same in counts, to the last digit
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -19,8 +19,10 @@ constexpr int samples = 60;
 // Of the smaller body's least width; deeper than that is a fault.
 constexpr double depth_bound = 0.02;
 
-// Looks at the scene `samples` times; stops when the loop has used `budget` seconds of CPU.
-void run_judged(const DescribedScene& scene, double budget, Findings& findings);
+// Looks at the scene `samples` times, or stops after `looks` of them, or when the loop has used
+// `budget` seconds of CPU.
+void run_judged(const DescribedScene& scene, double budget, Findings& findings,
+                int looks = samples);
 
 // Runs it under a schedule, for its hash alone; with edits in between that leave nothing behind, if
 // asked for.

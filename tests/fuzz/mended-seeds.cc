@@ -1,33 +1,9 @@
-// The table of what is known: a line goes when its cause is mended.
+// Seeds that had a fault, and what it came from.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "fuzz/known-seeds.h"
-
-#include <algorithm>
+#include "fuzz/mended-seeds.h"
 
 namespace tw::fuzz {
 namespace {
-
-const KnownFault table[] = {
-    // beyond what make check-long runs
-    {"drum", 17430, Fault::energy, 0.0026, "a cross of bars tumbles over a box's edge"},
-    {"plates", 190, Fault::deep, 0.048, "a cone in the corner of a trough and a wall"},
-    {"plates", 20145, Fault::deep, 0.041, "a cone in the corner of a trough and a wall"},
-    {"thin", 5313, Fault::slow, 0.47, "discs of 1:1000 wobble under needles: steps of 0.1 us"},
-    {"thin", 14032, Fault::slow, 0.8, "rods under a plate, which takes short steps once it rolls"},
-    {"bonds", 79, Fault::slow, 0.27, "springs pull hulls into each other: 4100 blows"},
-    {"bonds", 124, Fault::slow, 0.19, "a union of 10 g on a stiff spring turns at 1800 rad/s"},
-    {"bonds", 148, Fault::slow, 0.18, "bodies on stiff springs without damping"},
-    {"bonds", 234, Fault::slow, 0.23, "bodies on stiff springs without damping"},
-    {"meshes", 2055, Fault::energy, 0.0049,
-     "the rim of a cone without friction is 0.8 % deep in a crease before that is found"},
-    {"pressed", 507, Fault::energy, 0.031, "a ball wanders over a box with 300 weights, by checks"},
-    {"struck", 3, Fault::slow, 0.63, "thin links whirl about themselves in joints with friction"},
-    {"struck", 38, Fault::slow, 0.28, "thin links whirl about themselves in joints with friction"},
-    {"struck", 233, Fault::slow, 0.77, "thin links whirl about themselves in joints with friction"},
-    {"struck", 238, Fault::slow, 0.17, "thin links whirl about themselves in joints with friction"},
-    {"struck", 188, Fault::slow, 0.27,
-     "a light body is held between two that are 200 times as dense"},
-};
 
 const MendedSeed mended[] = {
     {"seam", 51, "a tile that ends in a wall's plane took the wall away"},
@@ -107,13 +83,6 @@ const MendedSeed mended[] = {
 
 }  // namespace
 
-std::span<const KnownFault> known_faults() { return table; }
 std::span<const MendedSeed> mended_seeds() { return mended; }
-
-bool known_fault(const DescribedScene& scene, Fault fault) {
-  return std::any_of(std::begin(table), std::end(table), [&](const KnownFault& known) {
-    return known.kind == scene.kind && known.seed == scene.seed && known.fault == fault;
-  });
-}
 
 }  // namespace tw::fuzz
