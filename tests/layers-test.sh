@@ -1,6 +1,7 @@
 #!/bin/sh
 # A folder under src/ includes only itself and folders listed above it; main.cc may include any.
-# Above the binding nobody knows Guile; outside the drawing nobody knows OpenGL.
+# Above the binding nobody knows Guile; outside the drawing nobody knows OpenGL.  No two types of a
+# namespace have one name.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 cd "${TW_SRCDIR:-.}" || exit 99
 layers='base math geometry collision dynamics multibody integrate timeline detect groups kernel import record render script'
@@ -46,6 +47,16 @@ guile=$(grep -rlE '# *include *<(libguile|gc/)' src | grep -vE '^src/(script/|ma
 [ -z "$guile" ] || complain "Guile outside src/script: $guile"
 opengl=$(grep -rlE '# *include *<(GL|EGL|png)' src | grep -v '^src/render/')
 [ -z "$opengl" ] || complain "OpenGL or libpng outside src/render: $opengl"
+
+# one type, one name: two in a namespace would be one to the linker
+twice=$(find src -name '*.h' -exec awk '
+  FNR == 1 { space = "" }
+  /^namespace [a-z:]+ \{/ { space = $2 }
+  /^(struct|class|enum class|union) [A-Za-z]+( final)?( :.*)? \{/ {
+    name = $1 == "enum" ? $3 : $2
+    print space "::" name, FILENAME }' {} + | sort |
+  awk '$1 == last { print $1 " is defined in " file " and in " $2 } { last = $1; file = $2 }')
+[ -z "$twice" ] || complain "$twice"
 
 echo "$checked includes checked, $failures wrong"
 [ "$checked" -gt 0 ] && [ "$failures" = 0 ]

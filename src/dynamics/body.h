@@ -65,7 +65,7 @@ struct Body {
   double radius = 0;          // of the ball about the origin of P that holds the shape, m
   int slender_axis = -1;      // of P, about which it is slender (base/constants.h); -1: about none
   double girth = 0;           // how far it reaches from that axis, m
-  double least_width = 0;     // the `size` of contact parameters, m
+  double least_width = 0;     // m: what lengths of a pair are measured by
   double thickness = 0;       // least width of any part: how deep contacts may be follows, m
   double sphere_radius = -1;  // >= 0: a single sphere centred on P
   std::shared_ptr<const Trajectory> motion;  // given: of fixed and kinematic bodies

@@ -42,13 +42,13 @@ ContactScales contact_scales(const Scene& scene, const Body& a, const Body& b,
   const ContactParameters& parameters = scene.contacts.between(a.id(), b.id());
   const double mass = !a.dynamic() ? b.mass : !b.dynamic() ? a.mass : std::min(a.mass, b.mass);
   ContactScales scales;
-  scales.size = lesser_thickness(a, b);
+  scales.thickness = lesser_thickness(a, b);
   scales.gravity = scene.gravity_scale();
-  scales.fusion_speed = speed_from(parameters, scales.gravity, scales.size);
+  scales.fusion_speed = speed_from(parameters, scales.gravity, scales.thickness);
   scales.law = contact_constants(
       parameters,
       std::clamp(masses.heaviest / answer::most_unequal, mass, answer::most_unequal * mass),
-      scales.size, scales.gravity, masses.heaviest > answer::unequal_masses * masses.lightest);
+      scales.thickness, scales.gravity, masses.heaviest > answer::unequal_masses * masses.lightest);
   scales.borne_speed = borne_speed(scales.fusion_speed, scales.law.depth, scales.gravity);
   return scales;
 }

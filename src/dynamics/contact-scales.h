@@ -1,8 +1,8 @@
 // The scales of a contact: how deep, how fast, how near is little for this very pair.
 //
-// All follow from the pair's own law, its size and gravity.  With d0 the static depth, at which the
-// contact carries the lighter body (contact-law.h), and g the scale of gravity:
-//   fusion speed  0.07 sqrt(g size) unless set: what comes down slower stays
+// All follow from the pair's own law, its thickness and gravity.  With d0 the static depth, at
+// which the contact carries the lighter body (contact-law.h), and g the scale of gravity:
+//   fusion speed  0.07 sqrt(g thickness) unless set: what comes down slower stays
 //   borne speed   that or, if more, what it would be by default of a body whose contact is as soft
 //                 by default: a spring that presses stops what comes slower, without an impulse
 //   bounce time   pi sqrt(d0/g): half a period of the small oscillation about d0
@@ -32,7 +32,7 @@ struct MassRange {
 
 struct ContactScales {
   ContactConstants law;
-  double size = 0;          // the lesser thickness of the two, m
+  double thickness = 0;     // the lesser one of the two, m
   double fusion_speed = 0;  // m/s
   double borne_speed = 0;   // m/s
   double gravity = 0;       // g, m/s^2

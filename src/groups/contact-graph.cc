@@ -201,7 +201,7 @@ bool is_pushed_through(const std::vector<ManifoldPoint>& points, const PairBefor
 // What is about a dynamic body: the fixed bodies, and the planes of the ground that it stands on,
 // once one that is not dynamic is met.
 struct Footing {
-  Ground ground;
+  NearGround ground;
   std::optional<std::vector<StandingPlane>> planes = std::nullopt;
 
   void meet(const Regrouping& work, const Body& mover, const Body& other) {
@@ -237,7 +237,7 @@ bool was_put_so(const Scene& scene, double depth, double size) {
 void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
   const bool must = wants == Wanted::always;
   const PlacedBody &a = *look.a, &b = *look.b;
-  const Ground& ground = look.footing->ground;
+  const NearGround& ground = look.footing->ground;
   const Body& body_a = *a.body;
   const Body& body_b = *b.body;
   const std::uint64_t id = pair_id(body_a.id(), body_b.id());
@@ -246,7 +246,7 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
   if (before) masses.add(before->pair->masses);
   const ContactScales scales = contact_scales(work.scene(), body_a, body_b, masses);
   const double reach = before ? reach_of(*before) : 0;
-  const double size = scales.size, wanted = reach + scales.law.gap_scale();
+  const double size = scales.thickness, wanted = reach + scales.law.gap_scale();
   const double travel =
       2 * (a.surface_speed() + b.surface_speed()) * interval + scales.gravity * interval * interval;
   // new contacts no farther than boxes are sure to hold who is there
@@ -295,7 +295,7 @@ void look(const Regrouping& work, Look& look, double interval, Wanted wants) {
       take_ground_offset(work, body_a, body_b, c);
     }
     // what overlaps when it comes to touch was put so: only what it goes deeper presses
-    if (wants != Wanted::touching && was_put_so(work.scene(), -distance, scales.size))
+    if (wants != Wanted::touching && was_put_so(work.scene(), -distance, scales.thickness))
       for (NewContact& c : look.contacts)
         c.contact.offset = std::min(c.contact.offset, unpressed(std::max(c.gap, distance), size));
   }

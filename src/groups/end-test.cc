@@ -215,7 +215,8 @@ double early_end(const Scene& scene, const Surroundings& surroundings, Group& gr
       if (a.fixed() || b.fixed()) {
         const Body& mover = a.dynamic() ? a : b;
         const Trajectory& path = along.trajectory(mover);
-        const Ground ground = surroundings.ground_around(mover, {path.frame(from), path.frame(to)});
+        const NearGround ground =
+            surroundings.ground_around(mover, {path.frame(from), path.frame(to)});
         along.around_a = surroundings.seam_neighbours(a, ground);
         along.around_b = surroundings.seam_neighbours(b, ground);
       }

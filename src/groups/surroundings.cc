@@ -27,8 +27,9 @@ bool reaches(const Body& unbounded, const Aabb& box) {
 
 }  // namespace
 
-Ground Surroundings::ground_around(const Body& moving, std::initializer_list<Frame> frames) const {
-  Ground ground;
+NearGround Surroundings::ground_around(const Body& moving,
+                                       std::initializer_list<Frame> frames) const {
+  NearGround ground;
   if (moving.unbounded) return ground;
   ground.bodies.reserve(8);
   Aabb& place = ground.place;
@@ -45,7 +46,7 @@ Ground Surroundings::ground_around(const Body& moving, std::initializer_list<Fra
 }
 
 std::vector<SeamNeighbour> Surroundings::seam_neighbours(const Body& body,
-                                                         const Ground& ground) const {
+                                                         const NearGround& ground) const {
   std::vector<SeamNeighbour> result;
   if (!body.fixed()) return result;
   result.reserve(2 * ground.bodies.size());

@@ -12,7 +12,7 @@
 namespace tw {
 
 // The fixed bodies around a moving one.
-struct Ground {
+struct NearGround {
   std::vector<BodyId> bodies;  // ascending
   Aabb place;                  // world: what the moving one may touch is in it
 };
@@ -32,10 +32,10 @@ class Surroundings {
   // The fixed bodies that a moving one may touch and whose boxes its own comes near, at one of the
   // frames: they bury each other's edges.  A function of the frames alone: its claim,
   // which holds it at all of its times, depends on the schedule.
-  Ground ground_around(const Body& moving, std::initializer_list<Frame> frames) const;
+  NearGround ground_around(const Body& moving, std::initializer_list<Frame> frames) const;
   // The parts of those of them that stand beside a fixed body, of shapes with trees those in the
   // place; of a body that moves there are none.
-  std::vector<SeamNeighbour> seam_neighbours(const Body& body, const Ground& ground) const;
+  std::vector<SeamNeighbour> seam_neighbours(const Body& body, const NearGround& ground) const;
 
  private:
   const Scene& scene_;

@@ -102,7 +102,7 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
   const Successor& mover = fixed == &a ? b : a;
-  const Ground ground = surroundings.ground_around(*mover.body, {placed(mover).frame});
+  const NearGround ground = surroundings.ground_around(*mover.body, {placed(mover).frame});
   const Shape& shape = *fixed->body->shape_P;
   if (ground.bodies.size() < 2 && shape.part_count() < 2) return false;
   const std::vector<SeamNeighbour> others = surroundings.seam_neighbours(*fixed->body, ground);

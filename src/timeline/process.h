@@ -1,7 +1,8 @@
 // A process: whatever owns a state queue and is advanced, checked and rolled back as one.
 //
-// A body is a process of its own; the links of a multibody will share one.  The state graph,
-// rollback, regions and groups speak of processes; pairs, boxes, contacts and poses of bodies.
+// A body is a process of its own, a link of a multibody, too: links are in one group always.  The
+// state graph, rollback, regions and groups speak of processes; pairs, boxes, contacts and poses of
+// bodies.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
