@@ -160,7 +160,7 @@ double deepest_dent(const MeshObject& object, const std::vector<Vec3>& points, c
 
 // A closed surface with much less within it than its hull, however shallow its dents are: walls.
 bool is_thin_walled(const MeshObject& object, const std::vector<Vec3>& points, const Shape& hull) {
-  return is_closed(object) &&
+  return is_closed(object.triangles) &&
          std::abs(volume_within(object, points)) < 0.9 * hull.mass_properties().volume;
 }
 
@@ -298,26 +298,22 @@ std::vector<ShapePtr> hulls_of(const std::string& file, const std::vector<Vec3>&
       shapes.push_back(nullptr);
       continue;
     }
+    if (options.hulls) continue;
     const double dent = deepest_dent(parts[i], points, *shapes.back());
-    const bool hollow = std::find(hosts.begin(), hosts.end(), i) != hosts.end();
-    const bool thin = is_thin_walled(parts[i], points, *shapes.back());
-    if (options.decompose > 0 && (dent > flat || hollow || thin)) {
+    const bool dented = dent > flat;
+    if (options.decompose == 0)
+      TW_REQUIRE(
+          !dented && !is_thin_walled(parts[i], points, *shapes.back()),
+          "the mesh " + file + ": " + what + " isn't convex: " +
+              (dented ? "its hull stands " + show(dent) + " of its size over one of its faces"
+                      : "it encloses less than its hull") +
+              "; expected objects that are convex each, which make a union, or #:concave? #t "
+              "for ground as it is, #:decompose #t for convex pieces, or #:convex-hull? #t "
+              "for the hull of each");
+    else if (dented || std::find(hosts.begin(), hosts.end(), i) != hosts.end() ||
+             is_thin_walled(parts[i], points, *shapes.back()))
       shapes.back() = decomposed("the mesh " + file + ": " + what, i, parts, points, hosts,
                                  options.decompose, mending);
-      continue;
-    }
-    TW_REQUIRE(
-        options.hulls || !thin,
-        "the mesh " + file + ": " + what +
-            " isn't convex: it encloses less than its hull; "
-            "expected objects that are convex each, which make a union, or #:concave? #t "
-            "for ground as it is, #:decompose #t for convex pieces, or #:convex-hull? #t for "
-            "the hull of each");
-    TW_REQUIRE(options.hulls || dent <= flat,
-               "the mesh " + file + ": " + what + " isn't convex: its hull stands " + show(dent) +
-                   " of its size over one of its faces; expected objects that are convex each, "
-                   "which make a union, or #:concave? #t for ground as it is, #:decompose #t for "
-                   "convex pieces, or #:convex-hull? #t for the hull of each");
   }
   if (flat_parts == shapes.size())
     throw UserError("the mesh " + file + ": " + first_flat + ", or #:concave? #t for ground");

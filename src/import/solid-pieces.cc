@@ -50,9 +50,9 @@ std::string change_of(double volume, double from) {
 
 }  // namespace
 
-bool is_closed(const MeshObject& object) {
+bool is_closed(const std::vector<std::array<std::size_t, 3>>& triangles) {
   std::vector<std::pair<std::size_t, std::size_t>> sides, reversed;
-  for (const auto& triangle : object.triangles)
+  for (const auto& triangle : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t a = triangle[k], b = triangle[(k + 1) % 3];
       if (a == b) continue;
@@ -82,7 +82,7 @@ std::vector<std::optional<std::size_t>> hosts_of_cavities(const std::vector<Mesh
   for (std::size_t i = 0; i < parts.size(); ++i) {
     bounds.push_back(bounds_of(parts[i], points));
     volume.push_back(volume_within(parts[i], points));
-    if (is_closed(parts[i])) order.push_back(i);
+    if (is_closed(parts[i].triangles)) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
     return std::abs(volume[i]) > std::abs(volume[j]);

@@ -19,7 +19,7 @@ struct MeshObject {
 };
 
 // Each side of a triangle is, the other way round, that of another.
-bool is_closed(const MeshObject& object);
+bool is_closed(const std::vector<std::array<std::size_t, 3>>& triangles);
 
 // Of what is closed; less than 0 where its triangles face inwards.
 double volume_within(const MeshObject& object, const std::vector<Vec3>& points);

@@ -22,6 +22,7 @@
 #include "base/error.h"
 #include "import/assimp-file.h"
 #include "import/bytes.h"
+#include "import/solid-pieces.h"
 #include "import/texture-file.h"
 
 namespace tw {
@@ -158,9 +159,8 @@ void Gathering::add(const aiMesh& mesh) {
   if (count > 0) surface.patches.push_back({before, count, texture});
 }
 
-// Whether each edge of a triangle is, the other way round, that of another: by places, for corners
-// may have several normals.
-bool is_closed(const SurfaceMesh& surface) {
+// Whether it is closed by its places: corners may have several normals.
+bool closes_by_places(const SurfaceMesh& surface) {
   using Place = std::array<float, 3>;
   std::vector<Place> places;
   for (const SurfaceMesh::Vertex& v : surface.vertices)
@@ -169,21 +169,14 @@ bool is_closed(const SurfaceMesh& surface) {
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   const auto number = [&](std::uint32_t vertex) {
-    return static_cast<std::uint64_t>(
-        std::lower_bound(sorted.begin(), sorted.end(), places[vertex]) - sorted.begin());
+    return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), places[vertex]) -
+                                    sorted.begin());
   };
-  std::vector<std::uint64_t> edges, reversed;
+  std::vector<std::array<std::size_t, 3>> triangles;
   for (std::size_t i = 0; i + 2 < surface.indices.size(); i += 3)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = number(surface.indices[i + k]);
-      const std::uint64_t b = number(surface.indices[i + (k + 1) % 3]);
-      if (a == b) continue;
-      edges.push_back(a << 32 | b);
-      reversed.push_back(b << 32 | a);
-    }
-  std::sort(edges.begin(), edges.end());
-  std::sort(reversed.begin(), reversed.end());
-  return edges == reversed;
+    triangles.push_back({number(surface.indices[i]), number(surface.indices[i + 1]),
+                         number(surface.indices[i + 2])});
+  return is_closed(triangles);
 }
 
 // ---- between the processes ----
@@ -270,7 +263,7 @@ std::shared_ptr<const SurfaceMesh> read_surface(const std::string& file, const V
   const auto take = [&](const aiScene& scene) {
     Gathering gathered(file, scene, place);
     for (unsigned m = 0; m < scene.mNumMeshes; ++m) gathered.add(*scene.mMeshes[m]);
-    gathered.surface.closed = is_closed(gathered.surface);
+    gathered.surface.closed = closes_by_places(gathered.surface);
     return packed(gathered);
   };
   auto surface = std::make_shared<SurfaceMesh>(

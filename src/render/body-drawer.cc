@@ -23,6 +23,8 @@ bool has_grain(const DrawBody& body) {
          });
 }
 
+constexpr double level_error = 0.2;  // pixels: a coarser version may be so far off
+
 // What stands fixed is dull; 0.1 tells the light (picture-shaders.cc) that it has a grain, too.
 float gloss_of(bool fixed, bool grain) { return !fixed ? 0.5f : grain ? 0.1f : 0.04f; }
 
@@ -260,7 +262,7 @@ void BodyDrawer::place(std::span<const Pose> poses, const Vec3& eye, double pixe
       instance.color = part.color;
       group.instances.push_back(instance);
     }
-    group.allowed = 0.2 * pixel * nearest;
+    group.allowed = level_error * pixel * nearest;
     upload(group.instance_buffer, group.instances.data(),
            group.instances.size() * sizeof(MeshInstance));
   }

@@ -17,9 +17,10 @@ struct MeshLevel {
 };
 
 // Of a patch: that of the mesh itself, and coarser ones after it, each with at most three quarters
-// of the triangles of the one before, whose indices are added to those of the mesh.  Corners are
-// corners of the mesh.  Few triangles have none: they cost nothing. Method: edges that collapse by
-// quadric errors (meshoptimizer).
+// of the triangles of the one before, whose vertices and indices are added to those of the mesh.
+// Few triangles have none, as they cost nothing, nor has what is painted: with a texture, or in
+// several colours.
+// Method: edges that collapse by quadric errors (meshoptimizer).
 std::vector<MeshLevel> add_levels(Mesh& mesh, const SurfaceMesh::Patch& patch);
 
 }  // namespace tw

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "render/renderer.h"
+#include "support/temporary-folder.h"
 
 namespace tw::test {
 
@@ -74,25 +75,6 @@ inline std::uint64_t hash_of(const Image& image) {
   for (const std::uint8_t byte : image.rgb) hash = (hash ^ byte) * 0x100000001b3u;
   return hash;
 }
-
-// A folder that is gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "timewarp-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // The message of the UserError that `action` raises; "" where it raises none.
 template <class Action>

@@ -4,7 +4,6 @@
 // beside them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -18,6 +17,7 @@
 #include "import/surface-file.h"
 #include "import/texture-file.h"
 #include "import/urdf.h"
+#include "support/temporary-folder.h"
 
 namespace tw::test {
 namespace {
@@ -157,12 +157,6 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-struct Folder {
-  std::string path = (fs::temp_directory_path() / "mutated-XXXXXX").string();
-  Folder() { EXPECT_NE(mkdtemp(path.data()), nullptr); }
-  ~Folder() { fs::remove_all(path); }
-};
-
 // Whether it loads.
 bool loads(const std::function<void()>& load) {
   try {
@@ -191,17 +185,17 @@ int load(const std::string& file) {
 }
 
 TEST(MutatedFiles, load_or_are_refused) {
-  const Folder folder;
-  fs::create_directory(folder.path + "/p");
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "p");
   const auto put = [&](const std::string& name, const std::string& text) {
-    std::ofstream(folder.path + "/" + name, std::ios::binary) << text;
-    return folder.path + "/" + name;
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
   };
   put("a.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd a.png\n");
   put("a.png", picture());
   put("p/a.stl", solid);
   std::vector<fs::path> files{put("a.urdf", robot), put("a.obj", object), put("a.stl", solid),
-                              put("a.dae", collada), folder.path + "/a.png"};
+                              put("a.dae", collada), folder / "a.png"};
   if (const char* given = std::getenv("MUTATED")) {
     files.clear();
     std::istringstream names(given);

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "base/error.h"
+#include "support/temporary-folder.h"
 
 namespace tw {
 namespace {
@@ -20,9 +20,8 @@ namespace fs = std::filesystem;
 class SurfaceFile : public ::testing::Test {
  protected:
   SurfaceFile() {
-    EXPECT_NE(mkdtemp(root_.data()), nullptr);
-    fs::create_directories(root_ + "/meshes");
-    fs::create_directories(root_ + "/materials/textures");
+    fs::create_directories(root_ / "meshes");
+    fs::create_directories(root_ / "materials/textures");
     put("meshes/a.obj", R"(mtllib a.mtl
 v 0 0 0
 v 1 0 0
@@ -39,10 +38,9 @@ usemtl plain
 f 4/1 5/2 6/3
 )");
   }
-  ~SurfaceFile() override { fs::remove_all(root_); }
 
   void put(const std::string& name, const std::string& text) const {
-    std::ofstream(root_ + "/" + name, std::ios::binary) << text;
+    std::ofstream(root_ / name, std::ios::binary) << text;
   }
   void put_material(const std::string& texture) const {
     put("meshes/a.mtl",
@@ -50,12 +48,12 @@ f 4/1 5/2 6/3
   }
   std::shared_ptr<const SurfaceMesh> read(bool strict = false) {
     Mending mending(strict);
-    auto surface = read_surface(root_ + "/meshes/a.obj", Vec3::Ones(), false, mending);
+    auto surface = read_surface(root_ / "meshes/a.obj", Vec3::Ones(), false, mending);
     notes_ = mending.take_notes();
     return surface;
   }
 
-  std::string root_ = "/tmp/surface-file-XXXXXX";
+  const test::TemporaryFolder root_;
   std::vector<std::string> notes_;
 };
 
@@ -93,12 +91,12 @@ TEST_F(SurfaceFile, a_texture_lies_where_the_mesh_says) {
 }
 
 TEST_F(SurfaceFile, textures_are_looked_for_where_robots_have_them) {
-  for (const char* named : {"..\\elsewhere\\b.ppm", "/home/somebody/b.ppm", "b.ppm"}) {
+  for (const char* named : {"..\\elsewhere\\b.ppm", "/elsewhere/b.ppm", "b.ppm"}) {
     put_material(named);
     for (const char* place : {"meshes/b.ppm", "materials/textures/b.ppm"}) {
       put(place, picture(1, 1, 50));
       EXPECT_EQ(read()->textures.size(), 1u) << named << " in " << place;
-      fs::remove(root_ + "/" + place);
+      fs::remove(root_ / place);
     }
   }
 }
