@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/birth-group.h"
 
-#include "groups/check-times.h"
 #include "groups/group.h"
 #include "groups/joints.h"
+#include "groups/planned-end.h"
 #include "groups/start-members.h"
 #include "integrate/joint-record.h"
 #include "integrate/member-trajectory.h"
-#include "integrate/moving-base.h"
 
 namespace tw {
 
@@ -18,12 +17,10 @@ void make_birth_group(const Scene& scene, const std::shared_ptr<const Multibody>
   const PlacedJoints placed(*multibody, *joints, now);
   auto group = std::make_shared<Group>();
   group->key = states.front()->key;
-  group->next_check = next_check_time(now, joint_check_interval(scene, *multibody));
-  group->next_check =
-      std::min(group->next_check, next_corner_of(*multibody, now, group->next_check));
+  group->planned = plan_birth_end(scene, *multibody, now);
   GroupStart start;
   start.time = now;
-  start.end = group->next_check;
+  start.end = group->planned.time;
   StartOfMembers members(scene, start);
   for (std::size_t i = 0; i < states.size(); ++i) {
     State& state = *states[i];

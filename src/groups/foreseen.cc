@@ -30,7 +30,7 @@ int doublings_of(const Regrouping& work, const Group& group, const Group& before
       group.pairs.size() != before.pairs.size())
     return 0;
   // an arc that ended early
-  if (before.next_check < before.arc->start().end) return 0;
+  if (before.ended_early()) return 0;
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
     const ContactPair &now = group.pairs[i], &then = before.pairs[i];
     if (now.id != then.id || now.count != then.count) return 0;

@@ -28,7 +28,7 @@ std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>
       if (!owner || !owner->find(pair.id)) continue;
       for (const State* state : {&a, &b}) {
         if (!state->group || state->group == groups[i] || state->error ||
-            state->group->next_check != group->next_check)
+            state->group->next_check() != group->next_check())
           continue;
         if (group_check_key(*state->group, key.time).microstep != key.microstep) continue;
         add_once(groups, state->group);
@@ -43,7 +43,7 @@ std::vector<ProcessId> family(const Before& before, const std::shared_ptr<Group>
 std::vector<ProcessId> early_members(const Before& before, const Group& group) {
   std::vector<ProcessId> all;
   for (std::uint32_t i = 0; i < group.members.size(); ++i) {
-    if (group.end(i) != before.key().time) continue;
+    if (group.end_of(i).time != before.key().time) continue;
     const State& state = before.state(group.members[i]);
     if (state.group.get() == &group && !state.error) all.push_back(group.members[i]);
   }

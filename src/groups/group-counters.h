@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dynamics/ids.h"
+#include "integrate/arc-end.h"
 
 namespace tw {
 
@@ -25,6 +26,7 @@ struct GroupEffort {
   std::uint64_t contacts = 0;  // of the latest arc
   std::uint64_t arcs = 0, steps = 0, rejected = 0;
   double since = 0, until = 0;  // s
+  EndCounts ends;
 
   std::uint64_t tried() const { return steps + rejected; }
 };
@@ -47,6 +49,7 @@ class DearestGroups {
       at->arcs += arc.arcs;
       at->steps += arc.steps;
       at->rejected += arc.rejected;
+      at->ends.add(arc.ends);
       at->since = std::min(at->since, arc.since);
       at->until = std::max(at->until, arc.until);
     }

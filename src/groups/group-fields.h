@@ -17,9 +17,9 @@ void for_each_field(const Group& group, Visit&& visit) {
   visit("key of the group", motion, group.key);
   visit("members", motion, group.members);
   visit("when it was placed", motion, group.placed_at);
-  visit("next check", motion, group.next_check);
+  visit("next check", motion, group.next_check());
   std::vector<double> ends;
-  for (std::uint32_t i = 0; i < group.members.size(); ++i) ends.push_back(group.end(i));
+  for (std::uint32_t i = 0; i < group.members.size(); ++i) ends.push_back(group.end_of(i).time);
   visit("ends", motion, ends);
   visit("rest", motion, group.at_rest);
   visit("stillness", motion, group.stillness);

@@ -4,8 +4,8 @@
 // arc is integrated when it is first needed, which is a function of the group alone; then the end
 // test (end-test.h) says where its members' arcs really end, once.  Nothing else of it changes.
 //
-// Group checks lie at k 2^j / rate, those of all groups together.  A group at rest has no next
-// check: its members' arcs are constant until something touches one of them.
+// Where an arc ends a group check stands (integrate/arc-end.h says why it may end); a group at rest
+// has none: its members' arcs are constant until something touches one of them.
 //
 // Not all members of a group need leave it at once: what a blow does to a heap dies away within a
 // few bodies, so only these get new arcs, in a group of their own.  It meets the others at its
@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,13 +54,13 @@ struct ContactTag {
 };
 
 struct Group : Counted<Group> {
-  Key key;                    // of the discontinuity that made it
-  double placed_at = -never;  // when the last of them was put where it is, s (placed-loads.h)
-  double next_check = never;
-  bool end_tested = false;  // next_check and the ends of the arc are as the end test found them
+  Key key;                      // of the discontinuity that made it
+  double placed_at = -never;    // when the last of them was put where it is, s (placed-loads.h)
+  ArcEnd planned;               // of the arc, as it was made (planned-end.h)
+  std::optional<ArcEnd> found;  // by the end test, once: of the arc as a whole
   bool at_rest = false;
   double first_step = 0;           // of the arc, s; 0: chosen
-  double patience = never;         // how long an arc may be worth making, s (make-groups.cc)
+  double patience = never;         // how long an arc may be worth making, s (planned-end.h)
   int doublings = 0;               // of the time to its next check (foreseen.h)
   MassRange masses;                // of all that hung together when it was made
   std::vector<ProcessId> members;  // ascending
@@ -103,11 +104,18 @@ struct Group : Counted<Group> {
   ContactForce lone_contact_at(std::uint32_t contact, double when) const {
     return arc->lone_contact_force(static_cast<int>(contact), contact_time(when));
   }
-  // The next check as a discontinuity at `now` may know it: of a group that was made at that very
-  // instant the one before its end test, for whether that was made hangs on the schedule.
-  double next_check_at(double now) const { return key.time < now ? next_check : arc->start().end; }
-  // Where the arc of a member ends by itself, s.
-  double end(std::uint32_t member) const { return arc->end(static_cast<int>(member)); }
+  // Where the arc ends, as far as that is known: there its next check stands.
+  const ArcEnd& end() const { return found ? *found : planned; }
+  double next_check() const { return end().time; }
+  // The same as a discontinuity at `now` may know it: of a group that was made at that very instant
+  // what was planned, for whether its end was looked for by then hangs on the schedule.
+  double next_check_at(double now) const { return key.time < now ? next_check() : planned.time; }
+  // Where the arc of a member ends by itself: of a large group some may end before its check.
+  ArcEnd end_of(std::uint32_t member) const {
+    const std::vector<ArcEnd>& ends = arc->found_ends();
+    return ends.empty() ? end() : ends[member];
+  }
+  bool ended_early() const { return found && found->time < planned.time; }
 };
 
 using Groups = std::vector<std::shared_ptr<Group>>;

@@ -7,17 +7,16 @@
 #include <numeric>
 
 #include "groups/changes.h"
-#include "groups/check-times.h"
 #include "groups/components.h"
 #include "groups/foreseen.h"
 #include "groups/joined.h"
 #include "groups/joints.h"
 #include "groups/placed-loads.h"
+#include "groups/planned-end.h"
 #include "groups/rest.h"
 #include "groups/share-stiffness.h"
 #include "groups/start-members.h"
 #include "integrate/member-trajectory.h"
-#include "integrate/moving-base.h"
 #include "integrate/standing.h"
 #include "multibody/multibody.h"
 
@@ -113,16 +112,12 @@ void start_bonds(const Regrouping& work, const Group& group, GroupStart& start) 
 void start_arc(Regrouping& work, Group& group) {
   GroupStart start;
   start.time = work.now();
+  start.end = group.planned.time;
   start.first_step = group.first_step;
   // joints alone see everything
   if (!group.pairs.empty()) start.most_steps = answer::most_arc_steps;
   StartOfMembers members(work.scene(), start);
   start_members(work, group, members);
-  // where a base jumps the joints go on with other velocities
-  for (const GroupTree& tree : start.trees)
-    group.next_check =
-        std::min(group.next_check, next_corner_of(*tree.multibody, start.time, group.next_check));
-  start.end = group.next_check;
   start_bonds(work, group, start);
 
   // >= 0: a member, else the complement of an outside body's number
@@ -204,76 +199,6 @@ const Group* same_before(const Regrouping& work, const Group& group) {
   return same != work.old.end() ? same->get() : nullptr;
 }
 
-// Until contacts may be other ones; what is joined and touches nothing waits for the slowest of it.
-double interval_of(const Regrouping& work, const Group& group) {
-  std::vector<ProcessId> touching;
-  double slowest = 0;
-  for (std::uint32_t i = 0; i < group.members.size(); ++i) {
-    const Body& body = *work.successor_of(group.members[i])->body;
-    if (!group.pairs_of(i).empty())
-      touching.push_back(group.members[i]);
-    else
-      slowest =
-          std::max(slowest, body.multibody ? joint_check_interval(work.scene(), *body.multibody)
-                                           : bond_check_interval(work.scene(), body));
-  }
-  const double interval = check_interval(work, touching, group.doublings);
-  return slowest > 0 ? std::min(slowest, interval) : interval;
-}
-
-// Soon after the next call of a callback that is handed a member again and again, and is likely to
-// give it another arc: `never` where there is none.  For groups that touch nothing, whose checks
-// wait for nobody.
-double after_next_call(const Regrouping& work, const Group& group) {
-  double period = never;
-  for (const ProcessId member : group.members)
-    period = std::min(period, work.successor_of(member)->body->callback_period);
-  if (!(period < never)) return never;
-  return next_check_time(work.now() + period, call_check_grid(period));
-}
-
-// How long an arc is worth making, s: where blow follows on blow, as when a wave of impacts goes
-// through a lattice, all that is integrated beyond the next one is in vain.  So an arc that begins
-// with a blow on what an impact gave its arc, or that follows one which ended early, lasts a number
-// of times what that did, and the check at its end, where nothing has come, allows that number
-// more.
-double patience_of(const Regrouping& work, const Group& group, double interval) {
-  double patience = never;
-  for (const auto& old : work.old) {
-    if (old->at_rest || std::none_of(old->members.begin(), old->members.end(),
-                                     [&](ProcessId id) { return group.contains(id); }))
-      continue;
-    const double lasted = work.now() - old->key.time;
-    if (finds_contacts(work.cause))
-      patience = std::min(patience, answer::patience_growth * old->patience);
-    if (lasted > 0 && (work.cause == Cause::early_check ||
-                       (work.cause == Cause::impact && old->key.kind == KeyKind::impact)))
-      patience = std::min(patience, answer::patience_growth * lasted);
-  }
-  if (!(patience < interval)) return never;
-  return interval_within(work.scene(), std::max(patience, least_arc(work.scene(), group.members)));
-}
-
-// The check that is due stays due where there is something to look at, unless this is it.
-void set_check_times(const Regrouping& work, const Group* before, double border_end, Group& group) {
-  const double now = work.now();
-  double whole = interval_of(work, group);
-  // what is pushed apart goes on by checks
-  if (std::any_of(group.pairs.begin(), group.pairs.end(),
-                  [&](const ContactPair& pair) { return work.pushes_apart(pair); }))
-    for (const ProcessId member : group.members)
-      if (const Body& body = *work.successor_of(member)->body; body.shape_P)
-        whole = std::min(whole, finest_check(work.scene(), body));
-  group.patience = patience_of(work, group, whole);
-  const double interval = std::min(whole, group.patience);
-  group.next_check = std::min(border_end, group.has_border ? next_common_check_time(now, interval)
-                                                           : next_check_time(now, interval));
-  if (group.pairs.empty())
-    group.next_check = std::min(group.next_check, after_next_call(work, group));
-  else if (before && !finds_contacts(work.cause) && before->next_check_at(now) >= now)
-    group.next_check = std::min(group.next_check, before->next_check_at(now));
-}
-
 // Springs and holds to whatever it is.
 std::vector<const Bond*> ties_of(const ForcesPtr& forces) {
   std::vector<const Bond*> ties;
@@ -308,7 +233,6 @@ double first_step_of(const Regrouping& work, const Group& group, const Group* be
 
 void lay_to_rest(const Regrouping& work, Group& group) {
   group.at_rest = true;
-  group.next_check = never;
   for (const ProcessId member : group.members) stop(*work.successor_of(member));
 }
 
@@ -319,13 +243,16 @@ std::shared_ptr<Group> make_group(Regrouping& work, const std::vector<ProcessId>
   const double border_end = take_pairs(work, *group);
   const Group* before = same_before(work, *group);
   if (before) group->doublings = doublings_of(work, *group, *before);
-  set_check_times(work, before, border_end, *group);
+  const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };
+  const bool rests = work.rests[place_of(members.front())];
+  const EndPlan plan = plan_end({work, *group, before, rests, border_end});
+  group->planned = plan.end;
+  group->patience = plan.patience;
   for (const ProcessId member : members)
     group->placed_at = std::max(group->placed_at, placed_at(work.before.state(member)));
 
   group->first_step = first_step_of(work, *group, before);
-  const auto place_of = [&](ProcessId member) { return work.place_of(work.successor_of(member)); };
-  if (work.rests[place_of(members.front())])
+  if (rests)
     lay_to_rest(work, *group);
   else
     for (const ProcessId member : members)

@@ -239,7 +239,7 @@ std::vector<ProcessId> who_notices(Regrouping& work) {
   std::vector<ProcessId> found;
   for (const auto& group : work.made) {
     if (!group->has_border) continue;
-    if (!group->at_rest) group->arc->extend_patiently(group->next_check);
+    if (!group->at_rest) group->arc->extend_patiently(group->next_check());
     add_noticing(work, *group, found);
   }
   for (const PairBefore& old : work.pairs_before) {

@@ -22,7 +22,7 @@ struct GroupArc::Data {
   const GroupSystem& system;
   const GroupRecord& record;
   std::vector<MemberTrajectory> trajectories;
-  std::vector<double> ends;  // of each member; empty: the arc's
+  std::vector<ArcEnd> ends;  // of each member; empty: the arc's
   std::string failure;
   int failed_contact = -1;
   const std::uint64_t serial = next_serial();  // no two arcs of a program share one
@@ -155,14 +155,16 @@ const std::string& GroupArc::failure() const { return data_->failure; }
 int GroupArc::failed_contact() const { return data_->failed_contact; }
 double GroupArc::next_step() const { return data_->stepper.next_step(); }
 
-void GroupArc::lower_ends(std::vector<double> ends) {
+void GroupArc::lower_ends(std::vector<ArcEnd> ends) {
   TW_ASSERT(data_->ends.empty(), "the ends of an arc were told twice");
   data_->ends = std::move(ends);
 }
 
 double GroupArc::end(int member) const {
-  return data_->ends.empty() ? data_->last() : data_->ends[static_cast<std::size_t>(member)];
+  return data_->ends.empty() ? data_->last() : data_->ends[static_cast<std::size_t>(member)].time;
 }
+
+const std::vector<ArcEnd>& GroupArc::found_ends() const { return data_->ends; }
 
 const Trajectory& GroupArc::trajectory(int member) const {
   return data_->trajectories[static_cast<std::size_t>(member)];

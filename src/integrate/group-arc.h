@@ -40,6 +40,7 @@
 #include "collision/contact-feature.h"
 #include "dynamics/contact-law.h"
 #include "dynamics/forces.h"
+#include "integrate/arc-end.h"
 #include "integrate/trajectory.h"
 #include "math/vec.h"
 #include "multibody/multibody.h"
@@ -197,8 +198,9 @@ class GroupArc : public Counted<GroupArc> {
   bool complete() const;
   // Where the members' trajectories end: at the arc's end, or earlier where somebody found out that
   // it does not hold so far.  Told once, before anybody relies on them.
-  void lower_ends(std::vector<double> ends);
+  void lower_ends(std::vector<ArcEnd> ends);
   double end(int member) const;
+  const std::vector<ArcEnd>& found_ends() const;  // of each member; empty: the arc's
   // Empty, or why it stopped: a step size under the spacing of doubles or a state that is not
   // finite, with the time and the contact with the largest force.
   const std::string& failure() const;

@@ -22,6 +22,25 @@ Effort count_steps(Counters& counters, const Trajectory& trajectory) {
   return effort;
 }
 
+// Why the arc of a member of a group ended at that key.
+EndReason why_ended(const State& state, const Key& by) {
+  switch (by.kind) {
+    case KeyKind::impact: return EndReason::impact;
+    case KeyKind::callback: return EndReason::callback;
+    case KeyKind::group_check: {
+      const ArcEnd end = state.group->end_of(state.member);
+      return end.time == by.time ? end.reason : EndReason::neighbour;
+    }
+    default: return EndReason::edit;
+  }
+}
+
+const State* next_arc(const State& state) {
+  const State* next = state.next;
+  while (next && !next->starts_arc()) next = next->next;
+  return next;
+}
+
 }  // namespace
 
 double integrated_length(const State& state, double until) {
@@ -56,10 +75,13 @@ StateGraph::OnRelease count_used(Simulation& simulation) {
     if (!simulation.body_of(state.process).dynamic()) return;
     const State* next = state.next;
     if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
+    if (state.group && state.starts_arc())
+      if (const State* after = next_arc(state))
+        counters.arcs_ended.note(why_ended(state, after->key));
     if (state.trajectory().stepped()) {
       if (state.starts_arc())
         counters.rollback_length += count_steps(counters, state.trajectory()).forgotten;
-      while (next && !next->starts_arc()) next = next->next;
+      next = next_arc(state);
     }
     if (next || state.trajectory().stepped())
       counters.integration_length += integrated_length(state, next ? next->key.time : never);

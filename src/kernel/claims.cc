@@ -165,8 +165,7 @@ void Claims::test_group_ends(std::span<const Body* const> bodies) {
   Groups untested;
   for (const Body* body : bodies) {
     const State& tail = *sim_.graph.tail(body->process);
-    if (tail.group && !tail.group->end_tested && !tail.group->at_rest)
-      untested.push_back(tail.group);
+    if (tail.group && !tail.group->found && !tail.group->at_rest) untested.push_back(tail.group);
   }
   if (untested.empty()) return;
   sort_once(untested);

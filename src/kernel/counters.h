@@ -50,6 +50,7 @@ struct Counters : GroupCounters, PairCounts {
   std::uint64_t fusions = 0, fissions = 0, contact_changes = 0;
   std::uint64_t collisions = 0, callback_changes = 0, callbacks_run = 0;
   std::uint64_t impulses_given_up = 0, declared_soft = 0;
+  EndCounts arcs_ended;         // of bodies in groups
   double momentum_dropped = 0;  // N s, at borders of regions
   double kinematic_work = 0;    // J, by kinematic bodies on dynamic ones
   double placed_energy = 0;     // J, of contact springs that started loaded

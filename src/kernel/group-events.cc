@@ -151,8 +151,8 @@ GroupEvents::Decided GroupEvents::decide(const Before& before,
 // Those whose arcs end at the key's time with the group's check.
 std::vector<ProcessId> GroupEvents::concerned(const Before& before,
                                               const std::shared_ptr<Group>& group) const {
-  return before.key().time < group->next_check ? early_members(before, *group)
-                                               : family(before, group);
+  return before.key().time < group->next_check() ? early_members(before, *group)
+                                                 : family(before, group);
 }
 
 // The group whose common check the event is, if that can be decided ahead of it; else null.
@@ -160,8 +160,8 @@ std::shared_ptr<Group> GroupEvents::checked_by(const Event& event) const {
   const State& tail = *sim_.graph.tail(ProcessId{event.subject});
   const std::shared_ptr<Group>& group = tail.group;
   const double when = event.key.time;
-  if (!group || tail.error || group->at_rest || !group->end_tested || !group->arc->complete() ||
-      group->key.time >= when || tail.arc_end() != when || group->next_check != when)
+  if (!group || tail.error || group->at_rest || !group->found || !group->arc->complete() ||
+      group->key.time >= when || tail.arc_end() != when || group->next_check() != when)
     return nullptr;
   for (const BodyId mover : sim_.kinematic) {
     const Body& body = sim_.body(mover);
@@ -264,7 +264,7 @@ Progress GroupEvents::check(ProcessId id) {
   if (tail.driven()) return stop_driven(id);
   TW_ASSERT(tail.group && !tail.group->at_rest, "group check of nobody");
   const std::shared_ptr<Group> group = tail.group;
-  if (!group->end_tested) {
+  if (!group->found) {
     claims_.test_ends({&group, 1});
     return Progress::try_again;
   }
@@ -301,7 +301,7 @@ Progress GroupEvents::check(ProcessId id) {
     return Progress::done;
   }
   const Known is_known = [&](ProcessId member) { return known(member, key); };
-  const Cause cause = when < group->next_check ? Cause::early_check : Cause::check;
+  const Cause cause = when < group->next_check() ? Cause::early_check : Cause::check;
   Decided decision = decide(sim_.before(key), all, cause, is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decision)) {
     await(waits->region, key);

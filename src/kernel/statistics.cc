@@ -46,7 +46,7 @@ std::string line_of(const DearestGroup& group) {
   std::ostringstream text;
   text << group.names << ": " << group.steps << " steps, " << group.rejected << " rejected, "
        << group.arcs << " arcs, " << group.contacts << " contacts, " << group.since << " to "
-       << group.until << " s";
+       << group.until << " s, most ended by " << group.ended_by;
   return text.str();
 }
 
@@ -57,7 +57,7 @@ std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation) {
   for (const GroupEffort& effort : simulation.present.counters.dearest_groups.sorted())
     result.push_back({names_of(simulation.scene, bodies_of(simulation.scene, effort.members)),
                       effort.members.size(), effort.contacts, effort.arcs, effort.steps,
-                      effort.rejected, effort.since, effort.until});
+                      effort.rejected, effort.since, effort.until, effort.ends.most_frequent()});
   return result;
 }
 
@@ -108,7 +108,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
   const std::vector<DearestGroup> groups = dearest_groups_of(simulation);
   for (std::size_t i = 0; i < std::min(shown, groups.size()); ++i) dearest[i] = line_of(groups[i]);
 
-  return {
+  StatisticsTable table{
       {"duration", present.time},
       {"frames", std::int64_t{delivery.frames()}},
       {"bodies_moving", moving},
@@ -189,6 +189,9 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"accuracy", present.settings.accuracy},
       {"seed", static_cast<std::int64_t>(simulation.options.seed)},
   };
+  for (std::size_t i = 0; i < end_names.size(); ++i)
+    table.push_back({std::string("arcs_ended_") + end_names[i], whole(counters.arcs_ended.of[i])});
+  return table;
 }
 
 }  // namespace tw

@@ -90,7 +90,7 @@ class SmallScene {
   std::vector<Successor> check(BodyId id, const std::vector<BodyId>& members) {
     Group& group = *graph.tail(process(id))->group;
     test_end(scene, surroundings, group, counters);
-    Key key = group_check_key(group, group.next_check);
+    Key key = group_check_key(group, group.next_check());
     key.id = number(process(members.front()));
     return regroup(key, Cause::check, members);
   }

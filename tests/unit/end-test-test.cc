@@ -15,10 +15,10 @@ TEST(EndTest, contacts_that_stand_for_all_that_touches_last_to_the_check) {
   const BodyId floor = small.add_floor(), cube = small.add_cube(0.1, {0, 0, 0.05});
   small.fuse(floor, cube, 0);
   Group& group = *small.graph.tail(small.process(cube))->group;
-  const double due = group.next_check;
+  const double due = group.next_check();
   test_end(small.scene, small.surroundings, group, small.counters);
-  EXPECT_TRUE(group.end_tested);
-  EXPECT_EQ(group.next_check, due);
+  EXPECT_TRUE(group.found.has_value());
+  EXPECT_EQ(group.next_check(), due);
   EXPECT_EQ(small.counters.early_ends, 0u);
 }
 
@@ -35,13 +35,13 @@ void expect_early_end_on_a_floor(BodyKind kind) {
   const BodyId cube = small.add_cube(edge, {0, 0, height}, Vec3::Zero(), Vec3(0, -3, 0), q);
   small.fuse(floor, cube, 0);
   Group& group = *small.graph.tail(small.process(cube))->group;
-  const double due = group.next_check;
+  const double due = group.next_check();
   test_end(small.scene, small.surroundings, group, small.counters);
-  EXPECT_LT(group.next_check, due);
+  EXPECT_LT(group.next_check(), due);
   EXPECT_EQ(small.counters.early_ends, 1u);
 
   // no deeper there than contacts are meant to be
-  const PoseTwist end = small.tail(cube).trajectory().at(group.next_check);
+  const PoseTwist end = small.tail(cube).trajectory().at(group.next_check());
   double lowest = 1;
   for (const double x : {-half, half})
     for (const double y : {-half, half})

@@ -162,7 +162,7 @@ TEST(Regroup, is_a_function_of_what_stands_before_the_key) {
     EXPECT_EQ(first[i].role, second[i].role);
     EXPECT_EQ(first[i].data.v, second[i].data.v);
     if (first[i].role != Role::new_arc) continue;
-    EXPECT_EQ(first[i].data.group->next_check, second[i].data.group->next_check);
+    EXPECT_EQ(first[i].data.group->next_check(), second[i].data.group->next_check());
     EXPECT_EQ(first[i].data.group->gaps, second[i].data.group->gaps);
   }
 }

@@ -47,7 +47,7 @@ TEST(Rest, a_cube_that_settles_rests_after_the_watch) {
   const double depth = 0.84773 * 2.5e-5;
   EXPECT_NEAR(small.tail(small.cube).x.z(), 0.05 - depth, 1e-3 * depth);
   EXPECT_EQ(small.tail(small.cube).v, Vec3(Vec3::Zero()));
-  EXPECT_EQ(small.group_of(small.cube).next_check, never);
+  EXPECT_EQ(small.group_of(small.cube).next_check(), never);
 }
 
 TEST(Rest, a_cube_that_slides_does_not_rest) {

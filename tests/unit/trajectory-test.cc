@@ -143,7 +143,7 @@ TEST(Trajectories, bounds_of_a_member_hold_as_long_as_its_arc_goes_on) {
   const double step_end = member->step_end(0.5 * end);
   EXPECT_GT(step_end, 0.5 * end);
   // what the end test finds out holds for trajectories that were given out before
-  arc->lower_ends({0.75 * end, end});
+  arc->lower_ends({{0.75 * end, EndReason::unseen}, {end, EndReason::motion}});
   EXPECT_EQ(member->end(), 0.75 * end);
   EXPECT_EQ(member_trajectory(arc, 1)->end(), end);
   EXPECT_EQ(member->bounds(0, 0.75 * end).valid_until, never);
@@ -152,8 +152,8 @@ TEST(Trajectories, bounds_of_a_member_hold_as_long_as_its_arc_goes_on) {
 
 TEST(TrajectoriesDeathTest, ends_are_told_once) {
   const std::shared_ptr<GroupArc> arc = settling_stack();
-  arc->lower_ends({0.1, 0.1});
-  EXPECT_DEATH(arc->lower_ends({0.05, 0.05}), "told twice");
+  arc->lower_ends({{0.1, EndReason::fast}, {0.1, EndReason::fast}});
+  EXPECT_DEATH(arc->lower_ends({{0.05, EndReason::fast}, {0.05, EndReason::fast}}), "told twice");
 }
 
 TEST(Trajectories, the_effort_of_a_group_is_told_by_its_first_member) {
