@@ -3,7 +3,7 @@
 # end of an arc has its row, and the table of known faults is the one that is tested.
 # SPDX-License-Identifier: LGPL-3.0-or-later
 cd "${TW_SRCDIR:-.}" || exit 99
-set -- README.md NEWS.md HACKING.md doc/*.md
+set -- README.md NEWS.md HACKING.md doc/*.md doc/numerics/*.md
 wide=$(awk '
   FNR == 1 { code = 0 }
   /^```/ { code = !code }

@@ -8,7 +8,7 @@
 //
 // A function of what stands before the key.
 //
-// Source: doc/numerics.md, "Blows on what lies".
+// Source: doc/numerics/impacts.md, "Blows on what lies".
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

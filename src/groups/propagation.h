@@ -4,7 +4,7 @@
 // A blow has been taken up before (blow.h): this is for what a check finds, and for what was too
 // much for the blow.
 //
-// Source: doc/numerics.md, "Contact groups".
+// Source: doc/numerics/impacts.md, "Impulses that a check finds".
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
