@@ -24,7 +24,7 @@
 //   beta' = (-M - y K beta)/C,   K = kt (size/2)^2,   C = ct (size/2)^2
 // with rho the lengths of the pair: as if the stretch held it at a lever of half the width.
 //
-// Source: doc/numerics.md, "Contact groups"; K. H. Hunt, F. R. E. Crossley,
+// Source: doc/numerics/contact-law.md; K. H. Hunt, F. R. E. Crossley,
 // J. Appl. Mech. 42 (1975).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
