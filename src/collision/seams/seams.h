@@ -33,8 +33,7 @@ struct SeamNeighbour {
 //
 // `size` (m) is that of the bodies in contact: points within 1e-5 of it are the same point, and
 // normals within `angle` (rad) the same normal; `depth` (m): of the contact, for a wall that is
-// pressed deep is looked at from farther around.  Source of the problem: doc/numerics.md, "Contact
-// points".
+// pressed deep is looked at from farther around.  Source: doc/numerics/seams.md.
 bool buried_edge(const ConvexPart& part, const Frame& frame, const Vec3& point, const Vec3& normal,
                  const std::vector<SeamNeighbour>& neighbours, double size,
                  double angle = seam::same_angle, double depth = 0);
