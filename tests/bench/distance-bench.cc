@@ -1,6 +1,6 @@
 // Signed distances of every pair of shapes: the worst errors over random and degenerate poses, and
 // what a query costs beside libccd's test for overlap and, where it is installed, FCL's signed
-// distance.  Prints the Markdown tables of doc/numerics.md.
+// distance.  Prints the Markdown tables that doc/numerics/distances.md has rows of.
 //
 //   distance-bench [POSES A PAIR [TOLERANCE]]
 //
