@@ -2,7 +2,7 @@
 //
 // A contact is a spring: its depth, not the step tolerance, bounds how true a heap is.  Steps of
 // contact groups therefore need not resolve more than a small share of the depth; measured motion
-// hardly depends on the tolerance (doc/numerics.md).
+// hardly depends on the tolerance (doc/numerics/integration.md).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

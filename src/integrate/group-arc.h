@@ -22,7 +22,8 @@
 // pieces it is extended.  Completing it and looking at it are two things: what looks never
 // integrates, and to look past what was completed is a mistake.
 //
-// Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.7; doc/numerics.md.
+// Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.7;
+// doc/numerics/integration.md.
 // Frames: members by their principal frames P at the centre of mass, outside bodies by the frame
 // their motion gives; vectors in the world frame unless a name says otherwise.
 //
