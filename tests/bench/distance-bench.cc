@@ -35,16 +35,16 @@ struct Solid {
   Frame frame;
 
   const ConvexPart& part() const { return shape->parts()[0]; }
-  SupportCore core() const { return SupportCore(part(), frame * part().placement); }
+  SupportCore core() const { return SupportCore(part(), frame * part().placement()); }
   double margin() const { return part().kind == PartKind::sphere ? part().radius : part().margin; }
   Vec3 support(const Vec3& n) const {
     if (part().kind == PartKind::sphere)
-      return frame * part().placement.p + margin() * n.normalized();
+      return frame * part().placement().p + margin() * n.normalized();
     return core().support(n) + margin() * n.normalized();
   }
   double size() const { return 2 * part().bound_radius; }
   double outside(const Vec3& point) const {
-    const Vec3 local = (frame * part().placement).to_local(point);
+    const Vec3 local = (frame * part().placement()).to_local(point);
     int face = 0;
     switch (part().kind) {
       case PartKind::sphere: return local.norm() - part().radius;
@@ -62,7 +62,7 @@ double slab(const Solid& a, const Solid& b, const Vec3& n) {
 constexpr const char* names[] = {"ball", "box", "hull", "cylinder", "cone", "capsule", "ellipsoid"};
 constexpr int kinds = 7;
 
-ShapePtr shape_of(int kind, double size, double ratio, Random& random) {
+ShapePtr shape_of(int kind, double size, double ratio, Engine& random) {
   const bool flat = random() % 2 == 0;
   const double thin = size * ratio;
   switch (kind) {
@@ -116,7 +116,7 @@ FclSolid plain(const Solid& solid, int kind) {
       break;
     default: out.sizes = {part.radius + part.margin, 2 * part.half_length};
   }
-  const Frame frame = solid.frame * part.placement;
+  const Frame frame = solid.frame * part.placement();
   Eigen::Map<Mat3>(out.rotation.data()) = frame.R;
   Eigen::Map<Vec3>(out.position.data()) = frame.p;
   return out;
@@ -162,7 +162,7 @@ void print_fcl(const char* a, const char* b, const Questions& questions) {
 }
 #endif
 
-double best_slab(const Solid& a, const Solid& b, const Vec3& start, Random& random) {
+double best_slab(const Solid& a, const Solid& b, const Vec3& start, Engine& random) {
   double best = -1e300;
   for (int from = 0; from < 4; ++from) {
     Vec3 n = from == 0 ? start : random_direction(random);
@@ -180,7 +180,7 @@ double best_slab(const Solid& a, const Solid& b, const Vec3& start, Random& rand
   return best;
 }
 
-double judge(const Solid& a, const Solid& b, Random& random, Worst& worst) {
+double judge(const Solid& a, const Solid& b, Engine& random, Worst& worst) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
     return 1e9 * std::chrono::duration<double>(Clock::now() - start).count();
@@ -216,7 +216,7 @@ double judge(const Solid& a, const Solid& b, Random& random, Worst& worst) {
 
 // Degenerate: axes parallel or square to each other, nearest features in exact touch.
 Worst worst_of(int kind_a, int kind_b, int poses, double tolerance, Questions& questions) {
-  Random random(static_cast<std::uint64_t>(100 * kind_a + kind_b));
+  Engine random(static_cast<std::uint64_t>(100 * kind_a + kind_b));
   Worst worst;
   for (int i = 0; i < poses; ++i) {
     const double size = std::pow(10, uniform(random, -3, 3));

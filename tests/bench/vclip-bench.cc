@@ -28,8 +28,8 @@
 namespace tw::bench {
 namespace {
 
-using testing::Random;
-using testing::WorldFeatures;
+using test::Engine;
+using test::WorldFeatures;
 
 // what counts as the proven distance
 constexpr double exact = 1e-12;
@@ -42,7 +42,7 @@ struct Body {
 
   explicit Body(ShapePtr s) : shape(std::move(s)), solid(*part().core) {}
   const ConvexPart& part() const { return shape->parts()[0]; }
-  Frame placed(const Frame& frame) const { return frame * part().placement; }
+  Frame placed(const Frame& frame) const { return frame * part().placement(); }
   double outside(const Frame& frame, const Vec3& point) const {
     int face = 0;
     return part().core->face_separation(placed(frame).to_local(point), face);
@@ -57,9 +57,9 @@ struct Pair {
 };
 
 std::vector<Pair> all_pairs() {
-  Random random(1998);
+  Engine random(1998);
   const auto rock = [&random](int points) {
-    return testing::random_rock(random, points, {0.5, 0.5, 0.5});
+    return test::random_rock(random, points, {0.5, 0.5, 0.5});
   };
   std::vector<Pair> pairs;
   const auto add = [&pairs](const char* name, const ShapePtr& a, const ShapePtr& b) {
@@ -92,11 +92,11 @@ Frame at_gap(const Pair& pair, Frame frame, double gap) {
 // A smooth tumble of so many degrees a pose at one gap, and back: no pose is far from the next, the
 // last from the first neither.  About random axes, from a random place.
 std::vector<Frame> tumble(const Pair& pair, double degrees, double gap, std::uint64_t seed) {
-  Random random(seed);
+  Engine random(seed);
   const double angle = degrees * pi / 180;
-  const Vec3 axis = testing::random_direction(random), start = testing::random_direction(random);
-  const Vec3 orbit = testing::random_direction(random);
-  const Quat attitude = testing::random_rotation(random);
+  const Vec3 axis = test::random_direction(random), start = test::random_direction(random);
+  const Vec3 orbit = test::random_direction(random);
+  const Quat attitude = test::random_rotation(random);
   std::vector<Frame> path;
   for (int i = 0; i < poses_in_path; ++i) {
     const double turned = angle * std::min(i, poses_in_path - i);
@@ -241,7 +241,7 @@ double off_feature(const Polyhedron& core, const Feature& feature, const Vec3& p
     case FeatureKind::vertex: return (point - core.vertex(feature.index)).norm();
     case FeatureKind::edge: {
       const Polyhedron::Edge& edge = core.edges()[static_cast<std::size_t>(feature.index)];
-      return testing::point_segment(point, core.vertex(edge.tail), core.vertex(edge.head));
+      return test::point_segment(point, core.vertex(edge.tail), core.vertex(edge.head));
     }
     case FeatureKind::face: {
       const Polyhedron::Face& face = core.face(feature.index);
@@ -288,7 +288,7 @@ struct Class {
 
 void check_by_brute_force(const Pair& pair, const Frame& frame_b, double distance) {
   const WorldFeatures a(pair.a.part(), frame_of_a()), b(pair.b.part(), frame_b);
-  const double brute = distance > 0 ? testing::brute_distance(a, b) : testing::brute_axis(a, b);
+  const double brute = distance > 0 ? test::brute_distance(a, b) : test::brute_axis(a, b);
   if (std::abs(distance) > exact * pair.size() &&
       !(std::abs(brute - distance) <= exact * pair.size()))
     fail(pair, distance > 0 ? "distance" : "depth", distance, brute);
