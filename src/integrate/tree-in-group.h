@@ -13,7 +13,7 @@
 // changes by with q while W does not stands in Kq.
 //
 // Source: the paper, section 4.3; R. Featherstone, Rigid Body Dynamics Algorithms (2008),
-// chapter 7; S. Singh, R. Russell, P. Wensing, IEEE RA-L 7 (2022); doc/numerics.md.
+// chapter 7; S. Singh, R. Russell, P. Wensing, IEEE RA-L 7 (2022); doc/numerics/multibodies.md.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
