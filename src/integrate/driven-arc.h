@@ -9,7 +9,7 @@
 // follow those of v and L.
 //
 // Errors of a step are held to accuracy/20 of a body's size and of a radian, and of its speeds: the
-// polynomial errs by up to 13 times what a step does (doc/numerics.md).
+// polynomial errs by up to 13 times what a step does (doc/numerics/driven-motion.md).
 //
 // Bounds come from the control points of the polynomials (dense-step.h) and hold by themselves.
 //
