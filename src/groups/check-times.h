@@ -1,7 +1,7 @@
 // When group checks happen.
 //
 // At k 2^j / 480 s, j such that no surface point moves more than a twentieth of its body's size in
-// between (doc/numerics.md: finer is cheaper while bodies collide, coarser while they do not),
+// between (doc/numerics/checks-and-rest.md: finer is cheaper while bodies collide, coarser else),
 // within bounds that follow from the sizes of the members: a scene that is scaled is checked at
 // scaled times.  What moves farther between two checks is looked at in between by the end test.
 //

@@ -9,7 +9,7 @@
 //
 // Cost: one manifold a pair, none for pairs that moved less than a fraction of their
 // contact's depth.
-// Source: doc/numerics.md, "Contact groups" (missed features gain energy).
+// Source: doc/numerics/checks-and-rest.md, "The end test" (missed features gain energy).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
