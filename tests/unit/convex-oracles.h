@@ -1,4 +1,4 @@
-// Engine solids and poses, and slow independent answers about them, for tests of collision/.
+// Random solids and poses, and slow independent answers about them, for tests of collision/.
 //
 // The oracles share nothing with the code under test: distance by all pairs of features, depth by
 // all axes without pruning, overlap by libccd's portal refinement.
