@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -178,19 +179,13 @@ std::string verdict(const Outcome& o, double beyond, double rollback) {
   return wrong.empty() ? "ok" : wrong;
 }
 
-void print_heading(double until) {
-  std::printf("%g s; depths at every frame\n\n", until);
-  std::puts(
-      "| seed | CPU, s | ms a frame | worst, ms | collisions | fusions | fissions |"
-      " integration, % | rollback, % | step | depth, mm | lost | rise | at rest |"
-      " measuring, s | verdict |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-      " --- | --- |");
-  std::fflush(stdout);
-}
+constexpr const char* columns =
+    "seed | CPU, s | ms a frame | worst frame, ms | collisions | fusions | fissions | "
+    "integration, % | rollback, % | step | depth, mm | lost | rise | at rest | measuring, s | "
+    "verdict";
 
 // Returns whether all is well.
-bool run_row(const std::string& file, double until, double accuracy, int threads) {
+bool run_row(Table& table, const std::string& file, double until, double accuracy, int threads) {
   const OtherScene scene = read_scene(file);
   AvalancheRun run(scene, accuracy, threads);
   const Outcome o = run.run(until);
@@ -204,14 +199,14 @@ bool run_row(const std::string& file, double until, double accuracy, int threads
   const std::string rest =
       o.moving > 0 ? std::to_string(o.moving) + " move" : number("%.1f s", o.moved);
   const std::string judged = verdict(o, beyond, rollback);
-  std::printf(
-      "| %s | %.1f | %.1f | %.0f | %.0f | %.0f | %.0f | %+.1f | %.4f | %.0f | %.3f | %d | "
-      "%.1e | %s | %.1f | %s |\n",
+  table.row(
+      "%s | %.1f | %.1f | %.0f | %.0f | %.0f | %.0f | %+.1f | %.4f | %.0f | %.3f | %d | %.1e | %s "
+      "| "
+      "%.1f | %s",
       seed_of(file).c_str(), cpu, 1e3 * cpu / (duration * frames_per_second), 1e3 * o.worst_frame,
       value("collisions"), value("fusions"), value("fissions"), 100 * beyond, 100 * rollback, step,
       1e3 * o.depth, o.lost, o.rise, rest.c_str(), o.measuring, judged.c_str());
   std::fprintf(stderr, "hash %s\n", run.world().history_hash().c_str());
-  std::fflush(stdout);
   return judged == "ok";
 }
 
@@ -272,12 +267,16 @@ int main(int argc, char** argv) {
 
   bool good = true;
   try {
-    if (!brief) print_heading(until);
+    std::optional<Table> table;
+    if (!brief) {
+      std::printf("%g s; depths at every frame\n\n", until);
+      table.emplace("avalanche", columns);
+    }
     for (const std::string& file : files)
       if (brief)
         run_brief_row(file, until, accuracy, threads);
       else
-        good = run_row(file, until, accuracy, threads) && good;
+        good = run_row(*table, file, until, accuracy, threads) && good;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -1,4 +1,4 @@
-// Timing and statistics for the benchmark programs that print Markdown tables.
+// Timing and statistics for the benchmark programs that print Markdown tables (bench-table.h).
 //
 // CPU time of this thread, never wall time: the machine is shared.  The best of several runs is
 // what counts: everything that disturbs a run makes it slower.
@@ -11,6 +11,7 @@
 #include <string>
 #include <variant>
 
+#include "bench/bench-table.h"
 #include "kernel/world.h"
 
 namespace tw::bench {

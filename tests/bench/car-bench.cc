@@ -105,6 +105,8 @@ void add_rules(World& world, const CarModel& car, const Multibody& made) {
                           apart);
 }
 
+const char* wheels(const CarModel& car) { return car.balls ? "balls" : "cylinders"; }
+
 struct Run {
   Vec3 place;
   double cpu = 0;
@@ -130,31 +132,31 @@ Run run_car(const CarModel& car, double accuracy) {
 }
 
 template <class Once>
-void print_row(const std::string& name, const Vec3& exact, Once&& once) {
+void print_row(Table& table, const CarModel& car, const std::string& name, const Vec3& exact,
+               Once&& once) {
   const Run first = once();
   const double best = std::min(first.cpu, once().cpu);
-  std::printf("| %s | %.1e | %.0f | %.0f |\n", name.c_str(), (first.place - exact).norm(),
-              1e3 * first.cpu, 1e3 * best);
+  table.row("%s | %s | %.1e | %.0f | %.0f", wheels(car), name.c_str(), (first.place - exact).norm(),
+            1e3 * first.cpu, 1e3 * best);
 }
 
-void print_table(const CarModel& car) {
+void print_rows(Table& table, const CarModel& car) {
   const Vec3 ours = run_car(car, 1e-9).place;
-  std::printf("timewarp's finest run ends at (%.6f, %.6f)\n", ours.x(), ours.y());
+  std::fprintf(stderr, "%s: timewarp's finest run ends at (%.6f, %.6f)\n", wheels(car), ours.x(),
+               ours.y());
   constexpr double finest_step = 2e-5;
   const auto theirs = run_mujoco_car(car, finest_step, duration);
-  if (theirs) std::printf("MuJoCo's ends at (%.6f, %.6f)\n", theirs->x(), theirs->y());
-  std::printf(
-      "\n| run | error of the end, m | first, CPU ms | best |\n| --- | --- | --- | --- |\n");
+  if (theirs) std::fprintf(stderr, "MuJoCo's ends at (%.6f, %.6f)\n", theirs->x(), theirs->y());
   for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
     char name[40];
-    std::snprintf(name, sizeof name, "timewarp, accuracy %.0e", accuracy);
-    print_row(name, ours, [&] { return run_car(car, accuracy); });
+    std::snprintf(name, sizeof name, "timewarp, %.0e", accuracy);
+    print_row(table, car, name, ours, [&] { return run_car(car, accuracy); });
   }
   if (!theirs) return;
   for (const double step : {5e-3, 2e-3, 1e-3, 5e-4, 1e-4}) {
     char name[40];
-    std::snprintf(name, sizeof name, "MuJoCo, step %.0e s", step);
-    print_row(name, *theirs, [&] {
+    std::snprintf(name, sizeof name, "MuJoCo, %g ms", 1e3 * step);
+    print_row(table, car, name, *theirs, [&] {
       const double start = cpu_seconds();
       Run run{*run_mujoco_car(car, step, duration), 0};
       run.cpu = cpu_seconds() - start;
@@ -167,10 +169,10 @@ void print_table(const CarModel& car) {
 }  // namespace tw::bench
 
 int main() {
+  tw::bench::Table table("car", "wheels | run | error of the end, m | cold, ms | warm, ms");
   tw::bench::CarModel car;
   for (const bool balls : {false, true}) {
     car.balls = balls;
-    std::printf("\nwheels are %s\n", balls ? "balls" : "cylinders");
-    tw::bench::print_table(car);
+    tw::bench::print_rows(table, car);
   }
 }

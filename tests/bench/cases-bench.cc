@@ -1,5 +1,5 @@
-// Brick, bounce, billiard and two gases: error against the exact results and CPU time.  Prints the
-// Markdown table of doc/performance.md.  Reads tests/data, or the folder that TW_TEST_DATA names.
+// Brick, bounce, billiard and two gases: error against the exact results and CPU time, cold and
+// warm: a table of doc/performance.md.  Reads tests/data, or the folder that TW_TEST_DATA names.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,7 +38,8 @@ double worst_position(const World& world, const Exact& exact) {
   return worst;
 }
 
-void print_case(const std::string& name, const std::string& unit, const ErrorOf& error_of) {
+void print_case(Table& table, const std::string& name, const std::string& unit,
+                const ErrorOf& error_of) {
   constexpr int runs = 50;
   const test::Case c = test::read_case(name);
   const Exact exact = test::read_rows(name + ".exact.txt");
@@ -56,20 +57,19 @@ void print_case(const std::string& name, const std::string& unit, const ErrorOf&
     error = error_of(world, exact);
     collisions = statistic(world, "collisions");
   }
-  std::printf("| %s, %g s | %.0f | %.3g | %.3g | %.3g | %.1e %s |\n", name.c_str(), c.duration,
-              collisions, 1e3 * cold, 1e3 * best.start, 1e3 * best.loop, error, unit.c_str());
+  table.row("%s, %g s | %.0f | %.3g | %.3g | %.3g | %.1e %s", name.c_str(), c.duration, collisions,
+            1e3 * cold, 1e3 * best.start, 1e3 * best.loop, error, unit.c_str());
 }
 
 // Each case in a process of its own, in which nothing has run before.
-void print_case_cold(const std::string& name, const std::string& unit, const ErrorOf& error_of) {
-  std::fflush(stdout);
+void print_case_cold(Table& table, const std::string& name, const std::string& unit,
+                     const ErrorOf& error_of) {
   const pid_t child = fork();
   if (child != 0) {
     waitpid(child, nullptr, 0);
     return;
   }
-  print_case(name, unit, error_of);
-  std::fflush(stdout);
+  print_case(table, name, unit, error_of);
   _exit(0);
 }
 
@@ -78,13 +78,11 @@ void print_case_cold(const std::string& name, const std::string& unit, const Err
 
 int main() {
   using namespace tw::bench;
-  std::puts(
-      "| case | collisions | first run, ms | start, ms | loop, ms | error |\n"
-      "| --- | --- | --- | --- | --- | --- |");
-  print_case_cold("brick", "rad", attitude_error);
-  print_case_cold("bounce", "m", height_error);
-  print_case_cold("billiard", "m", worst_position);
-  print_case_cold("gas-100", "m", worst_position);
-  print_case_cold("gas-200", "m", worst_position);
+  Table table("cases", "case | collisions | cold, ms | start, ms | loop, ms | error");
+  print_case_cold(table, "brick", "rad", attitude_error);
+  print_case_cold(table, "bounce", "m", height_error);
+  print_case_cold(table, "billiard", "m", worst_position);
+  print_case_cold(table, "gas-100", "m", worst_position);
+  print_case_cold(table, "gas-200", "m", worst_position);
   return 0;
 }

@@ -2,8 +2,8 @@
 // beside MuJoCo's classical Runge-Kutta method where that is installed.
 //
 // Rods of 0.2 m and 0.2 kg under 9.81 m/s^2, without damping; whole runs, made from nothing.  The
-// error is against a run at the finest accuracy, whose own error the last column of the table
-// bounds: by how much a run ten times looser differs from it.
+// error is against a run at the finest accuracy, whose own error the last column bounds: by how
+// much a run ten times looser differs from it.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -56,9 +56,14 @@ Run run_chain(int links, double accuracy) {
   return run;
 }
 
+struct Exact {
+  Vec3 tip;
+  double doubt;  // m
+};
+
 // The first run and the best of a few.
 template <class Once>
-void print_row(const std::string& name, const Vec3& exact, Once&& once) {
+void print_row(Table& table, int links, const std::string& name, const Exact& exact, Once&& once) {
   Run first = once();
   double best = first.cpu, spent = first.cpu;
   for (int i = 0; i < 10 && spent < 2; ++i) {
@@ -66,26 +71,23 @@ void print_row(const std::string& name, const Vec3& exact, Once&& once) {
     best = std::min(best, again.cpu);
     spent += again.cpu;
   }
-  std::printf("| %s | %.1e | %.2f | %.2f |\n", name.c_str(), (first.tip - exact).norm(),
-              1e3 * first.cpu, 1e3 * best);
+  table.row("%d | %s | %.1e | %.2f | %.2f | %.0e", links, name.c_str(),
+            (first.tip - exact.tip).norm(), 1e3 * first.cpu, 1e3 * best, exact.doubt);
 }
 
-void print_chain(int links) {
-  const Vec3 exact = run_chain(links, 1e-12).tip;
-  const double doubt = (run_chain(links, 1e-11).tip - exact).norm();
-  std::printf("\n%d links; the exact tip is known to %.0e m\n\n", links, doubt);
-  std::printf(
-      "| integrator | error of the tip, m | first, CPU ms | best |\n| --- | --- | --- | --- |\n");
+void print_chain(Table& table, int links) {
+  Exact exact{run_chain(links, 1e-12).tip, 0};
+  exact.doubt = (run_chain(links, 1e-11).tip - exact.tip).norm();
   for (const double accuracy : {1e-4, 1e-6, 1e-8, 1e-10}) {
     char name[40];
-    std::snprintf(name, sizeof name, "timewarp, accuracy %.0e", accuracy);
-    print_row(name, exact, [&] { return run_chain(links, accuracy); });
+    std::snprintf(name, sizeof name, "timewarp, %.0e", accuracy);
+    print_row(table, links, name, exact, [&] { return run_chain(links, accuracy); });
   }
   for (const double step : {1e-2, 1e-3, 1e-4}) {
     char name[40];
-    std::snprintf(name, sizeof name, "MuJoCo RK4, step %.0e s", step);
+    std::snprintf(name, sizeof name, "MuJoCo, %g ms", 1e3 * step);
     if (run_mujoco_chain(links, step, 0))
-      print_row(name, exact, [&] {
+      print_row(table, links, name, exact, [&] {
         const double start = cpu_seconds();
         Run run{*run_mujoco_chain(links, step, duration), 0};
         run.cpu = cpu_seconds() - start;
@@ -98,5 +100,8 @@ void print_chain(int links) {
 }  // namespace tw::bench
 
 int main() {
-  for (const int links : {2, 5, 10, 20}) tw::bench::print_chain(links);
+  tw::bench::Table table("chains",
+                         "links | integrator | error of the tip, m | cold, ms | warm, ms | "
+                         "known to, m");
+  for (const int links : {2, 5, 10, 20}) tw::bench::print_chain(table, links);
 }

@@ -1,8 +1,9 @@
-// What driven arcs cost, and the error got for the accuracy asked for: a Markdown table.
+// What driven arcs cost, and the error got for the accuracy asked for: a table of
+// doc/performance.md.
 //
-// A damped oscillator, a fall with quadratic drag, a torsion pendulum of springs; errors in sizes
-// of the body, worst over 200 times of 10 s against closed forms, or the same at an accuracy of
-// 1e-12.
+// A damped oscillator, a throw with quadratic drag, a brick that tumbles between two springs; of
+// each the error, the steps a second and the CPU us a second; errors in sizes of the body, worst
+// over 200 times of 10 s against closed forms, or the same at an accuracy of 1e-12.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "base/cpu-clock.h"
+#include "bench/bench-table.h"
 #include "integrate/driven-arc.h"
 #include "support/anchored-spring.h"
 
@@ -55,35 +57,37 @@ double error_of(const DrivenArc& arc, const DrivenArc& exact) {
   return worst;
 }
 
-void print_row(const std::string& name, DrivenStart start) {
+// Three cells of a row.
+std::string cells(DrivenStart start, double accuracy) {
   start.accuracy = 1e-12;
   start.method = &dop853;
   const DrivenArc exact(start);
   start.method = nullptr;
-  for (double accuracy = 1e-3; accuracy > 5e-10; accuracy *= 0.1) {
-    start.accuracy = accuracy;
-    const DrivenArc arc(start);
-    const double error = error_of(arc, exact) / start.size;
-    constexpr int repeats = 20;
-    const double before = thread_cpu_seconds();
-    for (int i = 0; i < repeats; ++i) {
-      const DrivenArc again(start);
-      for (double t = 0; t < duration; t = again.step_end(t)) {
-      }
+  start.accuracy = accuracy;
+  const DrivenArc arc(start);
+  const double error = error_of(arc, exact) / start.size;
+  constexpr int repeats = 20;
+  const double before = thread_cpu_seconds();
+  for (int i = 0; i < repeats; ++i) {
+    const DrivenArc again(start);
+    for (double t = 0; t < duration; t = again.step_end(t)) {
     }
-    const double cpu = (thread_cpu_seconds() - before) / repeats / duration;
-    std::printf("| %s | %.0e | %.1e | %.0f | %.0f |\n", name.c_str(), accuracy, error,
-                static_cast<double>(arc.effort().steps) / duration, 1e6 * cpu);
   }
+  const double cpu = (thread_cpu_seconds() - before) / repeats / duration;
+  char text[80];
+  std::snprintf(text, sizeof text, "%.1e | %.0f | %.0f", error,
+                static_cast<double>(arc.effort().steps) / duration, 1e6 * cpu);
+  return text;
 }
 
 }  // namespace
 }  // namespace tw
 
 int main() {
-  std::printf("| motion | accuracy | error / size | steps a second | CPU, us a second |\n");
-  std::printf("| --- | --- | --- | --- | --- |\n");
-  tw::print_row("damped oscillator", tw::oscillator());
-  tw::print_row("throw with quadratic drag", tw::fall());
-  tw::print_row("brick between two springs", tw::tumbling());
+  tw::bench::Table table("driven",
+                         "accuracy | oscillator: error | steps | CPU, us | throw: error | steps | "
+                         "CPU, us | brick: error | steps | CPU, us");
+  for (double accuracy = 1e-3; accuracy > 5e-10; accuracy *= 0.1)
+    table.row("%.0e | %s | %s | %s", accuracy, tw::cells(tw::oscillator(), accuracy).c_str(),
+              tw::cells(tw::fall(), accuracy).c_str(), tw::cells(tw::tumbling(), accuracy).c_str());
 }

@@ -1,5 +1,5 @@
-// What a frame costs: 300 rocks over a mountainside of 524 pieces, and two bodies, at 1280x720.
-// Prints the Markdown table of doc/performance.md.
+// What a frame costs: 300 rocks over a mountainside of 524 pieces, and two bodies, at 1280x720:
+// a table of doc/performance.md.
 //
 // The first row is the least that such a frame can cost: the same surfaces in one colour, nothing
 // else, read back.  CPU time of all threads; frames after the first, whose shaders are compiled.
@@ -13,6 +13,7 @@
 #include <ctime>
 #include <random>
 
+#include "bench/bench-table.h"
 #include "render/png.h"
 #include "render/renderer.h"
 #include "render/view.h"
@@ -154,7 +155,7 @@ double least_cost(const DrawScene& scene, ImageSize size) {
                                         static_cast<std::size_t>(size.height))};
   gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   return milliseconds(12, [&](int) {
-    bodies.place(poses, view.eye);
+    bodies.place(poses, view.eye, 2 * view.tan_half_fov / size.height);
     gl.BindFramebuffer(GL_FRAMEBUFFER, buffer);
     gl.Viewport(0, 0, size.width, size.height);
     gl.Enable(GL_DEPTH_TEST);
@@ -164,7 +165,7 @@ double least_cost(const DrawScene& scene, ImageSize size) {
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     program.use();
     program.set("projection", projection_of(view));
-    bodies.draw_meshes();
+    bodies.draw_meshes(BodyDrawer::Which::all);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl.ReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
   });
@@ -191,22 +192,20 @@ double frame_cost(const DrawScene& scene, Quality quality, Image& last) {
   });
 }
 
-void print_row(const char* name, double mountain, double two) {
-  std::printf("| %s | %.0f | %.0f |\n", name, mountain, two);
-}
-
 void print_table() {
   const DrawScene mountain = mountainside(), two = two_bodies();
-  std::printf("| ms of CPU a frame, 1280x720 | 824 hulls | two bodies |\n| --- | --- | --- |\n");
-  print_row("surfaces in one colour, nothing else", least_cost(mountain, size),
-            least_cost(two, size));
+  Table table("frames", "ms of CPU a frame, 1280x720 | 824 hulls | two bodies");
+  const auto row = [&](const char* name, double large, double small) {
+    table.row("%s | %.0f | %.0f", name, large, small);
+  };
+  row("surfaces in one colour, nothing else", least_cost(mountain, size), least_cost(two, size));
   Image large, small;
   for (const auto& [name, quality] :
        {std::pair("draft", Quality::draft), std::pair("normal", Quality::normal),
         std::pair("best", Quality::best)})
-    print_row(name, frame_cost(mountain, quality, large), frame_cost(two, quality, small));
-  print_row("PNG of a best one", milliseconds(12, [&](int) { encode_png(large); }),
-            milliseconds(12, [&](int) { encode_png(small); }));
+    row(name, frame_cost(mountain, quality, large), frame_cost(two, quality, small));
+  row("PNG of a best one", milliseconds(12, [&](int) { encode_png(large); }),
+      milliseconds(12, [&](int) { encode_png(small); }));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // What an elastic gas costs, beside the dedicated event-driven program, in the same run; and
-// whether memory stays bounded over 1e6 collisions.  Prints the Markdown tables of
-// doc/performance.md.
+// whether memory stays bounded over 1e6 collisions: two tables of doc/performance.md.
 //
 //   gas-bench            both tables
 //   gas-bench N RUNS     one row: for profilers
@@ -83,22 +82,23 @@ double per_collision(const Row& row) {
   return 1e6 * row.loop / static_cast<double>(row.collisions);
 }
 
-Row print_row(int count, int runs) {
+constexpr const char* columns =
+    "N | collisions | event-driven, ms | timewarp, ms | ratio | us per collision | start, ms | "
+    "apart, m";
+
+Row print_row(Table& table, int count, int runs) {
   const Row row = measure(count, runs);
-  std::printf("| %d | %ld | %.3g | %.3g | %.2f | %.2f | %.2g | %.1e |\n", count, row.collisions,
-              1e3 * row.md, 1e3 * row.loop, row.loop / row.md, per_collision(row), 1e3 * row.start,
-              row.apart);
-  std::fflush(stdout);
+  table.row("%d | %ld | %.3g | %.3g | %.2f | %.2f | %.2g | %.1e", count, row.collisions,
+            1e3 * row.md, 1e3 * row.loop, row.loop / row.md, per_collision(row), 1e3 * row.start,
+            row.apart);
   return row;
 }
 
 void print_growth() {
-  std::puts(
-      "| N | collisions | event-driven, ms | timewarp, ms | ratio | us per collision "
-      "| start, ms | apart, m |\n| --- | --- | --- | --- | --- | --- | --- | --- |");
+  Table table("gas", columns);
   Row first, last;
   for (const int count : {200, 400, 800, 1600, 3200}) {
-    last = print_row(count, std::max(10, 16000 / count));
+    last = print_row(table, count, std::max(10, 16000 / count));
     if (count == 200) first = last;
   }
   std::printf(
@@ -114,20 +114,19 @@ void print_growth() {
 void print_memory() {
   World world;
   fill(world, make_gas(200));
-  std::puts(
-      "| collisions | simulated, s | CPU, s | peak states | peak resident, MB "
-      "| energy drift |\n| --- | --- | --- | --- | --- | --- |");
+  Table table("memory",
+              "collisions | simulated, s | CPU, s | peak states | peak resident, MB | "
+              "energy drift");
   double next = 1e5;
   for (double until = 25; next <= 1e6; until += 25) {
     world.advance(until);
     const double collisions = statistic(world, "collisions");
     if (collisions < next) continue;
     const double energy = statistic(world, "energy_start");
-    std::printf("| %.0f | %.0f | %.2f | %.0f | %.1f | %.1e |\n", collisions, until,
-                statistic(world, "cpu_seconds"), statistic(world, "peak_states"),
-                statistic(world, "peak_rss_bytes") / 1e6,
-                std::abs(statistic(world, "energy_end") - energy) / energy);
-    std::fflush(stdout);
+    table.row("%.0f | %.0f | %.2f | %.0f | %.1f | %.1e", collisions, until,
+              statistic(world, "cpu_seconds"), statistic(world, "peak_states"),
+              statistic(world, "peak_rss_bytes") / 1e6,
+              std::abs(statistic(world, "energy_end") - energy) / energy);
     next += next < 2e5 ? 1e5 : 2e5;
   }
 }
@@ -137,7 +136,8 @@ void print_memory() {
 
 int main(int argc, char** argv) {
   if (argc > 2) {
-    tw::bench::print_row(std::atoi(argv[1]), std::atoi(argv[2]));
+    tw::bench::Table table("gas-row", tw::bench::columns);
+    tw::bench::print_row(table, std::atoi(argv[1]), std::atoi(argv[2]));
     return 0;
   }
   tw::bench::print_growth();

@@ -63,16 +63,15 @@ double largest_error(GroupArc& arc, GroupArc& reference) {
 }
 
 void print_costs() {
-  std::puts(
-      "| group | bodies | contacts | construction us | us a step tried |\n|---|---|---|---|---|");
+  bench::Table table("group-steps", "group | bodies | contacts | making, us | a step, us");
   for (const GroupScene& scene : scenes()) {
     CompleteArc arc(scene.start);
     arc.extend(scene.start.end);
     const double tries = static_cast<double>(arc.counts().steps + arc.counts().rejected);
     const double construction = best_time(scene.start, false), whole = best_time(scene.start, true);
-    std::printf("| %s | %zu | %zu | %.1f | %.2f |\n", scene.name.c_str(),
-                scene.start.members.size(), scene.start.contacts.size(), 1e6 * construction,
-                1e6 * (whole - construction) / tries);
+    table.row("%s | %zu | %zu | %.1f | %.2f", scene.name.c_str(), scene.start.members.size(),
+              scene.start.contacts.size(), 1e6 * construction,
+              1e6 * (whole - construction) / tries);
   }
 }
 

@@ -76,7 +76,7 @@ struct Costs {
 };
 
 // Returns the CPU per body and simulated second while moving, s.
-double run_row(int doublings, double first) {
+double run_row(Table& table, int doublings, double first) {
   const int count = smallest << doublings;
   const int across = 4 << (doublings / 2), along = 4 << ((doublings + 1) / 2);
   World world;
@@ -99,11 +99,10 @@ double run_row(int doublings, double first) {
   world.advance(when + resting);
   const double rest_each = (Costs(world).cpu - rest_before) / count / resting;
 
-  std::printf("| %d | %.0f | %.0f | %.0f | %.1f | %.2f | %.2f | %s | %.3g |\n", count,
-              statistic(world, "largest_group_bodies"), (after.events - before.events) / count,
-              (after.discontinuities - before.discontinuities) / count, after.cpu, 1e3 * each,
-              first > 0 ? each / first : 1.0, rest.c_str(), 1e6 * rest_each);
-  std::fflush(stdout);
+  table.row("%d | %.0f | %.0f | %.0f | %.1f | %.2f | %.2f | %s | %.3g", count,
+            statistic(world, "largest_group_bodies"), (after.events - before.events) / count,
+            (after.discontinuities - before.discontinuities) / count, after.cpu, 1e3 * each,
+            first > 0 ? each / first : 1.0, rest.c_str(), 1e6 * rest_each);
   return each;
 }
 
@@ -116,13 +115,13 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s [DOUBLINGS]     of 100 rocks, 0 to 10\n", argv[0]);
     return 2;
   }
-  std::puts(
-      "| N | largest group | events a body | discontinuities a body | CPU until 2 s, s |"
-      " moving, ms per body and s | over N = 100 | at rest | resting, us per body and s |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  tw::bench::Table table(
+      "growth",
+      "N | largest group | events a body | discontinuities a body | CPU until 2 s, s | "
+      "moving, ms per body and s | over N = 100 | at rest | resting, us per body and s");
   double first = 0;
   for (int doublings = 0; doublings <= most; ++doublings) {
-    const double each = tw::bench::run_row(doublings, first);
+    const double each = tw::bench::run_row(table, doublings, first);
     if (doublings == 0) first = each;
   }
   return 0;

@@ -1,5 +1,6 @@
 // The cost of multibodies' algorithms: forward dynamics of chains and of a car, beside Simbody and
-// MuJoCo where they are installed; derivatives, mass matrix and impulses.
+// MuJoCo where they are installed, which is a table of doc/performance.md; derivatives, mass matrix
+// and impulses.
 //
 // Counters: ns per link; `off`, the largest difference from our accelerations of joints over their
 // largest.  Every evaluation is at another state, so that nothing is found in a cache.
@@ -9,8 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/random.h"
+#include "bench/bench-table.h"
 #include "multibody/derivatives.h"
 #include "multibody/forward-dynamics.h"
 #include "multibody/impulses.h"
@@ -237,12 +240,43 @@ void register_all() {
   }
 }
 
+// Prints as usual, and keeps what forward dynamics took, ns a link, by tree and engine.
+class Reporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      const std::string& name = run.run_name.function_name;
+      const std::size_t tree = name.find('/') + 1, engine = name.rfind('/') + 1;
+      if (!name.starts_with("forward/") || !run.counters.count("link")) continue;
+      const std::string key = name.substr(tree, engine - 1 - tree);
+      if (rows_.empty() || rows_.back().first != key) rows_.emplace_back(key, Costs());
+      rows_.back().second[name.substr(engine)] = 1e9 * run.counters.at("link").value;
+    }
+  }
+  void print_table() {
+    Table table("forward-dynamics", "tree | timewarp | MuJoCo | Simbody");
+    for (auto& [tree, costs] : rows_)
+      table.row("%s | %s | %s | %s", tree.c_str(), cell(costs["timewarp"]).c_str(),
+                cell(costs["mujoco"]).c_str(), cell(costs["simbody"]).c_str());
+  }
+
+ private:
+  using Costs = std::map<std::string, double>;
+  static std::string cell(double ns) {
+    return ns > 0 ? std::to_string(std::lround(ns)) : std::string();
+  }
+  std::vector<std::pair<std::string, Costs>> rows_;
+};
+
 }  // namespace
 }  // namespace tw::bench
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   tw::bench::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  tw::bench::Reporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.print_table();
   return 0;
 }
