@@ -47,62 +47,62 @@ Collision fission_of(const Regrouping& work, const PairBefore& old) {
   return row;
 }
 
-}  // namespace
-
-void count_fissions(Regrouping& work, const std::vector<bool>& held) {
+// Bodies that came apart, and those that left the ground alone.
+std::uint16_t fissions_of(const Regrouping& work, const Contacts& contacts, const Parts& parts) {
   const std::size_t pieces_before =
       count_pieces(work, work.pairs_before, [&](const Successor& successor) -> const ForcesPtr& {
         return work.before.state(successor.process()).forces;
       });
   const std::size_t pieces = count_pieces(
-      work, work.pairs,
+      work, contacts.pairs,
       [](const Successor& successor) -> const ForcesPtr& { return successor.data.forces; });
   std::size_t parted = pieces > pieces_before ? pieces - pieces_before : 0;
   for (std::size_t i = 0; i < work.successors.size(); ++i) {
     const Successor& successor = work.successors[i];
-    if (work.changes(&successor) && !held[i] && successor.data.group &&
+    if (work.changes(&successor) && !parts.held[i] && successor.data.group &&
         successor.data.group->members.size() == 1)
       ++parted;
   }
-  work.tally.fissions = static_cast<std::uint16_t>(parted);
+  return static_cast<std::uint16_t>(parted);
 }
 
-void note_changes(Regrouping& work) {
-  note_squeezed(work);
+}  // namespace
+
+Told tell_changes(const Regrouping& work, const Contacts& contacts, const Parts& parts) {
+  Told told = note_squeezed(work, contacts);
+  Tally& tally = told.tally;
+  tally.fissions = fissions_of(work, contacts, parts);
   const auto is_squeezed = [&](BodyId id) {
     const Successor* successor = work.successor_of(id);
     return successor && successor->data.squeezed_since < never;
   };
-  for (const ContactPair& pair : work.pairs)
+  for (const ContactPair& pair : contacts.pairs)
     if (!is_squeezed(pair.a()) && !is_squeezed(pair.b()))
-      each_contact(pair, [&](std::uint32_t c) { work.tally.note_gap(work.contacts[c].gap); });
+      each_contact(pair, [&](std::uint32_t c) { tally.note_gap(contacts.all[c].gap); });
   bool changed = false;
   std::size_t lasting = 0;
   for (const PairBefore& old : work.pairs_before) {
-    const auto at =
-        std::lower_bound(work.pairs.begin(), work.pairs.end(), old.id,
-                         [](const ContactPair& p, std::uint64_t id) { return p.id < id; });
-    const bool stands = at != work.pairs.end() && at->id == old.id;
+    const ContactPair* stands = contacts.find(old.id);
     if (stands) {
       ++lasting;
-      changed = changed || at->count != old.pair->count;
-    } else if (old.pair->has_borne_load && work.tally.fissions > 0 && work.reports_fissions) {
-      work.report.push_back(fission_of(work, old));
+      changed = changed || stands->count != old.pair->count;
+    } else if (old.pair->has_borne_load && tally.fissions > 0 && work.request.reports_fissions) {
+      told.report.push_back(fission_of(work, old));
     }
     changed = changed || !stands;
   }
-  changed = changed || lasting != work.pairs.size();
-  work.tally.contact_changes = changed;
+  tally.contact_changes = changed || lasting != contacts.pairs.size();
+  return told;
 }
 
-void add_report(Regrouping& work) {
-  const auto first = std::find_if(work.successors.begin(), work.successors.end(),
+void put_on_first(std::vector<Successor>& successors, const Told& told) {
+  const auto first = std::find_if(successors.begin(), successors.end(),
                                   [](const Successor& s) { return s.enters(); });
-  if (first == work.successors.end()) return;
-  first->data.tally.add(work.tally);
-  if (work.report.empty()) return;
+  if (first == successors.end()) return;
+  first->data.tally.add(told.tally);
+  if (told.report.empty()) return;
   Report all = first->data.report ? *first->data.report : Report();
-  all.insert(all.end(), work.report.begin(), work.report.end());
+  all.insert(all.end(), told.report.begin(), told.report.end());
   first->data.report = std::make_shared<const Report>(std::move(all));
 }
 

@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/parts.h"
 
 namespace tw {
 
-// Bodies that came apart, and those that left the ground alone.  `held`: which successors touch
-// something.
-void count_fissions(Regrouping& work, const std::vector<bool>& held);
+// Which pairs went, which came: counted, and told as fissions where bodies parted, or left the
+// ground alone; who is squeezed (noted in the successors), and how deep the others are.  `contacts`
+// and `parts`: from here on.
+Told tell_changes(const Regrouping& work, const Contacts& contacts, const Parts& parts);
 
-// Which pairs went, which came: counted, and reported as fissions where bodies parted; who is
-// squeezed; and how deep the others are.  After count_fissions.
-void note_changes(Regrouping& work);
-
-// Puts the tally and the report on the first state that enters the graph: once all is decided.
-void add_report(Regrouping& work);
+// Puts what is told on the first state that enters the graph: once all is decided.
+void put_on_first(std::vector<Successor>& successors, const Told& told);
 
 }  // namespace tw

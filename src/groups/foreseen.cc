@@ -18,15 +18,16 @@ bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId r
          (followed.normal - fresh.normal).norm() <= answer::foreseen_way;
 }
 
-int doublings_of(const Regrouping& work, const Group& group, const Group& before) {
+int doublings_of(const Regrouping& work, const Contacts& contacts, const Parts& parts,
+                 const Group& group, const Group& before) {
   // whether what is slow has stopped is decided by what checks see of it
   const auto is_watched = [&](ProcessId member) {
-    return work.stillness[work.place_of(work.successor_of(member))].since != never;
+    return parts.stillness[work.place_of(work.successor_of(member))].since != never;
   };
   if (std::any_of(group.members.begin(), group.members.end(), is_watched)) return 0;
   // what a callback changes goes on, as far as its contacts are concerned
-  if (work.cause == Cause::callback) return before.doublings;
-  if (work.cause != Cause::check || before.at_rest || group.has_border || before.has_border ||
+  if (work.cause() == Cause::callback) return before.doublings;
+  if (work.cause() != Cause::check || before.at_rest || group.has_border || before.has_border ||
       group.pairs.size() != before.pairs.size())
     return 0;
   // an arc that ended early
@@ -35,7 +36,7 @@ int doublings_of(const Regrouping& work, const Group& group, const Group& before
     const ContactPair &now = group.pairs[i], &then = before.pairs[i];
     if (now.id != then.id || now.count != then.count) return 0;
     for (std::uint32_t c = now.first; c < now.first + now.count; ++c)
-      if (!work.contacts[c].foreseen) return 0;
+      if (!contacts.all[c].foreseen) return 0;
   }
   // steps that are cut short by checks have errors far below their tolerance: so it stays
   const double whole = answer::most_step_change * (work.now() - before.arc->start().time);

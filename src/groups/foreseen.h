@@ -11,7 +11,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/parts.h"
 
 namespace tw {
 
@@ -22,6 +22,7 @@ bool is_foreseen(const NewContact& fresh, const ContactForce& followed, BodyId r
 
 // How many times the time to the next check of a group is doubled, after the group of the same
 // members that was there before.
-int doublings_of(const Regrouping& work, const Group& group, const Group& before);
+int doublings_of(const Regrouping& work, const Contacts& contacts, const Parts& parts,
+                 const Group& group, const Group& before);
 
 }  // namespace tw

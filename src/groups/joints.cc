@@ -178,7 +178,7 @@ void JointImpulses::take() {
   }
 }
 
-void settle_joints(Regrouping& work) {
+void settle_joints(const Regrouping& work) {
   const Multibody* placed = nullptr;
   std::unique_ptr<PlacedJoints> joints;
   for (const auto& [process, at] : work.index()) {
@@ -187,7 +187,7 @@ void settle_joints(Regrouping& work) {
     if (!multibody || !work.changes(&successor)) continue;
     if (multibody != placed) {
       follow_base(*multibody, work.now(), *successor.joints);
-      settle_stops(*multibody, work.now(), finds_contacts(work.cause), *successor.joints);
+      settle_stops(*multibody, work.now(), finds_contacts(work.cause()), *successor.joints);
       joints = std::make_unique<PlacedJoints>(*multibody, *successor.joints, work.now());
     }
     placed = multibody;

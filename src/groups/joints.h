@@ -78,6 +78,6 @@ class JointImpulses {
 };
 
 // What the base's jumps do, then stops, then the links where their joints are: for new arcs.
-void settle_joints(Regrouping& work);
+void settle_joints(const Regrouping& work);
 
 }  // namespace tw

@@ -1,17 +1,24 @@
-// Cutting a regrouping into groups: what hangs together is one, what touches nothing flies.
-//
-// Fixed and kinematic bodies, and those at the border, hold nothing together; what sleeps and what
-// is awake are groups of their own.
-//
+// Making groups: one of each part (parts.h), with its arc; who is in none flies.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/parts.h"
 
 namespace tw {
 
-// From the successors and their contacts; sorts the pairs, makes the groups and their starts, notes
-// what changed, and tells each successor which group it is in.
-void make_groups(Regrouping& work);
+struct MadeGroups {
+  Groups all;
+  std::vector<std::shared_ptr<Group>>
+      of;  // of each successor with a new arc, by its place; or null
+  // of what was placed touching (placed-loads.h)
+  std::vector<std::uint64_t> unloaded;  // ascending
+  double placed_energy = 0;             // J
+};
+
+// `contacts`: sorted.  Of successors that come to rest the velocities become 0.
+MadeGroups make_groups(const Regrouping& work, const Contacts& contacts, Parts& parts);
+
+// Tells each successor with a new arc which group it is in, and what it follows.
+void enter_groups(const Regrouping& work, const MadeGroups& made);
 
 }  // namespace tw

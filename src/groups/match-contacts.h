@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "collision/overlap-along.h"
+#include "dynamics/placed-body.h"
 #include "groups/flush-ground.h"
 
 namespace tw {

@@ -402,11 +402,13 @@ bool touches(const NewContact& c, double size) {
 // By more than touch.
 bool overlaps(const NewContact& c) { return c.gap < -answer::start_depth * c.contact.law.size; }
 
-// Notes the pairs of two moving bodies that came to touch now and carry nothing: not those that
-// overlap, which are in contact until they have parted.
-void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
-                   const std::vector<NewContact>& contacts) {
-  if (!work.together) return;
+// The pairs of two moving bodies that came to touch now and carry nothing, ascending: not those
+// that overlap, which are in contact until they have parted.
+std::vector<std::uint64_t> unloaded_pairs(const Regrouping& work,
+                                          const std::vector<Spring>& springs,
+                                          const std::vector<NewContact>& contacts) {
+  std::vector<std::uint64_t> unloaded;
+  if (!work.request.together) return unloaded;
   const Scene& scene = work.scene();
   const std::uint64_t struck =
       pair_id(work.successors[0].body->id(), work.successors[1].body->id());
@@ -425,10 +427,11 @@ void note_unloaded(Regrouping& work, const std::vector<Spring>& springs,
     const std::uint64_t pair = pair_of(c);
     if (!scene.body(c.tag.reference).dynamic() || !scene.body(c.tag.other).dynamic()) continue;
     if (pair == struck || work.pair_before(pair)) continue;
-    if (!std::binary_search(carrying.begin(), carrying.end(), pair)) work.unloaded.push_back(pair);
+    if (!std::binary_search(carrying.begin(), carrying.end(), pair)) unloaded.push_back(pair);
   }
-  std::sort(work.unloaded.begin(), work.unloaded.end());
-  work.unloaded.erase(std::unique(work.unloaded.begin(), work.unloaded.end()), work.unloaded.end());
+  std::sort(unloaded.begin(), unloaded.end());
+  unloaded.erase(std::unique(unloaded.begin(), unloaded.end()), unloaded.end());
+  return unloaded;
 }
 
 double smaller_size(const Scene& scene, const ContactTag& tag) {
@@ -524,8 +527,10 @@ std::vector<BodyId> placed_with(const Before& before, const std::vector<ProcessI
   return together ? together->hanging_together(before.scene(), std::move(bodies)) : bodies;
 }
 
-void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewContact>& contacts) {
+PlacedLoads load_placed(const Regrouping& work, GroupStart& start,
+                        const std::vector<NewContact>& contacts) {
   const Scene& scene = work.scene();
+  PlacedLoads loads;
   std::vector<Spring> springs;
   double depth = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -537,24 +542,24 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
     const double closing = relative.dot(c.normal);
     // what parts and does not press has no load
     if (closing > placed_speed(scene, size) && c.gap >= c.contact.offset) continue;
-    if (std::abs(closing) > placed_speed(scene, size)) return;
+    if (std::abs(closing) > placed_speed(scene, size)) return loads;
     depth = std::max(depth, start.contacts[i].law.depth);
     springs.push_back(spring_of(start, c, i));
     springs.back().overlap = std::max(0.0, -c.gap);
     const Vec3 slip = relative - closing * c.normal;
     if (slip.norm() > placed_speed(scene, size)) springs.back().sliding = -slip.normalized();
   }
-  if (springs.empty()) return;
+  if (springs.empty()) return loads;
   Balance balance(start, std::move(springs), depth, scene.gravity_scale());
-  if (!balance.solve()) return;
-  note_unloaded(work, balance.springs(), contacts);
-  if (!work.unloaded.empty()) return;
+  if (!balance.solve()) return loads;
+  loads.unloaded = unloaded_pairs(work, balance.springs(), contacts);
+  if (!loads.unloaded.empty()) return loads;
 
   for (const Spring& s : balance.springs()) {
     GroupContact& c = start.contacts[s.number];
     const NewContact& looks = contacts[s.number];
     const Quat into = work.attitude(looks.tag.reference).conjugate();
-    work.tally.placed_energy -= energy_of(c, into * looks.normal, looks.gap);
+    loads.energy -= energy_of(c, into * looks.normal, looks.gap);
     c.offset = s.load > 0        ? spring_depth(c.law, c.share, s.load) + looks.gap
                : overlaps(looks) ? unpressed(looks.gap, c.law.size)
                                  : std::min(looks.gap, 0.0);
@@ -565,8 +570,9 @@ void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewConta
       c.stretch = into * Vec3(-beyond / (grip * s.kt) * s.friction);
     }
     if (s.turning.resists()) c.bend = into * Vec3(-1 / (grip * s.turning.k) * s.turning.torque);
-    work.tally.placed_energy += energy_of(c, into * looks.normal, looks.gap);
+    loads.energy += energy_of(c, into * looks.normal, looks.gap);
   }
+  return loads;
 }
 
 }  // namespace tw

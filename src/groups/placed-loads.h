@@ -25,7 +25,7 @@
 
 #include <vector>
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
@@ -48,8 +48,14 @@ bool are_placed(const Before& before, const std::vector<ProcessId>& struck);
 std::vector<BodyId> placed_with(const Before& before, const std::vector<ProcessId>& struck,
                                 const PlacedTogether* together);
 
+struct PlacedLoads {
+  std::vector<std::uint64_t> unloaded;  // pairs that carry nothing: with any nothing is loaded
+  double energy = 0;                    // J, that the springs got
+};
+
 // Gives the contacts of a group at its start their loads, if all that touch there hardly
 // part or close.  `contacts`: those of the start, as they look now.
-void load_placed(Regrouping& work, GroupStart& start, const std::vector<NewContact>& contacts);
+PlacedLoads load_placed(const Regrouping& work, GroupStart& start,
+                        const std::vector<NewContact>& contacts);
 
 }  // namespace tw

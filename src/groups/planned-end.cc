@@ -40,8 +40,9 @@ double by_ties(const PlannedGroup& p) {
 
 double by_push(const PlannedGroup& p) {
   double finest = never;
-  if (std::any_of(p.group.pairs.begin(), p.group.pairs.end(),
-                  [&](const ContactPair& pair) { return p.work.pushes_apart(pair); }))
+  if (std::any_of(p.group.pairs.begin(), p.group.pairs.end(), [&](const ContactPair& pair) {
+        return p.contacts.pushes_apart(p.work.scene(), pair);
+      }))
     for (const ProcessId member : p.group.members)
       if (const Body& body = body_of(p, member); body.shape_P)
         finest = std::min(finest, finest_check(p.work.scene(), body));
@@ -60,10 +61,10 @@ double by_patience(const PlannedGroup& p, double interval) {
                                      [&](ProcessId id) { return p.group.contains(id); }))
       continue;
     const double lasted = work.now() - old->key.time;
-    if (finds_contacts(work.cause))
+    if (finds_contacts(work.cause()))
       patience = std::min(patience, answer::patience_growth * old->patience);
-    if (lasted > 0 && (work.cause == Cause::early_check ||
-                       (work.cause == Cause::impact && old->key.kind == KeyKind::impact)))
+    if (lasted > 0 && (work.cause() == Cause::early_check ||
+                       (work.cause() == Cause::impact && old->key.kind == KeyKind::impact)))
       patience = std::min(patience, answer::patience_growth * lasted);
   }
   if (!(patience < interval)) return never;
@@ -95,7 +96,7 @@ double at_call(const PlannedGroup& p, double) {
 
 // Where there is something to look at, unless this is it.
 double at_due(const PlannedGroup& p, double) {
-  if (!p.before || p.group.pairs.empty() || finds_contacts(p.work.cause)) return never;
+  if (!p.before || p.group.pairs.empty() || finds_contacts(p.work.cause())) return never;
   const double due = p.before->next_check_at(p.work.now());
   return due >= p.work.now() ? due : never;
 }
@@ -140,9 +141,9 @@ EndPlan plan_by_intervals(const PlannedGroup& p) {
 
 EndPlan plan_end(const PlannedGroup& p) {
   EndPlan plan;
-  if (!p.rests) plan = plan_by_intervals(p);
+  if (!p.group.at_rest) plan = plan_by_intervals(p);
   for (const Instant& row : instants)
-    if (!p.rests || row.of_rest)
+    if (!p.group.at_rest || row.of_rest)
       plan.end = earlier(plan.end, {row.time(p, plan.end.time), row.reason});
   return plan;
 }

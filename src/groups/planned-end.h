@@ -9,8 +9,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
-#include "integrate/arc-end.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
@@ -19,12 +18,12 @@ struct EndPlan {
   double patience = never;  // how long an arc may be worth making, s; of the next arc's plan, too
 };
 
-// Of a group whose members, pairs, border and doublings are set.
+// Of a group whose members, pairs, border and doublings are set, and whether it rests.
 struct PlannedGroup {
   const Regrouping& work;
+  const Contacts& contacts;
   const Group& group;
   const Group* before;  // the group of these very members that was there; null: there was none
-  bool rests = false;
   double border_end = never;  // until when all at its border know where they go, s
 };
 

@@ -19,7 +19,7 @@ bool touches(const NewContact& c) {
 
 }  // namespace
 
-std::vector<ProcessId> propagate_impulses(Regrouping& work) {
+PassedOn pass_on_impulses(const Regrouping& work, const Contacts& contacts) {
   const Scene& scene = work.scene();
   // the bodies at the contacts: successors, and outside ones at this instant
   ImpulseSolver solver;
@@ -47,7 +47,7 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   };
 
   std::vector<ImpulseContact> touching_now;
-  for (const NewContact& c : work.contacts)
+  for (const NewContact& c : contacts.all)
     if (touches(c)) touching_now.push_back(impulse_contact(c));
   JointImpulses joints(solver, work.now());
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
@@ -55,31 +55,30 @@ std::vector<ProcessId> propagate_impulses(Regrouping& work) {
   joints.join();
   ImpulseResult result = solver.solve(touching_now, 0, guard::most_passed_on);
   if (result.left_over > 0) result = solver.settle(touching_now);
+  PassedOn passed;
   if (const ImpulseContact* at = result.stopped_at) {
-    std::vector<ProcessId> at_border;
     for (const std::uint32_t slot : {at->a, at->b})
       if (solver.slot(slot).answer == Answer::border)
-        at_border.push_back(scene.process_of(ids[slot]));
-    return at_border;
+        passed.at_border.push_back(scene.process_of(ids[slot]));
+    return passed;
   }
-  work.tally.kinematic_work += solver.work_of_held();
-  if (result.left_over > 0) ++work.tally.impulses_given_up;
+  passed.tally.kinematic_work = solver.work_of_held();
+  passed.tally.impulses_given_up = result.left_over > 0;
   joints.take();
   for (std::uint32_t slot = 0; slot < solver.slot_count(); ++slot)
     if (solver.slot(slot).moves())
       take_velocities(*work.successor_of(ids[slot]), solver.slot(slot));
 
-  // pairs that carry nothing and close fast
-  std::erase_if(work.pairs, [&](const ContactPair& pair) {
+  for (const ContactPair& pair : contacts.pairs) {
     bool carries = false, fast = false;
-    for (std::uint32_t c = pair.first; c < pair.first + pair.count; ++c) {
-      const ImpulseContact contact = impulse_contact(work.contacts[c]);
-      carries = carries || touches(work.contacts[c]);
+    each_contact(pair, [&](std::uint32_t c) {
+      const ImpulseContact contact = impulse_contact(contacts.all[c]);
+      carries = carries || touches(contacts.all[c]);
       fast = fast || -solver.approach(contact) > contact.bears;
-    }
-    return fast && !carries;
-  });
-  return {};
+    });
+    if (fast && !carries) passed.parted.push_back(pair.id);
+  }
+  return passed;
 }
 
 }  // namespace tw

@@ -9,12 +9,18 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
-// Takes out the pairs that carry nothing and close fast.  Returns the processes at the border that
-// an impulse would reach; then nothing is as it should be.
-std::vector<ProcessId> propagate_impulses(Regrouping& work);
+struct PassedOn {
+  std::vector<ProcessId> at_border;   // whom an impulse would reach there; then nothing is as it
+                                      // should be, and nobody has got any
+  std::vector<std::uint64_t> parted;  // pairs that carry nothing and close fast; as the contacts
+  Tally tally;
+};
+
+// Gives the successors their velocities.
+PassedOn pass_on_impulses(const Regrouping& work, const Contacts& contacts);
 
 }  // namespace tw

@@ -177,7 +177,7 @@ bool is_woken(const Regrouping& work, const Group& group, const ContactPair& pai
 }
 
 // Adds those beyond a new group's border that notice what it does at their contacts.
-void add_noticing(Regrouping& work, const Group& group, std::vector<ProcessId>& found) {
+void add_noticing(const Regrouping& work, const Group& group, Noticed& noticed) {
   // the impulse only where the neighbour's motion could have changed it
   const double tolerance = answer::missed_share * group.arc->start().velocity_tolerance;
   std::vector<Neighbour> moving;
@@ -190,7 +190,7 @@ void add_noticing(Regrouping& work, const Group& group, std::vector<ProcessId>& 
       if (deviation(work.before, group, work.scene().body(pair.other(other))) > tolerance)
         moving.push_back({&body, &pair, &theirs, theirs.find(pair.id)});
     } else if (is_woken(work, group, pair, body)) {
-      found.push_back(body.process);
+      noticed.by.push_back(body.process);
     }
   }
   if (moving.empty()) return;
@@ -198,20 +198,19 @@ void add_noticing(Regrouping& work, const Group& group, std::vector<ProcessId>& 
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const double impulse = missed[i].norm();
     if (impulse > tolerance * moving[i].body->mass)
-      found.push_back(moving[i].body->process);
+      noticed.by.push_back(moving[i].body->process);
     else
-      work.tally.momentum_dropped += impulse;
+      noticed.momentum_dropped += impulse;
   }
 }
 
 // Whether what rests has lost a support that carried it.
-bool misses(const Regrouping& work, const PairBefore& old, const Body& body) {
+bool misses(const Regrouping& work, const Contacts& contacts, const PairBefore& old,
+            const Body& body) {
   const std::shared_ptr<Group>& theirs = work.successor_of(body.process)->data.group;
   if (!theirs || !theirs->at_rest) return false;
-  const auto standing = std::find_if(work.pairs.begin(), work.pairs.end(),
-                                     [&](const ContactPair& p) { return p.id == old.id; });
   const ContactPair* known = theirs->find(old.id);
-  if (standing != work.pairs.end() || !known) return false;
+  if (contacts.find(old.id) || !known) return false;
   const Vec3 centre = work.successor_of(body.process)->point.x;
   return wakes(work, body, load_on(body, centre, *theirs, *known, work.now()),
                lever_of(body, *theirs, *known));
@@ -234,21 +233,20 @@ void widen(Region& region, const Before& before, const std::vector<ProcessId>& m
   complete(region, before, false);
 }
 
-std::vector<ProcessId> who_notices(Regrouping& work) {
-  const Scene& scene = work.scene();
-  std::vector<ProcessId> found;
-  for (const auto& group : work.made) {
+Noticed who_notices(const Regrouping& work, const Contacts& contacts, const Groups& made) {
+  Noticed noticed;
+  for (const auto& group : made) {
     if (!group->has_border) continue;
     if (!group->at_rest) group->arc->extend_patiently(group->next_check());
-    add_noticing(work, *group, found);
+    add_noticing(work, *group, noticed);
   }
   for (const PairBefore& old : work.pairs_before) {
     const BodyId other = work.lies_beyond(old.pair->a()) ? old.pair->a() : old.pair->b();
     if (!work.lies_beyond(other)) continue;
-    const Body& body = scene.body(other);
-    if (misses(work, old, body)) found.push_back(body.process);
+    const Body& body = work.scene().body(other);
+    if (misses(work, contacts, old, body)) noticed.by.push_back(body.process);
   }
-  return found;
+  return noticed;
 }
 
 }  // namespace tw

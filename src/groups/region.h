@@ -19,7 +19,7 @@
 
 #include <vector>
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
@@ -35,6 +35,11 @@ Region region_of(const Before& before, const std::vector<ProcessId>& struck, boo
 // touch.
 void widen(Region& region, const Before& before, const std::vector<ProcessId>& more);
 
+struct Noticed {
+  std::vector<ProcessId> by;
+  double momentum_dropped = 0;  // N s, that others miss who do not notice
+};
+
 // Who at the border would notice, once the groups are made; integrates those with a border to their
 // ends.  None twice in a row is the fixpoint.
 //
@@ -42,6 +47,6 @@ void widen(Region& region, const Before& before, const std::vector<ProcessId>& m
 // more than a share of what a step of the integrator may be wrong by; what rests a change of the
 // force on it by a share of its weight, or of the torque by as much at a lever that counts.
 // Changes are compared with the arc as it was made: small ones add up.
-std::vector<ProcessId> who_notices(Regrouping& work);
+Noticed who_notices(const Regrouping& work, const Contacts& contacts, const Groups& made);
 
 }  // namespace tw

@@ -6,19 +6,19 @@
 #include <utility>
 
 #include "groups/changes.h"
-#include "groups/check-times.h"
 #include "groups/contact-graph.h"
 #include "groups/joints.h"
 #include "groups/make-groups.h"
 #include "groups/placed-loads.h"
 #include "groups/propagation.h"
+#include "groups/share-stiffness.h"
 
 namespace tw {
 namespace {
 
 // Arcs that were integrated to no end.
-void count_discarded(const Regrouping& work, GroupCounters& counters) {
-  for (const auto& group : work.made) {
+void count_discarded(const Groups& made, GroupCounters& counters) {
+  for (const auto& group : made) {
     if (group->at_rest) continue;
     const GroupCounts counts = group->arc->counts();
     counters.integrations += counts.steps;
@@ -31,8 +31,8 @@ void count_discarded(const Regrouping& work, GroupCounters& counters) {
   }
 }
 
-void count_made(const Regrouping& work, GroupCounters& counters) {
-  for (const auto& group : work.made) {
+void count_made(const Groups& made, GroupCounters& counters) {
+  for (const auto& group : made) {
     ++counters.groups;
     counters.largest_group_bodies =
         std::max<std::uint64_t>(counters.largest_group_bodies, group->members.size());
@@ -75,19 +75,47 @@ std::vector<Successor> successors_of(const Region& region, const Before& before,
   return all;
 }
 
-// The contacts that hold from here on.
-void find_contacts(Regrouping& work, const std::vector<ProcessId>& struck) {
-  collect_old(work);
-  if (finds_contacts(work.cause))
-    refresh(work, struck, check_interval(work, struck));
-  else
-    for (const PairBefore& old : work.pairs_before) carry(work, old);
-  if (work.cause == Cause::fusion) fuse(work, check_interval(work, struck));
-}
-
 bool all_known(const Region& region, const Known& known) {
   return std::all_of(region.inside.begin(), region.inside.end(), known) &&
          std::all_of(region.border.begin(), region.border.end(), known);
+}
+
+// What one round comes to: successors with their groups, or who must be taken in.
+struct Round {
+  std::vector<ProcessId> more;          // beyond the region, who would notice
+  std::vector<std::uint64_t> unloaded;  // pairs that are to be left out (placed-loads.h)
+  Groups made;
+  Told told;
+};
+
+Round go_round(const Regrouping& work, const std::vector<ProcessId>& struck,
+               std::uint64_t& manifolds) {
+  Round round;
+  Contacts contacts = find_contacts(work, struck);
+  manifolds += contacts.manifolds;
+  round.told = contacts.told;
+  // impulses that reach the border come first: then nothing is as it should be
+  if (passes_impulses(work.cause())) {
+    PassedOn passed = pass_on_impulses(work, contacts);
+    if (round.more = std::move(passed.at_border); !round.more.empty()) return round;
+    round.told.tally.add(passed.tally);
+    contacts.part(passed.parted);
+  }
+  settle_joints(work);
+  contacts.sort();
+  share_stiffness(work.scene(), contacts);
+  Parts parts = parts_of(work, contacts);
+  MadeGroups made = make_groups(work, contacts, parts);
+  round.unloaded = std::move(made.unloaded);
+  if (!round.unloaded.empty()) return round;
+  round.told.tally.placed_energy += made.placed_energy;
+  round.told.add(tell_changes(work, contacts, parts));
+  enter_groups(work, made);
+  Noticed noticed = who_notices(work, contacts, made.all);
+  round.told.tally.momentum_dropped += noticed.momentum_dropped;
+  round.more = std::move(noticed.by);
+  round.made = std::move(made.all);
+  return round;
 }
 
 }  // namespace
@@ -125,47 +153,29 @@ std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings&
     if (successor.starts_arc()) insert(struck, successor.process());
 
   // the work list: the region grows until nobody beyond it would notice
-  std::vector<BodyId> placed;
+  PlacedNow placed;
   if (request.cause == Cause::fusion && are_placed(before, struck)) {
-    placed = placed_with(before, struck, request.together);
-    for (const BodyId id : placed) insert(struck, before.scene().process_of(id));
+    placed.bodies = placed_with(before, struck, request.together);
+    for (const BodyId id : placed.bodies) insert(struck, before.scene().process_of(id));
   }
-  Region region = region_of(before, struck, request.cause == Cause::edit || !placed.empty());
-  std::vector<std::uint64_t> left_out;
+  Region region = region_of(before, struck, request.cause == Cause::edit || !placed.bodies.empty());
   for (;;) {
     if (!all_known(region, known)) return Waits{region};
     std::vector<Successor> successors = successors_of(region, before, given);
-    Regrouping work(before, surroundings, request.cause, successors);
-    work.reports_fissions = request.reports_fissions;
-    work.reports_fusions = request.reports_fusions;
-    work.placed_bodies = placed;
-    work.together = request.together;
-    work.starts_loaded = !placed.empty() && region.inside.size() <= answer::most_placed;
-    work.left_out = left_out;
-    find_contacts(work, struck);
-
-    // impulses that reach the border come first: then nothing is as it should be
-    std::vector<ProcessId> more;
-    if (passes_impulses(request.cause)) more = propagate_impulses(work);
-    if (more.empty()) {
-      settle_joints(work);
-      make_groups(work);
-      if (!work.unloaded.empty()) {
-        left_out.insert(left_out.end(), work.unloaded.begin(), work.unloaded.end());
-        std::sort(left_out.begin(), left_out.end());
-        counters.manifolds += work.counters.manifolds;
-        continue;
-      }
-      more = who_notices(work);
-    }
-    counters.manifolds += work.counters.manifolds;
-    if (more.empty()) {
-      count_made(work, counters);
-      add_report(work);
+    placed.starts_loaded = !placed.bodies.empty() && region.inside.size() <= answer::most_placed;
+    const Regrouping work(before, surroundings, request, placed, successors);
+    const Round round = go_round(work, struck, counters.manifolds);
+    if (!round.unloaded.empty()) {
+      placed.left_out.insert(placed.left_out.end(), round.unloaded.begin(), round.unloaded.end());
+      std::sort(placed.left_out.begin(), placed.left_out.end());
+    } else if (round.more.empty()) {
+      count_made(round.made, counters);
+      put_on_first(successors, round.told);
       return Regrouped{std::move(successors)};
+    } else {
+      count_discarded(round.made, counters);
+      widen(region, before, round.more);
     }
-    count_discarded(work, counters);
-    widen(region, before, more);
   }
 }
 

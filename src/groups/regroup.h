@@ -30,13 +30,6 @@ struct Waits {
 // Whether the arcs of a process are known as far as the key, so that nothing can come before it.
 using Known = std::function<bool(ProcessId)>;
 
-struct RegroupRequest {
-  Cause cause;
-  bool reports_fissions = false;             // somebody wants to hear of them
-  bool reports_fusions = false;              // of others than the first two
-  const PlacedTogether* together = nullptr;  // null: nobody was
-};
-
 // `struck`: those that the discontinuity changed, with new arcs where it changed their motion, and
 // the others that it looked at.  `counters`: what it cost is added.
 std::variant<Regrouped, Waits> regroup(const Before& before, const Surroundings& surroundings,

@@ -1,4 +1,4 @@
-// Looking things up in a regrouping.
+// What a discontinuity concerns, and what stood there before it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/regrouping.h"
 
@@ -6,6 +6,15 @@
 #include <bit>
 
 namespace tw {
+
+Regrouping::Regrouping(const Before& standing, const Surroundings& near,
+                       const RegroupRequest& asked, const PlacedNow& now,
+                       std::vector<Successor>& all)
+    : before(standing), surroundings(near), request(asked), placed_now(now), successors(all) {
+  index_successors();
+  collect_groups();
+  collect_pairs();
+}
 
 // Where the process stands, or the free slot where it would.
 std::size_t Regrouping::slot_of(ProcessId process) const {
@@ -20,8 +29,7 @@ Successor* Regrouping::successor_of(ProcessId process) const {
   return place != none ? &successors[place] : nullptr;
 }
 
-void Regrouping::update_index() {
-  index_.clear();
+void Regrouping::index_successors() {
   for (std::size_t i = 0; i < successors.size(); ++i)
     index_.push_back({successors[i].process(), i});
   std::sort(index_.begin(), index_.end());
@@ -30,11 +38,40 @@ void Regrouping::update_index() {
     slots_[slot_of(successors[i].process())] = {successors[i].process(), i};
 }
 
-bool Regrouping::pushes_apart(const ContactPair& pair) const {
-  bool any = false;
-  each_contact(pair,
-               [&](std::uint32_t c) { any = any || pushes(scene(), contacts[c].contact.offset); });
-  return any;
+void Regrouping::collect_groups() {
+  Groups all;
+  for (const auto& [process, i] : index_) {
+    const Successor& successor = successors[i];
+    if (!successor.body->dynamic()) continue;
+    add_once(all, successor.data.group);
+    if (!changes(&successor)) {
+      has_border = has_border || successor.data.group;
+      continue;
+    }
+    add_once(old, successor.data.group);
+    masses.add(successor.body->mass);
+  }
+  if (has_border)
+    for (const auto& group : all) masses.add(group->masses);
+}
+
+void Regrouping::collect_pairs() {
+  for (const auto& [process, i] : index_) {
+    const Successor& successor = successors[i];
+    if (!changes(&successor) || !successor.data.group) continue;
+    const Group& group = *successor.data.group;
+    for (const std::uint32_t number : group.pairs_of(successor.data.member)) {
+      const std::uint64_t id = group.pairs[number].id;
+      const Before::Owned owned = before.owned(id);
+      if (owned.pair) pairs_before.push_back({id, owned.owner, owned.pair});
+    }
+  }
+  std::sort(pairs_before.begin(), pairs_before.end(),
+            [](const PairBefore& x, const PairBefore& y) { return x.id < y.id; });
+  // from either side
+  const auto same = [](const PairBefore& x, const PairBefore& y) { return x.id == y.id; };
+  pairs_before.erase(std::unique(pairs_before.begin(), pairs_before.end(), same),
+                     pairs_before.end());
 }
 
 const PairBefore* Regrouping::pair_before(std::uint64_t pair) const {

@@ -47,11 +47,11 @@ bool is_still(const Scene& scene, const Stillness& book, const PlacedBody& body,
 }
 
 // Whether a body keeps those awake that it touches.
-bool is_restless(const Regrouping& work, BodyId id) {
+bool is_restless(const Regrouping& work, const std::vector<Stillness>& stillness, BodyId id) {
   const Body& body = work.scene().body(id);
   if (!body.dynamic()) return !body.fixed();
   const Successor* successor = work.successor_of(id);
-  if (work.changes(successor)) return work.stillness[work.place_of(successor)].since == never;
+  if (work.changes(successor)) return stillness[work.place_of(successor)].since == never;
   return !successor->data.group || !successor->data.group->at_rest;
 }
 
@@ -68,7 +68,7 @@ struct Share {
 
 }  // namespace
 
-Stillness stillness_of(const Regrouping& work, const Successor& successor) {
+Stillness stillness_of(const Regrouping& work, const Successor& successor, bool touches) {
   const PlacedBody body = placed(successor);
   const double now = work.now();
   const double speed = body.point.v.norm() + body.point.w.norm() * reach_of(*body.body);
@@ -77,7 +77,7 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
                         body.point.q};
   const Group* group = successor.data.group.get();
   // where forces were changed from outside, what was seen before says nothing
-  const bool goes_on = work.cause != Cause::callback && work.cause != Cause::edit;
+  const bool goes_on = work.cause() != Cause::callback && work.cause() != Cause::edit;
   if (!goes_on || !group || group->at_rest) return begun;
   Stillness book = group->stillness[successor.data.member];
   if (book.since == never) return begun;
@@ -89,7 +89,6 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
     return begun;
   double& peak = age < 0.5 * book.length ? book.early_peak : book.late_peak;
   peak = std::max(peak, speed);
-  const bool touches = work.touching[work.place_of(&successor)];
   if (age < book.length || is_still(work.scene(), book, body, now, touches)) return book;
   if (book.late_peak > answer::growth * book.early_peak) return begun;
   if (!touches) {
@@ -103,7 +102,8 @@ Stillness stillness_of(const Regrouping& work, const Successor& successor) {
   return book;
 }
 
-std::vector<bool> who_rests(const Regrouping& work, Components& together) {
+std::vector<bool> who_rests(const Regrouping& work, const Contacts& contacts,
+                            const Watched& watched, Components& together) {
   const std::size_t count = work.successors.size();
   std::vector<bool> rests(count, false);
   for (std::size_t i = 0; i < count; ++i) {
@@ -112,19 +112,21 @@ std::vector<bool> who_rests(const Regrouping& work, Components& together) {
     const ForcesPtr& forces = successor.data.forces;
     const Multibody* multibody = successor.body->multibody;
     const bool carried = multibody && multibody->base_motion;
-    rests[i] =
-        work.changes(&successor) && (!forces || forces->longest_unlooked() == never) && !carried &&
-        is_still(work.scene(), work.stillness[i], placed(successor), work.now(), work.touching[i]);
+    rests[i] = work.changes(&successor) && (!forces || forces->longest_unlooked() == never) &&
+               !carried &&
+               is_still(work.scene(), watched.stillness[i], placed(successor), work.now(),
+                        watched.touching[i]);
   }
 
   const auto wake = [&](BodyId id) {
     const Successor* successor = work.successor_of(id);
     if (work.changes(successor)) rests[work.place_of(successor)] = false;
   };
-  for (const ContactPair& pair : work.pairs) {
+  for (const ContactPair& pair : contacts.pairs) {
     if (pair.count == 0) continue;
     for (const BodyId id : {pair.a(), pair.b()})
-      if (is_restless(work, id) || work.pushes_apart(pair)) wake(pair.other(id));
+      if (is_restless(work, watched.stillness, id) || contacts.pushes_apart(work.scene(), pair))
+        wake(pair.other(id));
   }
 
   // what is tied together rests together

@@ -24,15 +24,22 @@
 #include <vector>
 
 #include "groups/components.h"
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
-// The book of a successor with a new arc, from here on.
-Stillness stillness_of(const Regrouping& work, const Successor& successor);
+// The book of a successor with a new arc, from here on.  `touches`: whether it is in contact.
+Stillness stillness_of(const Regrouping& work, const Successor& successor, bool touches);
 
-// Which successors come to rest at a check; needs their books.  `together`: the places of those
-// that hang together by contact pairs.
-std::vector<bool> who_rests(const Regrouping& work, Components& together);
+// Of the successors, by their places.
+struct Watched {
+  const std::vector<bool>& touching;        // who is in contact with anything
+  const std::vector<Stillness>& stillness;  // their books
+};
+
+// Which successors come to rest at a check.  `together`: the places of those that hang together by
+// contact pairs.
+std::vector<bool> who_rests(const Regrouping& work, const Contacts& contacts,
+                            const Watched& watched, Components& together);
 
 }  // namespace tw

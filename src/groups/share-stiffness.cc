@@ -110,17 +110,16 @@ void share_ground(Points& points, const Body& body) {
 
 }  // namespace
 
-void share_stiffness(Regrouping& work) {
-  const Scene& scene = work.scene();
+void share_stiffness(const Scene& scene, Contacts& contacts) {
   thread_local std::vector<std::pair<BodyId, std::uint32_t>> on_ground;
   thread_local Points points;
   on_ground.clear();
-  for (const ContactPair& pair : work.pairs) {
+  for (const ContactPair& pair : contacts.pairs) {
     const bool a_moves = scene.body(pair.a()).dynamic(), b_moves = scene.body(pair.b()).dynamic();
     points.clear();
     each_contact(pair, [&](std::uint32_t c) {
       if (!(a_moves && b_moves)) on_ground.push_back({a_moves ? pair.a() : pair.b(), c});
-      points.contacts.push_back(&work.contacts[c]);
+      points.contacts.push_back(&contacts.all[c]);
     });
     if (a_moves && b_moves) share_pair(points, scene.body(pair.a()), scene.body(pair.b()));
   }
@@ -130,7 +129,7 @@ void share_stiffness(Regrouping& work) {
     for (j = i; j < on_ground.size() && on_ground[j].first == on_ground[i].first;) ++j;
     points.clear();
     for (std::size_t k = i; k < j; ++k)
-      points.contacts.push_back(&work.contacts[on_ground[k].second]);
+      points.contacts.push_back(&contacts.all[on_ground[k].second]);
     share_ground(points, scene.body(on_ground[i].first));
   }
 }

@@ -7,11 +7,11 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
 // Sets `share` of all contacts.
-void share_stiffness(Regrouping& work);
+void share_stiffness(const Scene& scene, Contacts& contacts);
 
 }  // namespace tw

@@ -55,11 +55,11 @@ struct Squeeze {
 // Of all successors with new arcs, by body; none where no contact is deep enough.
 class Pushes {
  public:
-  explicit Pushes(const Regrouping& work) : work_(work) {
-    if (std::none_of(work.contacts.begin(), work.contacts.end(), is_deep)) return;
-    for (const ContactPair& pair : work.pairs)
+  Pushes(const Regrouping& work, const Contacts& contacts) : work_(work) {
+    if (std::none_of(contacts.all.begin(), contacts.all.end(), is_deep)) return;
+    for (const ContactPair& pair : contacts.pairs)
       each_contact(pair, [&](std::uint32_t c) {
-        const NewContact& contact = work.contacts[c];
+        const NewContact& contact = contacts.all[c];
         if (!(contact.gap < 0)) return;
         const ContactTag& tag = contact.tag;
         const Vec3 force = spring_force_of(contact, work.attitude(tag.reference));
@@ -176,8 +176,9 @@ Collision report_of(const Regrouping& work, const Squeeze& squeeze) {
 
 }  // namespace
 
-void note_squeezed(Regrouping& work) {
-  const Pushes pushes(work);
+Told note_squeezed(const Regrouping& work, const Contacts& contacts) {
+  Told told;
+  const Pushes pushes(work, contacts);
   for (Successor& successor : work.successors) {
     if (!work.changes(&successor) || !successor.body->dynamic()) continue;
     double& since = successor.data.squeezed_since;
@@ -192,12 +193,13 @@ void note_squeezed(Regrouping& work) {
       since = never;
       continue;
     }
-    work.tally.note_squeezed(squeeze.depth(), squeeze.share());
+    told.tally.note_squeezed(squeeze.depth(), squeeze.share());
     if (before) continue;
     since = work.now();
-    ++work.tally.squeezed;
-    work.report.push_back(report_of(work, squeeze));
+    ++told.tally.squeezed;
+    told.report.push_back(report_of(work, squeeze));
   }
+  return told;
 }
 
 }  // namespace tw

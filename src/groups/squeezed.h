@@ -20,12 +20,12 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "groups/regrouping.h"
+#include "groups/contacts.h"
 
 namespace tw {
 
-// Notes in the successors with new arcs who is squeezed from here on and since when; counts and
-// reports those whose squeezing begins.
-void note_squeezed(Regrouping& work);
+// Notes in the successors with new arcs who is squeezed from here on and since when; tells of those
+// whose squeezing begins.
+Told note_squeezed(const Regrouping& work, const Contacts& contacts);
 
 }  // namespace tw

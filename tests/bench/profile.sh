@@ -20,8 +20,8 @@ closed-form flight|::(FreeRotation|Flight|JacobiTheta)::
 pairs followed: certificates, crossings|::(PairChecks|Certificates|Travels)::|time_apart|part_reach|apart_throughout|::certificate|first_dip
 integration of groups|::GroupStepper::(implicit_step|explicit_step|try_step|accept)|::GroupSystem::(evaluate|factor|solve|linearise)
 groups and their arcs made|make_groups|start_arc|::(GroupArc|GroupStepper|GroupSystem)::(GroupArc|GroupStepper|GroupSystem)
-impulses and whom they reach|::(ImpactEvents|JointImpulses)::|propagate_impulses|who_notices|give_impulse
-checks of groups|::GroupEvents::|::refresh|::regroup
+impulses and whom they reach|::(ImpactEvents|JointImpulses)::|pass_on_impulses|who_notices|give_impulse
+checks of groups|::GroupEvents::|find_contacts|::regroup|go_round
 when arcs end|test_end|::Claims::test_
 claims: boxes, neighbours|::Claims::|::SpatialHash::|swept_bounds
 queue, states, commit|::(EventQueue|StateGraph|Commit|Discontinuities)::
