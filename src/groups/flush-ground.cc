@@ -12,6 +12,12 @@
 namespace tw {
 namespace {
 
+// A convex part of a body, and the body's frame.
+struct PlacedPart {
+  const ConvexPart& part;
+  const Frame& frame;
+};
+
 bool is_parallel(const Vec3& a, const Vec3& b) { return a.dot(b) > seam::same_normal; }
 
 // Whether a face of the part lies in the plane.
@@ -35,14 +41,34 @@ double lowest_along(const Vec3& direction, const PlacedPart& p) {
   return direction.dot(core.support(-direction)) - core.margin;
 }
 
-}  // namespace
+// At `point` (world), with the normal `outward` of the ground (unit, world); `size`: of the body
+// that stands, m.
+bool is_below_flush_face(const std::vector<StandingPlane>& planes, const PlacedPart& ground,
+                         const PlacedPart& standing, const Vec3& point, const Vec3& outward,
+                         double size) {
+  if (ground.part.kind != PartKind::polyhedron) return false;
+  return std::any_of(planes.begin(), planes.end(), [&](const StandingPlane& plane) {
+    const double below = plane.height - plane.normal.dot(point);
+    const double cosine = plane.normal.dot(outward);
+    return std::abs(below) < seam::low * size && cosine < seam::sideways &&
+           cosine > -seam::along_edge &&
+           lowest_along(plane.normal, standing) > plane.height - seam::low * size &&
+           has_face_in(plane, ground, size);
+  });
+}
 
-const ConvexPart& first_part(const Body& a, const Body& b, int pair) {
-  return a.shape_P->part(static_cast<std::size_t>(pair) / b.shape_P->part_count());
+// `normal`: from a to b.
+bool is_low_side(const std::vector<StandingPlane>& planes, const PairPlace& pair, int parts,
+                 const Vec3& point, const Vec3& normal) {
+  const std::size_t number = static_cast<std::size_t>(parts), of_b = pair.b.shape_P->part_count();
+  const PlacedPart part_a{pair.a.shape_P->part(number / of_b), pair.frame_a};
+  const PlacedPart part_b{pair.b.shape_P->part(number % of_b), pair.frame_b};
+  return pair.a.dynamic()
+             ? is_below_flush_face(planes, part_b, part_a, point, -normal, pair.a.least_width)
+             : is_below_flush_face(planes, part_a, part_b, point, normal, pair.b.least_width);
 }
-const ConvexPart& second_part(const Body& b, int pair) {
-  return b.shape_P->part(static_cast<std::size_t>(pair) % b.shape_P->part_count());
-}
+
+}  // namespace
 
 std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& group,
                                            const Body& member, double when) {
@@ -72,33 +98,20 @@ std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& grou
   return planes;
 }
 
-bool is_below_flush_face(const std::vector<StandingPlane>& planes, const PlacedPart& ground,
-                         const PlacedPart& standing, const Vec3& point, const Vec3& outward,
-                         double size) {
-  if (ground.part.kind != PartKind::polyhedron) return false;
-  return std::any_of(planes.begin(), planes.end(), [&](const StandingPlane& plane) {
-    const double below = plane.height - plane.normal.dot(point);
-    const double cosine = plane.normal.dot(outward);
-    return std::abs(below) < seam::low * size && cosine < seam::sideways &&
-           cosine > -seam::along_edge &&
-           lowest_along(plane.normal, standing) > plane.height - seam::low * size &&
-           has_face_in(plane, ground, size);
-  });
+bool drop_low_sides(const std::vector<StandingPlane>& planes, const PairPlace& pair,
+                    std::vector<ManifoldPoint>& points) {
+  return !planes.empty() &&
+         std::erase_if(points, [&](const ManifoldPoint& p) {
+           return is_low_side(planes, pair, p.pair, p.core_point - p.radius * p.normal,
+                              p.reference_is_a ? p.normal : Vec3(-p.normal));
+         }) > 0;
 }
 
-bool drop_low_sides(const std::vector<StandingPlane>& planes, const Body& a, const Frame& frame_a,
-                    const Body& b, const Frame& frame_b, std::vector<ManifoldPoint>& points) {
-  if (planes.empty()) return false;
-  const bool ground_is_a = !a.dynamic();
-  const auto is_low = [&](const ManifoldPoint& p) {
-    const PlacedPart part_a{first_part(a, b, p.pair), frame_a},
-        part_b{second_part(b, p.pair), frame_b};
-    return is_below_flush_face(planes, ground_is_a ? part_a : part_b, ground_is_a ? part_b : part_a,
-                               p.core_point - p.radius * p.normal,
-                               p.reference_is_a == ground_is_a ? p.normal : Vec3(-p.normal),
-                               (ground_is_a ? b : a).least_width);
-  };
-  return std::erase_if(points, is_low) > 0;
+bool drop_low_sides(const std::vector<StandingPlane>& planes, const PairPlace& pair,
+                    std::vector<ContactPoint>& points) {
+  return !planes.empty() && std::erase_if(points, [&](const ContactPoint& c) {
+                              return is_low_side(planes, pair, c.pair, c.point, c.normal);
+                            }) > 0;
 }
 
 }  // namespace tw

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "collision/manifold.h"
+#include "collision/separation.h"
 #include "dynamics/scene.h"
 #include "groups/group.h"
 
@@ -28,28 +29,21 @@ struct StandingPlane {
 std::vector<StandingPlane> standing_planes(const Scene& scene, const Group& group,
                                            const Body& member, double when);
 
-// A convex part of a body, and the body's frame.
-struct PlacedPart {
-  const ConvexPart& part;
-  const Frame& frame;
+// Two bodies at one instant; a contact's number of a pair of parts names one of each.
+struct PairPlace {
+  const Body& a;
+  const Frame& frame_a;
+  const Body& b;
+  const Frame& frame_b;
 };
 
-// Whether a contact at `point` (world) of a part of the ground with one of the body that stands,
-// with the normal `outward` of the ground (unit, world), is at a side of that part, no deeper below
-// a face of it that lies in one of the planes than contacts may be.  The other part is above that
-// plane, but for as much: what hangs down beside the ground meets its sides.  `size`: of the body
-// that stands, m.
-bool is_below_flush_face(const std::vector<StandingPlane>& planes, const PlacedPart& ground,
-                         const PlacedPart& standing, const Vec3& point, const Vec3& outward,
-                         double size);
-
-// The parts that the number of a pair of parts names.
-const ConvexPart& first_part(const Body& a, const Body& b, int pair);
-const ConvexPart& second_part(const Body& b, int pair);
-
-// Leaves such contacts out of a manifold of the two, one of which stands on these planes and the
-// other is no dynamic body; true if there were any.
-bool drop_low_sides(const std::vector<StandingPlane>& planes, const Body& a, const Frame& frame_a,
-                    const Body& b, const Frame& frame_b, std::vector<ManifoldPoint>& points);
+// Leaves the contacts with such sides out of those of the two, one of which stands on these planes
+// and the other is no dynamic body: those at a side of a part of the ground, no deeper below a face
+// of it that lies in one of the planes than contacts may be.  The other part is above that plane,
+// but for as much: what hangs down beside the ground meets its sides.  True if there were any.
+bool drop_low_sides(const std::vector<StandingPlane>& planes, const PairPlace& pair,
+                    std::vector<ManifoldPoint>& points);
+bool drop_low_sides(const std::vector<StandingPlane>& planes, const PairPlace& pair,
+                    std::vector<ContactPoint>& points);
 
 }  // namespace tw

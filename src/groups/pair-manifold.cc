@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/pair-manifold.h"
 
+#include "dynamics/contact-scales.h"
+
 namespace tw {
 
 PairManifold pair_manifold(const PairPlace& pair, const PairGround& ground,
@@ -15,9 +17,8 @@ PairManifold pair_manifold(const PairPlace& pair, const PairGround& ground,
   PairManifold found;
   found.distance =
       manifold_at_seams(*a.shape_P, pair.frame_a, ground.around_a, *b.shape_P, pair.frame_b,
-                        ground.around_b, reach, pair.size(), points, choice);
-  found.left_out = a.dynamic() != b.dynamic() &&
-                   drop_low_sides(planes, a, pair.frame_a, b, pair.frame_b, points);
+                        ground.around_b, reach, lesser_thickness(a, b), points, choice);
+  found.left_out = a.dynamic() != b.dynamic() && drop_low_sides(planes, pair, points);
   return found;
 }
 

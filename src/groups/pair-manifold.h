@@ -9,22 +9,10 @@
 
 #include <vector>
 
-#include "dynamics/contact-scales.h"
 #include "groups/flush-ground.h"
 #include "groups/surroundings.h"
 
 namespace tw {
-
-// Two bodies, the first with the lesser id, at one instant.
-struct PairPlace {
-  const Body& a;
-  const Frame& frame_a;
-  const Body& b;
-  const Frame& frame_b;
-
-  const Body& mover() const { return a.dynamic() ? a : b; }
-  double size() const { return lesser_thickness(a, b); }
-};
 
 // The parts of the ground that stand beside the one of the two that is ground.
 struct PairGround {

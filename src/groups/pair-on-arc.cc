@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "collision/overlap-along.h"
 #include "dynamics/placed-body.h"
-#include "groups/flush-ground.h"
 
 namespace tw {
 
@@ -24,23 +23,22 @@ void PairOnArc::look_around(const Surroundings& surroundings, double from, doubl
   if (!a.fixed() && !b.fixed()) return;
   const Body& mover = a.dynamic() ? a : b;
   const Trajectory& path = trajectory(mover);
-  const NearGround ground = surroundings.ground_around(mover, {path.frame(from), path.frame(to)});
-  around_a_ = surroundings.seam_neighbours(a, ground);
-  around_b_ = surroundings.seam_neighbours(b, ground);
+  ground_ = PairGround(surroundings, a, b,
+                       surroundings.ground_around(mover, {path.frame(from), path.frame(to)}));
 }
 
 double PairOnArc::deepest(double when, bool at_seams) const {
   thread_local std::vector<ManifoldPoint> points;
   points.clear();
   const Frame frame_a = trajectory(a).frame(when), frame_b = trajectory(b).frame(when);
-  if (at_seams)
-    manifold_at_seams(*a.shape_P, frame_a, around_a_, *b.shape_P, frame_b, around_b_, 0, size(),
-                      points);
-  else
+  if (!at_seams) {
     manifold(*a.shape_P, frame_a, *b.shape_P, frame_b, 0, points);
-  if (at_seams && a.dynamic() != b.dynamic())
-    drop_low_sides(standing_planes(scene_, group_, a.dynamic() ? a : b, when), a, frame_a, b,
-                   frame_b, points);
+  } else {
+    std::vector<StandingPlane> planes;
+    if (a.dynamic() != b.dynamic())
+      planes = standing_planes(scene_, group_, a.dynamic() ? a : b, when);
+    pair_manifold({a, frame_a, b, frame_b}, ground_, planes, 0, points);
+  }
   double least = 0;
   for (const ManifoldPoint& p : points) least = std::min(least, p.gap);
   return least;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "groups/group.h"
-#include "groups/surroundings.h"
+#include "groups/pair-manifold.h"
 
 namespace tw {
 
@@ -22,7 +22,7 @@ class PairOnArc {
   const Body &a, &b;
   const ContactScales scales;
 
-  double size() const { return std::min(a.least_width, b.least_width); }
+  double size() const { return scales.thickness; }
   const Trajectory& trajectory(const Body& body) const;
   // Which parts of the ground stand around the two between two times: seams are known from then on.
   void look_around(const Surroundings& surroundings, double from, double to);
@@ -49,7 +49,7 @@ class PairOnArc {
   const Scene& scene_;
   const Group& group_;
   const ContactPair& pair_;
-  std::vector<SeamNeighbour> around_a_, around_b_;  // of the one that is ground
+  PairGround ground_;
 };
 
 }  // namespace tw

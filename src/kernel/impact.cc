@@ -13,8 +13,8 @@
 #include "dynamics/contact-scales.h"
 #include "dynamics/impulse-solver.h"
 #include "groups/blow.h"
-#include "groups/flush-ground.h"
 #include "groups/joints.h"
+#include "groups/pair-manifold.h"
 #include "groups/regrouping.h"
 
 namespace tw {
@@ -71,34 +71,31 @@ void find_impact_points(const Scene& scene, const Successor& a, const Successor&
   points.push_back({0.5 * (s.point_a + s.point_b), s.normal, s.distance, 0});
 }
 
-// The sides of ground that goes on as the plane on which the other one stands; true if nothing else
-// is left.
-bool drop_low_sides(const Scene& scene, const Key& key, const Successor& a, const Successor& b,
-                    std::vector<ContactPoint>& found) {
-  if (a.body->dynamic() == b.body->dynamic()) return false;
+// Of the ground, on which the one that moves stands; none where both move or none does.
+std::vector<StandingPlane> planes_under(const Scene& scene, const Key& key, const Successor& a,
+                                        const Successor& b) {
+  if (a.body->dynamic() == b.body->dynamic()) return {};
   const Successor &ground = a.body->dynamic() ? b : a, &mover = a.body->dynamic() ? a : b;
-  if (!mover.data.group || ground.body->unbounded) return false;
+  if (!mover.data.group || ground.body->unbounded) return {};
   const Group& group = *mover.data.group;
-  const std::vector<StandingPlane> planes =
-      standing_planes(scene, group, *mover.body, group.contact_time(key.time));
+  return standing_planes(scene, group, *mover.body, group.contact_time(key.time));
+}
+
+// Leaves the sides of such ground out; true if nothing else is left.
+bool drop_sides(const std::vector<StandingPlane>& planes, const Successor& a, const Successor& b,
+                std::vector<ContactPoint>& found) {
   if (planes.empty()) return false;
   const Frame frame_a(a.point.q.toRotationMatrix(), a.point.x);
   const Frame frame_b(b.point.q.toRotationMatrix(), b.point.x);
-  const bool ground_is_a = &ground == &a;
-  std::erase_if(found, [&](const ContactPoint& c) {
-    const PlacedPart part_a{first_part(*a.body, *b.body, c.pair), frame_a};
-    const PlacedPart part_b{second_part(*b.body, c.pair), frame_b};
-    return is_below_flush_face(planes, ground_is_a ? part_a : part_b, ground_is_a ? part_b : part_a,
-                               c.point, ground_is_a ? c.normal : Vec3(-c.normal),
-                               mover.body->least_width);
-  });
+  drop_low_sides(planes, {*a.body, frame_a, *b.body, frame_b}, found);
   return found.empty();
 }
 
 // At seams of the ground: points that neighbours of the fixed body bury give way to those that
 // support; true if there are none.
 bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Successor& a,
-                 const Successor& b, std::vector<ContactPoint>& found) {
+                 const Successor& b, const std::vector<StandingPlane>& planes,
+                 std::vector<ContactPoint>& found) {
   const Successor* fixed = a.body->fixed() ? &a : b.body->fixed() ? &b : nullptr;
   if (!fixed || fixed->body->unbounded) return false;
   const Successor& mover = fixed == &a ? b : a;
@@ -127,9 +124,9 @@ bool drop_ghosts(const Scene& scene, const Surroundings& surroundings, const Suc
   // another axis may support
   std::vector<ManifoldPoint> points;
   const PlacedBody side_a = placed(a), side_b = placed(b);
-  manifold_at_seams(*a.body->shape_P, side_a.frame, surroundings.seam_neighbours(*a.body, ground),
-                    *b.body->shape_P, side_b.frame, surroundings.seam_neighbours(*b.body, ground),
-                    answer::touch_per_accuracy * scene.options.accuracy * size, size, points);
+  pair_manifold({*a.body, side_a.frame, *b.body, side_b.frame},
+                PairGround(surroundings, *a.body, *b.body, ground), planes,
+                answer::touch_per_accuracy * scene.options.accuracy * size, points);
   for (const ManifoldPoint& p : points)
     found.push_back({p.core_point - p.radius * p.normal,
                      p.reference_is_a ? p.normal : Vec3(-p.normal), p.gap, p.pair});
@@ -246,8 +243,9 @@ std::variant<Impact, Waits> compute_impact(const Before& before, const Surroundi
   find_impact_points(scene, a, b, points);
   Impact impact;
   // nothing to hit: the two are followed as a contact while they pass the seam
+  const std::vector<StandingPlane> planes = planes_under(scene, key, a, b);
   impact.soft =
-      drop_low_sides(scene, key, a, b, points) || drop_ghosts(scene, surroundings, a, b, points);
+      drop_sides(planes, a, b, points) || drop_ghosts(scene, surroundings, a, b, planes, points);
   if (impact.soft) return impact;
   BlowAt at{points, &scene.contacts.between(a.body->id(), b.body->id())};
   // what is told once stands on the first state that enters the graph
