@@ -108,7 +108,7 @@ class Stretching {
 // RODAS4 takes steps of
 //   h = (C tolerance/V)^(1/4)/omega
 // through a swing of frequency omega whose velocity has the amplitude V (first_step of
-// group-stepper.cc), the explicit method steps of about a radian of the fastest swing there is,
+// rodas-steps.cc), the explicit method steps of about a radian of the fastest swing there is,
 // whether anything swings so or not.  V follows from l'' and how it changes: one of the two is
 // large at any phase.
 bool swings_widely(const GroupStart& start, const GroupSystem& system, GroupScratch& scratch,

@@ -19,7 +19,7 @@ using rows::vec;
 namespace {
 
 // places in y
-enum : int { x_at = 0, theta_at = 3, v_at = 6, L_at = 9, numbers = 12 };
+enum : int { x_row = 0, theta_row = 3, v_row = 6, L_row = 9, numbers = 12 };
 
 Vec3 angular_velocity_of(const Quat& q, const Vec3& inverse_moments, const Vec3& L) {
   const Mat3 R = q.toRotationMatrix();
@@ -56,45 +56,45 @@ class DrivenEquations final : public Equations {
 
   void slope(double time, const double* y, const double* chart, double* slope) const override {
     PoseTwist body;
-    const Vec3 theta = vec(y + theta_at);
-    body.x = vec(y + x_at);
+    const Vec3 theta = vec(y + theta_row);
+    body.x = vec(y + x_row);
     body.q = short_rotation(theta) * quat(chart);
-    body.v = vec(y + v_at);
-    body.w = angular_velocity_of(body.q, inverse_moments_, vec(y + L_at));
+    body.v = vec(y + v_row);
+    body.w = angular_velocity_of(body.q, inverse_moments_, vec(y + L_row));
     const Wrench wrench = forces_->wrench(time, body);
-    vec(slope + x_at) = body.v;
-    vec(slope + theta_at) = rotation_vector_rate(theta, body.w);
-    vec(slope + v_at) = acceleration_ + inverse_mass_ * wrench.force;
-    vec(slope + L_at) = wrench.torque;
+    vec(slope + x_row) = body.v;
+    vec(slope + theta_row) = rotation_vector_rate(theta, body.w);
+    vec(slope + v_row) = acceleration_ + inverse_mass_ * wrench.force;
+    vec(slope + L_row) = wrench.torque;
   }
 
   void tolerances(const double* y, const double* chart, double* allowed) const override {
-    const Vec3 w = angular_velocity_of(quat(chart), inverse_moments_, vec(y + L_at));
-    const double speed = std::max(vec(y + v_at).norm(), slow_speed_);
+    const Vec3 w = angular_velocity_of(quat(chart), inverse_moments_, vec(y + L_row));
+    const double speed = std::max(vec(y + v_row).norm(), slow_speed_);
     const double turn = std::max(w.norm(), slow_turn_);
     for (int i = 0; i < 3; ++i) {
-      allowed[x_at + i] = tolerance_ * size_;
-      allowed[theta_at + i] = tolerance_;
-      allowed[v_at + i] = tolerance_ * speed;
-      allowed[L_at + i] = tolerance_ * largest_moment_ * turn;
+      allowed[x_row + i] = tolerance_ * size_;
+      allowed[theta_row + i] = tolerance_;
+      allowed[v_row + i] = tolerance_ * speed;
+      allowed[L_row + i] = tolerance_ * largest_moment_ * turn;
     }
   }
 
   // rotation vectors stay well below 2 pi
   double longest_step(const double*, const double* slope, const double*) const override {
-    return std::min(longest_, answer::most_driven_turn / vec(slope + theta_at).norm());
+    return std::min(longest_, answer::most_driven_turn / vec(slope + theta_row).norm());
   }
 
   void recentre(double* y, double* slope, double* chart) const override {
-    const Vec3 theta = vec(y + theta_at);
+    const Vec3 theta = vec(y + theta_row);
     const Quat q = (short_rotation(theta) * quat(chart)).normalized();
     chart[0] = q.w();
     chart[1] = q.x();
     chart[2] = q.y();
     chart[3] = q.z();
-    vec(y + theta_at).setZero();
+    vec(y + theta_row).setZero();
     // theta' = w where theta = 0
-    vec(slope + theta_at) = angular_velocity_of(q, inverse_moments_, vec(y + L_at));
+    vec(slope + theta_row) = angular_velocity_of(q, inverse_moments_, vec(y + L_row));
   }
 
  private:
@@ -108,9 +108,9 @@ class DrivenEquations final : public Equations {
 
 std::vector<double> starting_row(const DrivenStart& s) {
   std::vector<double> y(numbers, 0.0);
-  vec(y.data() + x_at) = s.x;
-  vec(y.data() + v_at) = s.v;
-  vec(y.data() + L_at) = s.L;
+  vec(y.data() + x_row) = s.x;
+  vec(y.data() + v_row) = s.v;
+  vec(y.data() + L_row) = s.L;
   return y;
 }
 
@@ -158,14 +158,14 @@ Pose DrivenArc::pose(double time) const {
     step = &solution_.at(solution_.reached());
     time = solution_.reached();
   }
-  return {step->vector(x_at, time), attitude(*step, step->vector(theta_at, time))};
+  return {step->vector(x_row, time), attitude(*step, step->vector(theta_row, time))};
 }
 
 Twist DrivenArc::twist(double time) const {
   const DenseStep* step = step_at(time);
   if (!step) return {};
-  return {step->vector_rate(x_at, time),
-          angular_velocity(step->vector(theta_at, time), step->vector_rate(theta_at, time))};
+  return {step->vector_rate(x_row, time),
+          angular_velocity(step->vector(theta_row, time), step->vector_rate(theta_row, time))};
 }
 
 PoseTwist DrivenArc::at(double time) const {
@@ -179,9 +179,9 @@ PoseTwist DrivenArc::at(double time) const {
     const Pose there = pose(time);
     return {there.p, there.q, Vec3::Zero(), Vec3::Zero()};
   }
-  const Quat q = attitude(*step, step->vector(theta_at, time));
-  return {step->vector(x_at, time), q, step->vector(v_at, time),
-          angular_velocity_of(q, inverse_moments_, step->vector(L_at, time))};
+  const Quat q = attitude(*step, step->vector(theta_row, time));
+  return {step->vector(x_row, time), q, step->vector(v_row, time),
+          angular_velocity_of(q, inverse_moments_, step->vector(L_row, time))};
 }
 
 Vec3 DrivenArc::free_acceleration(double time) const {
@@ -219,17 +219,17 @@ void DrivenArc::add_step_bounds(const DenseStep& step, double from, double to,
     return std::sqrt(squared);
   };
   DenseStep::Control points;
-  step.control(0, x_at, from, to, points);
+  step.control(0, x_row, from, to, points);
   for (int j = 0; j <= degree; ++j) bounds.path.add(points[j]);
-  step.control(2, x_at, from, to, points);
+  step.control(2, x_row, from, to, points);
   for (int j = 0; j <= degree - 2; ++j) bounds.acceleration.add(points[j]);
-  bounds.speed = std::max(bounds.speed, longest(1, x_at));
+  bounds.speed = std::max(bounds.speed, longest(1, x_row));
 
   // |w| <= |theta'|, |w'| <= |theta''| + |theta'| |theta x theta'|/6
-  const double rate = longest(1, theta_at);
+  const double rate = longest(1, theta_row);
   bounds.turn = std::max(bounds.turn, rate);
   bounds.turn_change =
-      std::max(bounds.turn_change, longest(2, theta_at) + rate * rate * longest(0, theta_at) / 6);
+      std::max(bounds.turn_change, longest(2, theta_row) + rate * rate * longest(0, theta_row) / 6);
 }
 
 MotionBounds DrivenArc::bounds(double from, double to) const {
@@ -271,9 +271,9 @@ double DrivenArc::turn_change_across(const Vec3& n, double from, double to,
     const double end = solution_.step_end(t), until = std::min(to, end);
     const auto degree = static_cast<std::size_t>(step.degree());
     DenseStep::Control theta, rate, second;
-    step.control(0, theta_at, t, until, theta);
-    step.control(1, theta_at, t, until, rate);
-    step.control(2, theta_at, t, until, second);
+    step.control(0, theta_row, t, until, theta);
+    step.control(1, theta_row, t, until, rate);
+    step.control(2, theta_row, t, until, second);
     most = std::max(
         most, tw::turn_change_across(n, {theta, degree + 1}, {rate, degree}, {second, degree - 1}));
     t = end;

@@ -65,11 +65,15 @@ void add(Aabb& box, Lanes lo, Lanes hi) {
 }  // namespace
 
 GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
-    : members_(system.members()), packs_(system.packs()), rows_(packs_ + system.bends()) {
+    : packs_(system.packs()), rows_(packs_ + system.bends()) {
+  for (const GroupMember& m : start.members) {
+    const int slot = m.tree < 0 ? count_++ : -1;
+    if (!start.trees.empty()) slots_.push_back(slot);
+  }
   for (const ContactPack& pack : system.contact_packs().packs)
     with_sides_ |= pack.feature != ContactFeature::plane;
-  node_size_ = static_cast<std::size_t>(node_numbers * members_ + row_node * rows_);
-  step_size_ = static_cast<std::size_t>(step_numbers * members_ + row_step * rows_ +
+  node_size_ = static_cast<std::size_t>(node_numbers * count_ + row_node * rows_);
+  step_size_ = static_cast<std::size_t>(step_numbers * count_ + row_step * rows_ +
                                         (with_sides_ ? pack_side * packs_ : 0));
   first_sides_ = system.sides();
   // most arcs have one step
@@ -78,8 +82,9 @@ GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
   times_.reserve(2);
   times_.push_back(start.time);
   Writer node(nodes_, node_size_);
-  for (int i = 0; i < members_; ++i) {
+  for (int i = 0; i < system.members(); ++i) {
     const GroupMember& m = start.members[static_cast<std::size_t>(i)];
+    if (m.tree >= 0) continue;
     const Vec3 w = system.angular_velocity(i, m.q, m.L);
     for (const Vec3* part : {&m.x, &m.v, &m.L, &w}) node.put(*part);
     node.put(m.q);
@@ -100,7 +105,7 @@ GroupRecord::GroupRecord(const GroupStart& start, const GroupSystem& system)
 
 GroupRecord GroupRecord::stretch_of(int member, double from) const {
   GroupRecord stretch;
-  stretch.members_ = 1;
+  stretch.count_ = 1;
   stretch.node_size_ = node_numbers;
   stretch.step_size_ = step_numbers;
   // at a node the step before it, too: rates are those of the step that ends there
@@ -111,8 +116,9 @@ GroupRecord GroupRecord::stretch_of(int member, double from) const {
   stretch.steps_.reserve(step_numbers * count);
   for (int i = first; i <= steps(); ++i) {
     stretch.times_.push_back(time(i));
-    Writer(stretch.nodes_, node_numbers).put(member_node(i, member), node_numbers);
-    if (i < steps()) Writer(stretch.steps_, step_numbers).put(member_step(i, member), step_numbers);
+    Writer(stretch.nodes_, node_numbers).put(slot_node(i, slot(member)), node_numbers);
+    if (i < steps())
+      Writer(stretch.steps_, step_numbers).put(slot_step(i, slot(member)), step_numbers);
     stretch.keep_bounds();
   }
   return stretch;
@@ -120,11 +126,16 @@ GroupRecord GroupRecord::stretch_of(int member, double from) const {
 
 void GroupRecord::load_last(GroupSystem& system, double* y) const {
   const double* from = node(steps());
-  for (int i = 0; i < members_; ++i, from += node_numbers, y += 12) {
+  for (int i = 0; i < system.members(); ++i, y += 12) {
+    if (slot(i) < 0) {
+      std::fill(y, y + 12, 0.0);
+      continue;
+    }
     std::copy(from + x_at, from + x_at + 3, y);
     std::fill(y + 3, y + 6, 0.0);
     std::copy(from + v_at, from + v_at + 6, y + 6);
     system.set_attitude(i, quat(from + q_at));
+    from += node_numbers;
   }
   std::copy(from, from + row_node * rows_, y);
 }
@@ -133,7 +144,8 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
                          const double* d4) {
   times_.push_back(time);
   Writer node(nodes_, node_size_), step(steps_, step_size_);
-  for (int i = 0; i < members_; ++i) {
+  for (int i = 0; i < system.members(); ++i) {
+    if (slot(i) < 0) continue;
     const double* y = y1 + 12 * i;
     const Vec3 theta = vec(y + 3);
     const Quat q = normalized(short_rotation(theta) * system.attitude(i));
@@ -147,7 +159,7 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
     step.put(d3 + 12 * i + 6, 6);
     step.put(d4 + 12 * i + 6, 6);
   }
-  const int first = 12 * members_;
+  const int first = 12 * system.members();
   node.put(y1 + first, row_node * rows_);
   for (int p = 0; p < rows_; ++p) {
     step.put(d3 + first + 12 * p, 12);
@@ -165,13 +177,12 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
 void GroupRecord::keep_bounds() {
   constexpr int block = BoundsTree::block;
   if (steps() == 0 || steps() % block != 0) return;
-  kept_bounds_.resize(static_cast<std::size_t>(members_));
-  for (int member = 0; member < members_; ++member) {
-    BoundsTree& kept = kept_bounds_[static_cast<std::size_t>(member)];
+  kept_bounds_.resize(static_cast<std::size_t>(count_));
+  for (int slot = 0; slot < count_; ++slot) {
+    BoundsTree& kept = kept_bounds_[static_cast<std::size_t>(slot)];
     const int first = block * static_cast<int>(kept.size());
     MotionBounds sum;
-    for (int i = first; i < first + block; ++i)
-      add_step_bounds(i, member, time(i), time(i + 1), sum);
+    for (int i = first; i < first + block; ++i) add_step_bounds(i, slot, time(i), time(i + 1), sum);
     kept.append(sum);
   }
 }
@@ -191,24 +202,24 @@ double GroupRecord::fraction(int i, double t) const {
   return std::clamp((t - time(i)) / length(i), 0.0, 1.0);
 }
 
-const double* GroupRecord::member_node(int i, int member) const {
-  return node(i) + node_numbers * member;
+const double* GroupRecord::slot_node(int i, int slot) const {
+  return node(i) + node_numbers * slot;
 }
 
-const double* GroupRecord::member_step(int i, int member) const {
-  return step(i) + step_numbers * member;
+const double* GroupRecord::slot_step(int i, int slot) const {
+  return step(i) + step_numbers * slot;
 }
 
 // rate(0) = y1 - y0 + D3, rate(1) = y1 - y0 - D3 - D4
-GroupRecord::Cubic GroupRecord::path(int i, int member) const {
-  const double *a = member_node(i, member), *b = member_node(i + 1, member);
+GroupRecord::Cubic GroupRecord::path(int i, int slot) const {
+  const double *a = slot_node(i, slot), *b = slot_node(i + 1, slot);
   const Lanes y0 = xyz(a + x_at), y1 = xyz(b + x_at), h = lanes(length(i));
   const Lanes d3 = h * xyz(a + v_at) - (y1 - y0);
   return {y0, y1, d3, (y1 - y0) - d3 - h * xyz(b + v_at)};
 }
 
-GroupRecord::Cubic GroupRecord::rotation(int i, int member) const {
-  const double *a = member_node(i, member), *s = member_step(i, member);
+GroupRecord::Cubic GroupRecord::rotation(int i, int slot) const {
+  const double *a = slot_node(i, slot), *s = slot_step(i, slot);
   const Lanes y1 = xyz(s + theta_at), h = lanes(length(i));
   const Lanes d3 = h * xyz(a + w_at) - y1;
   return {lanes(0), y1, d3, y1 - d3 - h * xyz(s + rate_at)};
@@ -219,24 +230,24 @@ GroupRecord::Place GroupRecord::place(double t) const {
   return i < 0 ? Place{steps(), 0} : Place{i, fraction(i, t)};
 }
 
-Vec3 GroupRecord::position(int member, Place at) const {
+Vec3 GroupRecord::position_of(int slot, Place at) const {
   const auto [i, r] = at;
-  return r > 0 ? vec(path(i, member).value(r)) : vec(member_node(i, member) + x_at);
+  return r > 0 ? vec(path(i, slot).value(r)) : vec(slot_node(i, slot) + x_at);
 }
 
-Quat GroupRecord::attitude(int member, Place at) const {
+Quat GroupRecord::attitude_of(int slot, Place at) const {
   const auto [i, r] = at;
-  const Quat begin = quat(member_node(i, member) + q_at);
-  return r > 0 ? Quat(short_rotation(vec(rotation(i, member).value(r))) * begin) : begin;
+  const Quat begin = quat(slot_node(i, slot) + q_at);
+  return r > 0 ? Quat(short_rotation(vec(rotation(i, slot).value(r))) * begin) : begin;
 }
 
-void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
+void GroupRecord::velocities_of(int slot, Place at, Vec3& v, Vec3& L) const {
   const auto [i, r] = at;
-  const double* a = member_node(i, member);
+  const double* a = slot_node(i, slot);
   v = vec(a + v_at);
   L = vec(a + L_at);
   if (!(r > 0)) return;
-  const double *b = member_node(i + 1, member), *s = member_step(i, member);
+  const double *b = slot_node(i + 1, slot), *s = slot_step(i, slot);
   const auto along = [&](int value_at, int change) {
     const Cubic cubic{xyz(a + value_at), xyz(b + value_at), xyz(s + d3_at + change),
                       xyz(s + d4_at + change)};
@@ -248,9 +259,9 @@ void GroupRecord::velocities(int member, Place at, Vec3& v, Vec3& L) const {
 
 LaneVec GroupRecord::row(int number, double t) const {
   const auto [i, r] = place(t);
-  const int at = node_numbers * members_ + row_node * number;
+  const int at = node_numbers * count_ + row_node * number;
   if (!(r > 0)) return load(node(i) + at);
-  const double* d = step(i) + step_numbers * members_ + row_step * number;
+  const double* d = step(i) + step_numbers * count_ + row_step * number;
   const LaneVec y0 = load(node(i) + at), y1 = load(node(i + 1) + at), d3 = load(d),
                 d4 = load(d + 12);
   return lanes(1 - r) * y0 + lanes(r) * (y1 + lanes(1 - r) * (d3 + lanes(r) * d4));
@@ -258,14 +269,14 @@ LaneVec GroupRecord::row(int number, double t) const {
 
 LaneVec GroupRecord::side(int pack, double t) const {
   if (!with_sides_ || steps() == 0) return first_sides_[static_cast<std::size_t>(pack)];
-  return load(step(step_to(t)) + step_numbers * members_ + row_step * rows_ + pack_side * pack);
+  return load(step(step_to(t)) + step_numbers * count_ + row_step * rows_ + pack_side * pack);
 }
 
 void GroupRecord::pose_rates(int member, double t, Vec3& dx, Vec3& w) const {
-  const int i = step_to(t);
+  const int i = step_to(t), at = slot(member);
   const double r = fraction(i, t), rate = 1 / length(i);
-  const Cubic turn = rotation(i, member);
-  dx = vec(lanes(rate) * path(i, member).rate(r));
+  const Cubic turn = rotation(i, at);
+  dx = vec(lanes(rate) * path(i, at).rate(r));
   w = angular_velocity(vec(turn.value(r)), vec(lanes(rate) * turn.rate(r)));
 }
 
@@ -277,19 +288,19 @@ PoseTwist GroupRecord::path_at(int member, double t) const {
     const Twist rates = this->rates(member, t);
     return {there.p, there.q, rates.v, rates.w};
   }
-  const Cubic way = path(i, member), turn = rotation(i, member);
+  const Cubic way = path(i, slot(member)), turn = rotation(i, slot(member));
   const Lanes rate = lanes(1 / length(i));
   const Vec3 theta = vec(turn.value(r));
-  return {vec(way.value(r)), short_rotation(theta) * quat(member_node(i, member) + q_at),
+  return {vec(way.value(r)), short_rotation(theta) * quat(slot_node(i, slot(member)) + q_at),
           vec(rate * way.rate(r)), angular_velocity(theta, vec(rate * turn.rate(r)))};
 }
 
-void GroupRecord::add_step_bounds(int i, int member, double from, double to,
+void GroupRecord::add_step_bounds(int i, int slot, double from, double to,
                                   MotionBounds& bounds) const {
   const double r0 = fraction(i, from), r1 = fraction(i, to), rate = 1 / length(i);
 
   // path: control points over [r0, r1]: p(r0), p + (r1-r0) p'/3 from either end, p(r1)
-  const Cubic way = path(i, member);
+  const Cubic way = path(i, slot);
   const Lanes p0 = way.value(r0), p1 = way.value(r1), u0 = way.rate(r0), u1 = way.rate(r1);
   const Lanes third = lanes((r1 - r0) / 3), half = lanes(0.5 * (r1 - r0));
   const Lanes control0 = p0 + third * u0, control1 = p1 - third * u1;
@@ -306,7 +317,7 @@ void GroupRecord::add_step_bounds(int i, int member, double from, double to,
   add(bounds.acceleration, min(by_time * s0, by_time * s1), max(by_time * s0, by_time * s1));
 
   // |w| <= |theta'|, quadratic: within its control points; |Jl| <= 1
-  const Cubic turn = rotation(i, member);
+  const Cubic turn = rotation(i, slot);
   const Lanes t0 = turn.rate(r0), t1 = turn.rate(r1), middle = t0 + half * turn.second(r0);
   const double speed = rate * std::sqrt(std::max({squared(t0), squared(t1), squared(middle)}));
   bounds.turn = std::max(bounds.turn, speed);
@@ -329,11 +340,11 @@ MotionBounds GroupRecord::bounds(int member, double from, double to) const {
   const int first_block = first / block + 1, last_block = last / block;
   const bool has_blocks = from < to && first_block < last_block;
   if (has_blocks)
-    kept_bounds_[static_cast<std::size_t>(member)].add(
+    kept_bounds_[static_cast<std::size_t>(slot(member))].add(
         static_cast<std::size_t>(first_block), static_cast<std::size_t>(last_block), result);
   for (int i = from < to ? first : last; i <= last; ++i) {
     if (has_blocks && i == first_block * block) i = last_block * block;
-    add_step_bounds(i, member, from, to, result);
+    add_step_bounds(i, slot(member), from, to, result);
   }
   // rounding of the interpolant
   const double largest =
@@ -356,7 +367,7 @@ double GroupRecord::turn_change_across(const Vec3& n, int member, double from, d
     // the control points of theta and of its rates over [r0, r1]
     const double r0 = fraction(i, std::max(from, time(i))),
                  r1 = fraction(i, std::min(to, time(i + 1))), rate = 1 / length(i), h = r1 - r0;
-    const Cubic turn = rotation(i, member);
+    const Cubic turn = rotation(i, slot(member));
     const Vec3 p0 = vec(turn.value(r0)), p1 = vec(turn.value(r1)), u0 = vec(turn.rate(r0)),
                u1 = vec(turn.rate(r1)), s0 = vec(turn.second(r0)), s1 = vec(turn.second(r1));
     const Vec3 theta[] = {p0, p0 + h / 3 * u0, p1 - h / 3 * u1, p1};

@@ -1,8 +1,9 @@
 // What an arc keeps of its steps: states at the nodes and the dense output between them.
 //
-// Per node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12), per pack
+// Links of multibodies have records of their own (joint-record.h); the others are counted here. Per
+// node and member x, v, L, w, q (16 numbers), per pack of contacts the stretches (12), per pack
 // that resists rolling the bends (12).  Per step and member theta and theta' at its end (6) and D3,
-// D4 for v, L (12; of rodas4.h or explicit-steps.cc), per row of stretches or bends D3, D4 (24),
+// D4 for v, L (12; as of rodas4.h), per row of stretches or bends D3, D4 (24),
 // and where some contact is not of the plane kind the normals at the step's start (12).
 //
 // Positions and rotation vectors are the cubics with the nodes' values and rates: order 3 as the
@@ -51,10 +52,9 @@ class GroupRecord {
   int step_to(double time) const;
 
   // At a time in [start, reached].
-  Vec3 position(int member, double time) const { return position(member, place(time)); }
-  Quat attitude(int member, double time) const { return attitude(member, place(time)); }
+  Vec3 position(int member, double time) const { return position_of(slot(member), place(time)); }
   void velocities(int member, double time, Vec3& v, Vec3& L) const {
-    velocities(member, place(time), v, L);
+    velocities_of(slot(member), place(time), v, L);
   }
   LaneVec stretch(int pack, double time) const { return row(pack, time); }
   // Zero where the pack has none.
@@ -65,14 +65,14 @@ class GroupRecord {
   void pose_rates(int member, double time, Vec3& dx, Vec3& w) const;
   Pose pose(int member, double time) const {
     const Place at = place(time);
-    return {position(member, at), attitude(member, at)};
+    return {position_of(slot(member), at), attitude_of(slot(member), at)};
   }
   // Pose, velocity and angular momentum.
   void motion(int member, double time, Vec3& x, Quat& q, Vec3& v, Vec3& L) const {
     const Place at = place(time);
-    x = position(member, at);
-    q = attitude(member, at);
-    velocities(member, at, v, L);
+    x = position_of(slot(member), at);
+    q = attitude_of(slot(member), at);
+    velocities_of(slot(member), at, v, L);
   }
   // Pose and rates by one look-up of the step; the same bits.
   PoseTwist path_at(int member, double time) const;
@@ -117,27 +117,32 @@ class GroupRecord {
     double r;
   };
   Place place(double time) const;
-  Vec3 position(int member, Place at) const;
-  Quat attitude(int member, Place at) const;
-  void velocities(int member, Place at, Vec3& v, Vec3& L) const;
+  // Slots are numbers among the members that move by themselves.
+  int slot(int member) const {
+    return slots_.empty() ? member : slots_[static_cast<std::size_t>(member)];
+  }
+  Vec3 position_of(int slot, Place at) const;
+  Quat attitude_of(int slot, Place at) const;
+  void velocities_of(int slot, Place at, Vec3& v, Vec3& L) const;
   LaneVec row(int number, double time) const;
   double fraction(int i, double time) const;
   double length(int i) const { return time(i + 1) - time(i); }
-  Cubic path(int step, int member) const;
-  Cubic rotation(int step, int member) const;
-  const double* member_node(int node, int member) const;
-  const double* member_step(int step, int member) const;
-  void add_step_bounds(int step, int member, double from, double to, MotionBounds& bounds) const;
+  Cubic path(int step, int slot) const;
+  Cubic rotation(int step, int slot) const;
+  const double* slot_node(int node, int slot) const;
+  const double* slot_step(int step, int slot) const;
+  void add_step_bounds(int step, int slot, double from, double to, MotionBounds& bounds) const;
   // After each step: where a block is complete.
   void keep_bounds();
 
-  int members_ = 0, packs_ = 0, rows_ = 0;  // rows: of stretches, then of bends
+  int count_ = 0, packs_ = 0, rows_ = 0;  // slots; packs; rows of stretches, then of bends
+  std::vector<int> slots_;                // of each member, -1: a link; empty: none is one
   bool with_sides_ = false;
   std::size_t node_size_ = 0, step_size_ = 0;
   std::vector<double> times_;
   Row nodes_, steps_;
   std::vector<LaneVec> first_sides_;
-  std::vector<BoundsTree> kept_bounds_;  // of each member, by blocks of steps
+  std::vector<BoundsTree> kept_bounds_;  // of each slot, by blocks of steps
 };
 
 }  // namespace tw

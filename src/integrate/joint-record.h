@@ -34,6 +34,8 @@ class JointRecord {
 
   double start() const { return path_.start(); }
   double reached() const { return path_.reached(); }
+  // How many it holds: its memory in doubles, more or less.
+  std::size_t numbers() const { return path_.numbers() + nodes_.size(); }
   // A step to `time`, where the positions are q: coefficients of the n displacements and the n
   // velocities, up to the degree of the record or a lower one.
   void append(double time, std::vector<double> coefficients, const std::vector<double>& q);

@@ -18,7 +18,7 @@ contact points: manifolds, seams|manifold|polyhedra_at_seam
 the allocator|_int_malloc|_int_free|malloc_consolidate|unlink_chunk|sysmalloc|cfree|operator (new|delete)|[ \t](malloc|calloc|realloc|free)$
 closed-form flight|::(FreeRotation|Flight|JacobiTheta)::
 pairs followed: certificates, crossings|::(PairChecks|Certificates|Travels)::|time_apart|part_reach|apart_throughout|::certificate|first_dip
-integration of groups|::GroupStepper::(implicit_step|explicit_step|try_step|accept)|::GroupSystem::(evaluate|factor|solve|linearise)
+integration of groups|::(Rodas|Tree|Spring)Steps::|::GroupSystem::(evaluate|factor|solve|linearise)
 groups and their arcs made|make_groups|start_arc|::(GroupArc|GroupStepper|GroupSystem)::(GroupArc|GroupStepper|GroupSystem)
 impulses and whom they reach|::(ImpactEvents|JointImpulses)::|pass_on_impulses|who_notices|give_impulse
 checks of groups|::GroupEvents::|find_contacts|::regroup|go_round
