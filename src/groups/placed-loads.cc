@@ -9,6 +9,7 @@
 #include "base/constants.h"
 #include "base/index.h"
 #include "dynamics/impact-law.h"
+#include "dynamics/point-law.h"
 #include "groups/match-contacts.h"
 #include "integrate/body-matrix.h"
 
@@ -438,26 +439,14 @@ double smaller_size(const Scene& scene, const ContactTag& tag) {
   return std::min(scene.body(tag.reference).least_width, scene.body(tag.other).least_width);
 }
 
-// Of the bend as far as friction holds it, J; `load`: over the grip.
-double bend_energy_of(const GroupContact& c, const Vec3& n, double load) {
-  const double k = c.share * c.law.kt * c.law.squared_lever();
-  if (!(k > 0)) return 0;
-  const double along = n.dot(c.bend), across = (c.bend - along * n).squaredNorm();
-  const double roll = c.law.rolling * load, spin = c.law.spinning * load;
-  return 0.5 *
-         (std::min(k * across, roll * roll / k) + std::min(k * along * along, spin * spin / k));
-}
-
-// Of the normal spring, and of the stretch and the bend as far as friction holds them, J
-// (pack_energy).  `n`: a's frame.
+// J; `n`: a's frame.
 double energy_of(const GroupContact& c, const Vec3& n, double gap) {
-  const double depth = c.offset - gap;
-  const double load = spring_force(c.law, c.share, depth);
-  const double at_surface = load / friction_grip(c.law, depth);
-  const double cone = c.law.mu * at_surface, kt = c.share * c.law.kt;
-  const double normal = spring_energy(c.law, c.share, depth) + bend_energy_of(c, n, at_surface);
-  if (c.law.law != FrictionLaw::anchored || !(kt > 0)) return normal;
-  return normal + 0.5 * std::min(kt * c.stretch.squaredNorm(), cone * cone / kt);
+  PointMotion at;
+  at.normal = n;
+  at.depth = c.offset - gap;
+  at.stretch = c.stretch;
+  at.bend = c.bend;
+  return point_energy(c.law, c.share, at);
 }
 
 Spring spring_of(const GroupStart& start, const NewContact& c, std::size_t number) {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/constants.h"
-#include "dynamics/contact-law.h"
+#include "dynamics/point-law.h"
 
 namespace tw {
 namespace {
@@ -28,13 +28,11 @@ struct Push {
 Vec3 spring_force_of(const NewContact& c, const Quat& reference) {
   const GroupContact& contact = c.contact;
   const ContactConstants& law = c.law_before ? *c.law_before : contact.law;
-  const double depth = contact.offset - c.gap, load = spring_force(law, contact.share, depth);
-  if (!(load > 0) || law.law != FrictionLaw::anchored) return load * c.normal;
-  const double hold = contact.share * law.kt * friction_grip(law, depth);
-  const Vec3 stretch = reference * contact.stretch;
-  const Vec3 pull = -hold * (stretch - stretch.dot(c.normal) * c.normal);
-  const double cone = law.mu * load, most = pull.norm();
-  return load * c.normal + (most > cone ? cone / most : 1) * pull;
+  PointMotion at;
+  at.normal = c.normal;
+  at.depth = contact.offset - c.gap;
+  at.stretch = reference * contact.stretch;
+  return point_force(law, contact.share, at).force(c.normal);
 }
 
 // The cosine of the angle between them; 0 where there is no force.
