@@ -13,7 +13,7 @@ wide=$(awk '
 [ -z "$wide" ] || echo "$wide"
 echo "$# pages checked"
 # each reason for which an arc may end is told
-untold=$(sed -n '/end_names{/,/};/p' src/integrate/arc-end.h | grep -o '"[a-z]*"' | tr -d '"' |
+untold=$(sed -n '/end_names{/,/};/p' src/integrate/arc/arc-end.h | grep -o '"[a-z]*"' | tr -d '"' |
   while read -r reason; do
     grep -q "^|.*\`$reason\`" doc/architecture.md || echo "doc/architecture.md: no row of $reason"
     grep -q "arcs_ended_$reason\`" doc/statistics.md || echo "doc/statistics.md: no $reason"

@@ -8,8 +8,8 @@
 // `patch` and `seam`, which points of two surfaces are contacts, belong to the first kind.
 //
 // Not here: limits of what users may set (limits.h); rounding of one algorithm, which stands with
-// it; what follows from `accuracy` (groups/step-tolerances.h).  Shares of speed are of sqrt(g
-// size), with size the least width of a body; g the scale of gravity.
+// it; what follows from `accuracy` (groups/regroup/step-tolerances.h).  Shares of speed are of
+// sqrt(g size), with size the least width of a body; g the scale of gravity.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
@@ -113,7 +113,7 @@ inline constexpr double end_resolution = 1e-6;
 // Depth that does not count as penetration, share of the smaller size: above the rounding of a
 // distance query (3e-15) and of positions after many impacts, far below any accuracy asked for.
 inline constexpr double depth_slack = 1e-12;
-// The same where both are integrated: steps err by far more (groups/step-tolerances.h).
+// The same where both are integrated: steps err by far more (groups/regroup/step-tolerances.h).
 inline constexpr double stepped_slack = 1e-10;
 // Bodies that come into the world touch if they overlap by no more than this share of the smaller
 // size.
@@ -181,7 +181,7 @@ inline constexpr double first_step_error = 50;
 // A member turns no further in a step, rad: rotation vectors are a chart up to 2 pi.
 inline constexpr double most_step_turn = 2;
 // Slow groups are followed more closely: down to this part of the tolerances, and not beyond those
-// of this accuracy (groups/step-tolerances.h).
+// of this accuracy (groups/regroup/step-tolerances.h).
 inline constexpr double closest_steps = 0.1, finest_accuracy = 1e-6;
 // Of the tolerance of velocities where a circle or an ellipsoid rolls.  A coin of 24 mm that
 // wobbles without slipping (6 s) gained 0.13 % more than at the finest accuracy at 1, 1e-5 at 0.5
@@ -299,9 +299,9 @@ inline constexpr double residual_approach = 1e-12, speed_noise = 1e-13;
 // Points this close take part in an impact, share of the smaller size over accuracy.
 inline constexpr double touch_per_accuracy = 0.1;
 // So many impacts in quick succession fuse a pair; the interval that makes them quick is that of
-// the contact (soft-impact rule in kernel/impact.cc), or this share of it where nothing presses the
-// pair together: such a pair may knock about in a corner for a while, a true collapse goes on to
-// ever shorter intervals.
+// the contact (soft-impact rule in kernel/loop/impact.cc), or this share of it where nothing
+// presses the pair together: such a pair may knock about in a corner for a while, a true collapse
+// goes on to ever shorter intervals.
 inline constexpr std::uint32_t soft_run = 8;
 inline constexpr double free_run_share = 1e-2;
 // A body that a kinematic one strikes more often than this at one instant, each time at no less
@@ -481,9 +481,9 @@ inline constexpr int rim_points = 8, disc_sides = 16;
 
 namespace tw::seam {
 
-// Where pieces of the ground meet (collision/manifold.h).  Angles from small to large: normals that
-// are one another's < what is a face's up to its nearest features < a face along an edge; lengths
-// are shares of the size of the bodies in contact.  All change the answer.
+// Where pieces of the ground meet (collision/manifold/manifold.h).  Angles from small to large:
+// normals that are one another's < what is a face's up to its nearest features < a face along an
+// edge; lengths are shares of the size of the bodies in contact.  All change the answer.
 
 // Normals that agree so far are the same, rad; as a cosine.
 inline constexpr double same_angle = 1e-4, same_normal = 1 - 5e-9;

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/constants.h"
-#include "collision/near-parts.h"
-#include "collision/support-core.h"
+#include "collision/broad/near-parts.h"
+#include "collision/distance/support-core.h"
 #include "detect/round-reach.h"
 #include "detect/turning-plane.h"
 #include "geometry/polyhedron.h"

@@ -26,7 +26,7 @@
 #include <optional>
 #include <vector>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "detect/moving-body.h"
 #include "detect/piece.h"
 #include "geometry/part-tree.h"

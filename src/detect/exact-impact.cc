@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "collision/impact-time.h"
+#include "collision/distance/impact-time.h"
 #include "detect/approach.h"
 
 namespace tw {

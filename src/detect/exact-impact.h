@@ -1,7 +1,7 @@
 // Exact impacts: of spheres that fall alike, and of a sphere and a fixed plane, by a quadratic.
 //
 // Cost: some tens of nanoseconds, no distance query; no grid and no safe time are needed.
-// Source: collision/impact-time.h.
+// Source: collision/distance/impact-time.h.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 

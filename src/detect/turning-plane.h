@@ -11,7 +11,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "detect/moving-body.h"
 
 namespace tw {

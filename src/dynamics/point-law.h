@@ -2,7 +2,8 @@
 // two bodies stand and move.
 //
 // The reference: steps of groups evaluate the same law four points at a time, with its derivatives
-// (integrate/contact-pack.h), and are tested against this.  Whoever asks for one point asks here.
+// (integrate/implicit/contact-pack.h), and are tested against this.  Whoever asks for one point
+// asks here.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

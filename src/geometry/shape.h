@@ -3,8 +3,9 @@
 // Every shape is a list of convex parts in the body's frame, of few kinds: a box or hull is a
 // polyhedron; cylinder, cone and capsule are *frustums*: what a line that need not be parallel to
 // the axis sweeps out about it, and all points within a margin of that.  A kind is a row in the
-// tables of pairs in collision/separation.cc and collision/manifold.cc.  The parts of height fields
-// and meshes are made when they are asked for; shapes of many parts have a tree over them.
+// tables of pairs in collision/distance/separation.cc and collision/manifold/manifold.cc.  The
+// parts of height fields and meshes are made when they are asked for; shapes of many parts have a
+// tree over them.
 //
 // Units: metres.  All constructors raise UserError on values that are not finite, not positive, or
 // flat, and say which value.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "groups/joined.h"
+#include "groups/joints/joined.h"
 
 namespace tw {
 

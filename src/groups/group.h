@@ -4,8 +4,8 @@
 // arc is integrated when it is first needed, which is a function of the group alone; then the end
 // test (end-test.h) says where its members' arcs really end, once.  Nothing else of it changes.
 //
-// Where an arc ends a group check stands (integrate/arc-end.h says why it may end); a group at rest
-// has none: its members' arcs are constant until something touches one of them.
+// Where an arc ends a group check stands (integrate/arc/arc-end.h says why it may end); a group at
+// rest has none: its members' arcs are constant until something touches one of them.
 //
 // Not all members of a group need leave it at once: what a blow does to a heap dies away within a
 // few bodies, so only these get new arcs, in a group of their own.  It meets the others at its
@@ -26,8 +26,8 @@
 
 #include "base/counted.h"
 #include "dynamics/contact-scales.h"
-#include "groups/stillness.h"
-#include "integrate/group-arc.h"
+#include "groups/rest/stillness.h"
+#include "integrate/arc/group-arc.h"
 #include "timeline/key.h"
 
 namespace tw {
@@ -50,7 +50,7 @@ struct ContactTag {
   BodyId reference = 0, other = 0;  // a and b of the contact
   int parts = 0;                    // pair of parts
   std::uint64_t feature = 0;
-  double flatness = 0, beyond = 0;  // collision/manifold.h
+  double flatness = 0, beyond = 0;  // collision/manifold/manifold.h
 };
 
 struct Group : Counted<Group> {

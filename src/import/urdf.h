@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "import/mending.h"
-#include "kernel/definitions.h"
+#include "kernel/world/definitions.h"
 
 namespace tw {
 

@@ -117,7 +117,7 @@ class Trajectory {
   // The origin's path in closed form; null where other things act.
   virtual const Parabola* ballistic() const { return nullptr; }
   // What is integrated by itself ends a step there, and forgets what lies beyond: where everybody
-  // is to stand at the same time (kernel/policy.h).
+  // is to stand at the same time (kernel/loop/policy.h).
   virtual void halt(double /*time*/) const {}
   // Whether it is computed step by step.
   virtual bool stepped() const { return false; }

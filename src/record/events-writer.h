@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "kernel/callback.h"
+#include "kernel/world/callback.h"
 #include "record/csv-file.h"
 #include "record/poses-writer.h"
 

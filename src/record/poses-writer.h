@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "kernel/callback.h"
+#include "kernel/world/callback.h"
 #include "record/csv-file.h"
 
 namespace tw {

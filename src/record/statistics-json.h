@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kernel/statistics.h"
+#include "kernel/report/statistics.h"
 
 namespace tw {
 

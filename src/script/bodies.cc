@@ -1,6 +1,6 @@
 // Scheme primitives: making bodies and asking about them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "script/body-def.h"
 #include "script/primitive.h"
 #include "script/scm-slots.h"

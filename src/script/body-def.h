@@ -4,7 +4,7 @@
 
 #include <libguile.h>
 
-#include "kernel/definitions.h"
+#include "kernel/world/definitions.h"
 
 namespace tw {
 

@@ -13,7 +13,7 @@
 #include <csignal>
 
 #include "base/cpu-clock.h"
-#include "kernel/callback.h"
+#include "kernel/world/callback.h"
 #include "script/primitive.h"
 #include "script/values.h"
 

@@ -47,7 +47,7 @@ struct BadValue {
 };
 
 // Calls a Scheme procedure.  Errors: SchemeError for every non-local exit but Ctrl-C, which is
-// Interrupted (kernel/callback.h).
+// Interrupted (kernel/world/callback.h).
 SCM call_scheme(SCM procedure, std::span<SCM> arguments);
 
 // Has the handlers of signals that wait run, ten times a second at most; throws Interrupted where

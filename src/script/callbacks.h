@@ -9,8 +9,8 @@
 
 #include <libguile.h>
 
-#include "kernel/callback.h"
-#include "kernel/world.h"
+#include "kernel/world/callback.h"
+#include "kernel/world/world.h"
 #include "script/live.h"
 #include "script/types.h"
 

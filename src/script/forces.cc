@@ -1,6 +1,6 @@
 // Scheme primitives: torques, drag, springs and forces by procedures.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/definitions.h"
+#include "kernel/world/definitions.h"
 #include "script/border.h"
 #include "script/looking-view.h"
 #include "script/primitive.h"

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 #include "render/frame-pipeline.h"
 
 namespace tw {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 #include "script/looking-view.h"
 
 namespace tw {

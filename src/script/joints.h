@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "kernel/callback.h"
-#include "kernel/world.h"
+#include "kernel/world/callback.h"
+#include "kernel/world/world.h"
 
 namespace tw {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kernel/callback.h"
+#include "kernel/world/callback.h"
 
 namespace tw {
 

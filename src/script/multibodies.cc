@@ -1,7 +1,7 @@
 // Scheme primitives: making multibodies and asking about them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "base/index.h"
-#include "integrate/moving-base.h"
+#include "integrate/given/moving-base.h"
 #include "multibody/couplings.h"
 #include "multibody/inverse-dynamics.h"
 #include "multibody/inverse-kinematics.h"

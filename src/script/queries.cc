@@ -3,8 +3,8 @@
 #include <limits>
 #include <optional>
 
-#include "collision/ray.h"
-#include "collision/separation.h"
+#include "collision/distance/ray.h"
+#include "collision/distance/separation.h"
 #include "script/primitive.h"
 #include "script/states.h"
 #include "script/types.h"

@@ -8,7 +8,7 @@
 #include "base/limits.h"
 #include "geometry/height-field.h"
 #include "geometry/polyhedron.h"
-#include "integrate/sampled-motion.h"
+#include "integrate/given/sampled-motion.h"
 #include "math/rotation-vector.h"
 #include "script/border.h"
 #include "script/primitive.h"

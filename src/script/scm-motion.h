@@ -1,7 +1,7 @@
 // Motion of a kinematic body by a Scheme procedure of time.
 //
 // The procedure must be pure and returns position and orientation as two values.  It is sampled
-// span by span (integrate/sampled-motion.h); no point of the surface may be faster than its
+// span by span (integrate/given/sampled-motion.h); no point of the surface may be faster than its
 // max-speed, which every two samples that follow each other are held against.  What the samples
 // tell apart by it: a jump from a fast motion; and it bounds what they may miss.
 //
@@ -13,7 +13,7 @@
 #include <string>
 
 #include "geometry/shape.h"
-#include "integrate/motion-span.h"
+#include "integrate/given/motion-span.h"
 #include "script/live.h"
 
 namespace tw {

@@ -4,7 +4,7 @@
 
 #include <libguile.h>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw {
 

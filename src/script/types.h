@@ -20,9 +20,9 @@
 
 #include "geometry/shape.h"
 #include "integrate/trajectory.h"
-#include "kernel/callback.h"
-#include "kernel/checkpoint.h"
-#include "kernel/world.h"
+#include "kernel/loop/checkpoint.h"
+#include "kernel/world/callback.h"
+#include "kernel/world/world.h"
 #include "script/live.h"
 
 namespace tw {

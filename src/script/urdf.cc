@@ -3,7 +3,7 @@
 #include "import/urdf.h"
 #include "base/interruption.h"
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "script/body-def.h"
 #include "script/file-names.h"
 #include "script/joints.h"

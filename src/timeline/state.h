@@ -60,7 +60,7 @@ struct StateData {
   double next_callback = never;          // callbacks without a period: their next time
   std::shared_ptr<const Report> report;  // what observers will hear (on one state of the ring)
   Tally tally;                           // for statistics (on one state of the ring)
-  double squeezed_since = never;         // s; never: it is not squeezed (groups/squeezed.h)
+  double squeezed_since = never;         // s; never: it is not squeezed (groups/told/squeezed.h)
 
   // the contact group that the body is in from here on, and its place there; null: it is isolated
   std::shared_ptr<Group> group;

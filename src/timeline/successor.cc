@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "integrate/driven-arc.h"
+#include "integrate/explicit/driven-arc.h"
 
 namespace tw {
 

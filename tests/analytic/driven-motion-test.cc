@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "support/scene.h"
 
 namespace tw::test {

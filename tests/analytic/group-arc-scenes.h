@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "integrate/group-arc.h"
+#include "integrate/arc/group-arc.h"
 #include "integrate/standing.h"
 
 namespace tw::group_scenes {

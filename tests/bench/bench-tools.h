@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "bench/bench-table.h"
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::bench {
 

@@ -10,7 +10,7 @@
 
 #include "bench/bench-tools.h"
 #include "bench/car-model.h"
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::bench {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "bench/bench-tools.h"
 #include "bench/chain-mujoco.h"
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::bench {
 namespace {

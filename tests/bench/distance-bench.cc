@@ -20,10 +20,10 @@
 #include <cstdlib>
 
 #include "bench/distance-fcl.h"
-#include "collision/ellipsoid-point.h"
-#include "collision/frustum-point.h"
-#include "collision/round-distance.h"
-#include "collision/separation.h"
+#include "collision/distance/ellipsoid-point.h"
+#include "collision/distance/frustum-point.h"
+#include "collision/distance/round-distance.h"
+#include "collision/distance/separation.h"
 #include "geometry/polyhedron.h"
 #include "unit/convex-oracles.h"
 

@@ -13,7 +13,7 @@
 
 #include "base/cpu-clock.h"
 #include "bench/bench-table.h"
-#include "integrate/driven-arc.h"
+#include "integrate/explicit/driven-arc.h"
 #include "support/anchored-spring.h"
 
 namespace tw {

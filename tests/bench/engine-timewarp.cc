@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "bench/engine-cases.h"
 #include "bench/made-cases.h"
-#include "integrate/sampled-motion.h"
+#include "integrate/given/sampled-motion.h"
 #include "support/case-file.h"
 #include "support/case-motion.h"
 

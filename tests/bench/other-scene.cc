@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 
 namespace tw::bench {
 

@@ -1,7 +1,7 @@
 // A scene as dump-bodies.scm writes it, and what may be measured on its bodies whatever moves them.
 //
-// The measure of depth is ours (collision/separation.h), the same for all engines: the deepest
-// overlap of any two bodies of which one moves.
+// The measure of depth is ours (collision/distance/separation.h), the same for all engines: the
+// deepest overlap of any two bodies of which one moves.
 //
 // Frames and units: world frame, SI.
 //
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "collision/spatial-hash.h"
+#include "collision/broad/spatial-hash.h"
 #include "geometry/polyhedron.h"
 #include "geometry/shape.h"
 

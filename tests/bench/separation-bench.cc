@@ -8,7 +8,7 @@
 
 #include <random>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 
 namespace tw {
 namespace {

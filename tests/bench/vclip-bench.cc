@@ -21,8 +21,8 @@
 #include <string>
 
 #include "bench/bench-tools.h"
-#include "collision/near-parts.h"
-#include "collision/separation.h"
+#include "collision/broad/near-parts.h"
+#include "collision/distance/separation.h"
 #include "unit/convex-oracles.h"
 
 namespace tw::bench {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "collision/sat.h"
+#include "collision/distance/sat.h"
 
 namespace tw::bench {
 

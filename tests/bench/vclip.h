@@ -2,8 +2,8 @@
 // points lie in each other's Voronoi regions.
 //
 // Source: B. Mirtich, "V-Clip: Fast and Robust Polyhedral Collision Detection", ACM Transactions on
-// Graphics 17(3), 1998.  Here it stands to be measured beside collision/gjk.h; no part of the
-// program uses it (doc/vclip.md).
+// Graphics 17(3), 1998.  Here it stands to be measured beside collision/distance/gjk.h; no part of
+// the program uses it (doc/vclip.md).
 //
 // Legend: the region of a vertex is bounded by a plane across each of its edges (VE), that of an
 // edge by two of these and by a plane along it for each of its faces (FE), that of a face by the FE

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::test {
 namespace {

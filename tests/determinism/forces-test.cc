@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "determinism/compare-schedules.h"
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "support/callback-scenes.h"
 
 namespace tw::test {

@@ -42,7 +42,7 @@ TEST(Heaps, heap_of_boxes_balls_and_rocks_under_adversaries) {
   expect_same_under_adversaries(heaps()[0], 50);
 }
 
-// Large enough that blows divide its groups (groups/region.cc).
+// Large enough that blows divide its groups (groups/regroup/region.cc).
 TEST(Heaps, large_heap_in_regions_under_adversaries) {
   std::vector<Schedule> schedules;
   for (std::uint64_t seed = 0; seed < (long_tests() ? 30u : 6u); ++seed) {

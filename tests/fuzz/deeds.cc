@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "collision/ray.h"
-#include "collision/separation.h"
+#include "collision/distance/ray.h"
+#include "collision/distance/separation.h"
 #include "support/counter.h"
 
 namespace tw::fuzz {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "integrate/keyframes.h"
-#include "kernel/world.h"
+#include "integrate/given/keyframes.h"
+#include "kernel/world/world.h"
 #include "multibody/tree.h"
 
 namespace tw::fuzz {

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "fuzz/apart.h"
 #include "fuzz/draft.h"
 #include "fuzz/generator.h"

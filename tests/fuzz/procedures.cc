@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "integrate/sampled-motion.h"
+#include "integrate/given/sampled-motion.h"
 
 namespace tw::fuzz {
 namespace {

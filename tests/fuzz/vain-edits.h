@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::fuzz {
 

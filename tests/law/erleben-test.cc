@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/polyhedron.h"
-#include "kernel/callback.h"
+#include "kernel/world/callback.h"
 #include "support/known-fault.h"
 #include "support/stability.h"
 

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "collision/separation.h"
-#include "integrate/keyframes.h"
+#include "collision/distance/separation.h"
+#include "integrate/given/keyframes.h"
 
 #include "support/scene.h"
 #include "support/schedule.h"

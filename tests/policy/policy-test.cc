@@ -1,7 +1,7 @@
 // Policies of every kind that the interface can express commit the same history: the schedule never
 // changes the answer.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/policy.h"
+#include "kernel/loop/policy.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "kernel/kernel.h"
+#include "kernel/loop/kernel.h"
 #include "support/callback-scenes.h"
 #include "support/schedule.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/interruption.h"
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "support/schedule.h"
 
 namespace tw::test {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "kernel/kernel.h"
-#include "kernel/reading.h"
-#include "kernel/validate.h"
+#include "kernel/check/validate.h"
+#include "kernel/loop/kernel.h"
+#include "kernel/report/reading.h"
 
 namespace tw {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 #include "support/case-table.h"
 
 namespace tw::test {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <memory>
 
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::test {
 

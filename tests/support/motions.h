@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "base/error.h"
-#include "integrate/sampled-motion.h"
+#include "integrate/given/sampled-motion.h"
 
 namespace tw::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "geometry/shape.h"
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 #include "multibody/multibody.h"
 #include "support/scene.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/random.h"
-#include "kernel/world.h"
+#include "kernel/world/world.h"
 
 namespace tw::test {
 

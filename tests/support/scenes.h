@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "support/case-file.h"
 #include "support/motions.h"
 #include "support/scene.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "groups/check-times.h"
-#include "groups/end-test.h"
-#include "groups/regroup.h"
+#include "groups/ends/check-times.h"
+#include "groups/ends/end-test.h"
+#include "groups/regroup/regroup.h"
 #include "integrate/standing.h"
 
 namespace tw::test {

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "geometry/shape.h"
-#include "groups/regroup.h"
-#include "kernel/make-body.h"
-#include "kernel/simulation.h"
+#include "groups/regroup/regroup.h"
+#include "kernel/loop/simulation.h"
+#include "kernel/world/make-body.h"
 
 namespace tw::test {
 

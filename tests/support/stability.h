@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "multibody/multibody.h"
 #include "support/schedule.h"
 

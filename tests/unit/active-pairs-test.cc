@@ -1,6 +1,6 @@
 // The table of active pairs against a map of pairs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/active-pairs.h"
+#include "kernel/loop/active-pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Factorisation of matrices of 6 x 6 blocks.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/body-matrix.h"
+#include "integrate/implicit/body-matrix.h"
 
 #include <gtest/gtest.h>
 

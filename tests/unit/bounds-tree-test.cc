@@ -1,6 +1,6 @@
 // Bounds of runs of motions, added up by blocks and one by one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/bounds-tree.h"
+#include "integrate/arc/bounds-tree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Moving and standing boxes against all pairs, while the moving ones creep within their zones and
 // leave them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/broad-phase.h"
+#include "collision/broad/broad-phase.h"
 
 #include <gtest/gtest.h>
 

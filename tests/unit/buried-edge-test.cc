@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/random.h"
-#include "collision/manifold-parts.h"
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
+#include "collision/manifold/manifold-parts.h"
 #include "convex-oracles.h"
 #include "seam-ground.h"
 

@@ -1,6 +1,6 @@
 // The book of callbacks without a loop: ticks, rollbacks, checkpoints.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/callback-book.h"
+#include "kernel/loop/callback-book.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "integrate/group-system.h"
+#include "integrate/implicit/group-system.h"
 #include "support/random-tree.h"
 
 namespace tw::test {

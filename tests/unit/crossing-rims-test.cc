@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "collision/distance/separation.h"
 #include "collision/seams/seams.h"
-#include "collision/separation.h"
 #include "convex-oracles.h"
 #include "seam-ground.h"
 

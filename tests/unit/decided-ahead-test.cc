@@ -1,6 +1,6 @@
 // What was decided ahead is there for its event for as long as what it was made of stands.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/decided-ahead.h"
+#include "kernel/loop/decided-ahead.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Delivery and the committed present without a loop: order, errors, and going on from a copy.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/delivery.h"
+#include "kernel/report/delivery.h"
 
 #include <gtest/gtest.h>
 

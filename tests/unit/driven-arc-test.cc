@@ -1,14 +1,14 @@
 // Driven arcs: bounds hold, the answer does not depend on who asks, methods agree; force laws have
 // the derivatives that they tell.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/driven-arc.h"
+#include "integrate/explicit/driven-arc.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/random.h"
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "integrate/standing.h"
 #include "support/anchored-spring.h"
 

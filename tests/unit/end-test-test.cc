@@ -1,10 +1,10 @@
 // The end test without a world: arcs end where their contacts stop telling the truth.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "groups/end-test.h"
+#include "groups/ends/end-test.h"
 
 #include <gtest/gtest.h>
 
-#include "groups/propagation.h"
+#include "groups/regroup/propagation.h"
 #include "support/small-scene.h"
 
 namespace tw::test {

@@ -1,6 +1,6 @@
 // Cutting a face down to what lies over another one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/face-contact.h"
+#include "collision/manifold/face-contact.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "integrate/group-system.h"
+#include "integrate/implicit/group-system.h"
 #include "integrate/standing.h"
 #include "support/anchored-spring.h"
 

@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "base/error.h"
-#include "collision/manifold.h"
-#include "collision/near-parts.h"
-#include "collision/ray.h"
+#include "collision/broad/near-parts.h"
+#include "collision/distance/ray.h"
+#include "collision/distance/separation.h"
+#include "collision/manifold/manifold.h"
 #include "collision/seams/seams.h"
-#include "collision/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

@@ -1,6 +1,6 @@
 // Exact impact times.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/impact-time.h"
+#include "collision/distance/impact-time.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // What an arc keeps of joints: its bounds hold, whatever stretch is asked for.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/joint-record.h"
+#include "integrate/arc/joint-record.h"
 
 #include <gtest/gtest.h>
 
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "multibody/coordinates.h"
 #include "support/motions.h"
 #include "support/random-tree.h"

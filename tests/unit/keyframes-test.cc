@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "support/scene.h"
 
 namespace tw::test {

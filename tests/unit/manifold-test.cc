@@ -1,6 +1,6 @@
 // Contact manifolds: features, depths, names, and what their points leave out.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/manifold.h"
+#include "collision/manifold/manifold.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/constants.h"
-#include "collision/overlap-along.h"
-#include "collision/separation.h"
+#include "collision/distance/overlap-along.h"
+#include "collision/distance/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {
@@ -55,7 +55,7 @@ struct ShallowPose {
   }
 };
 
-// The gap of a point from its features, by the formulas of integrate/group-arc.h.
+// The gap of a point from its features, by the formulas of integrate/arc/group-arc.h.
 double gap_by_feature(const ManifoldPoint& p) {
   const Vec3 r = p.core_point - p.reference_point;
   switch (p.kind) {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

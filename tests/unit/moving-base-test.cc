@@ -1,11 +1,11 @@
 // What hangs on a body whose motion is given: rates of the motion, corners, and what a jump does to
 // joints.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/moving-base.h"
+#include "integrate/given/moving-base.h"
 
 #include <gtest/gtest.h>
 
-#include "integrate/keyframes.h"
+#include "integrate/given/keyframes.h"
 #include "math/rotation-vector.h"
 #include "multibody/accounts.h"
 #include "support/motions.h"

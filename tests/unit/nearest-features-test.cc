@@ -1,12 +1,12 @@
 // Signed distance by climbing against the separating axis test and GJK.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/nearest-features.h"
+#include "collision/distance/nearest-features.h"
 
 #include <gtest/gtest.h>
 
-#include "collision/axis-climb.h"
-#include "collision/gjk.h"
-#include "collision/part-pairs.h"
+#include "collision/distance/axis-climb.h"
+#include "collision/distance/gjk.h"
+#include "collision/distance/part-pairs.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

@@ -1,10 +1,10 @@
 // Pair checks without a loop: which pairs get a record, and what is forgotten after a rollback.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "kernel/pair-checks.h"
+#include "kernel/loop/pair-checks.h"
 
 #include <gtest/gtest.h>
 
-#include "kernel/active-pairs.h"
+#include "kernel/loop/active-pairs.h"
 #include "support/small-simulation.h"
 
 namespace tw::test {

@@ -1,6 +1,6 @@
 // Why the arcs of groups end, without a world.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "groups/planned-end.h"
+#include "groups/ends/planned-end.h"
 
 #include <gtest/gtest.h>
 

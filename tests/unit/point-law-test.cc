@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "integrate/contact-pack.h"
-#include "integrate/group-rows.h"
+#include "integrate/implicit/contact-pack.h"
+#include "integrate/implicit/group-rows.h"
 
 namespace tw::test {
 namespace {

@@ -1,10 +1,10 @@
 // Rays against the distance of the points along them.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/ray.h"
+#include "collision/distance/ray.h"
 
 #include <gtest/gtest.h>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

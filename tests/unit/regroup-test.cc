@@ -1,6 +1,6 @@
 // Contact groups without a world: who owns a contact, who gets a new arc, what is made of it.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "groups/regroup.h"
+#include "groups/regroup/regroup.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Rest without a world: books of stillness, and when a group rests.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "groups/rest.h"
+#include "groups/rest/rest.h"
 
 #include <gtest/gtest.h>
 

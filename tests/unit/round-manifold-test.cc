@@ -5,11 +5,11 @@
 #include <set>
 
 #include "base/constants.h"
-#include "collision/manifold.h"
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
+#include "collision/manifold/manifold.h"
 #include "convex-oracles.h"
-#include "groups/followed-contact.h"
-#include "integrate/group-arc.h"
+#include "groups/contacts/followed-contact.h"
+#include "integrate/arc/group-arc.h"
 #include "integrate/standing.h"
 
 namespace tw::test {

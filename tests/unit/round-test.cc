@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "collision/ellipsoid-point.h"
-#include "collision/frustum-point.h"
-#include "collision/round-distance.h"
-#include "collision/separation.h"
+#include "collision/distance/ellipsoid-point.h"
+#include "collision/distance/frustum-point.h"
+#include "collision/distance/round-distance.h"
+#include "collision/distance/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

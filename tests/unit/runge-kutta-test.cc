@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrate/solution.h"
+#include "integrate/explicit/solution.h"
 
 namespace tw {
 namespace {

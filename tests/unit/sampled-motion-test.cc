@@ -1,6 +1,6 @@
 // Motion by a procedure: the sampled curve against the procedure, its bounds, and where it ends.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "integrate/sampled-motion.h"
+#include "integrate/given/sampled-motion.h"
 
 #include <gtest/gtest.h>
 

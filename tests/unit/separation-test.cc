@@ -1,6 +1,6 @@
 // Signed distance against feature enumeration, libccd and closed forms.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "base/work-count.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The spatial hash against all pairs.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "collision/spatial-hash.h"
+#include "collision/broad/spatial-hash.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "groups/group.h"
-#include "kernel/state-image.h"
+#include "kernel/check/state-image.h"
 
 namespace tw::test {
 namespace {

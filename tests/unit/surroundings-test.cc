@@ -1,6 +1,6 @@
 // The ground around a body.
 // SPDX-License-Identifier: LGPL-3.0-or-later
-#include "groups/surroundings.h"
+#include "groups/contacts/surroundings.h"
 
 #include <gtest/gtest.h>
 

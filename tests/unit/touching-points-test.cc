@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "collision/separation.h"
+#include "collision/distance/separation.h"
 #include "convex-oracles.h"
 
 namespace tw::test {

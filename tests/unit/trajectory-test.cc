@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "analytic/group-arc-scenes.h"
+#include "integrate/arc/member-trajectory.h"
 #include "integrate/flight.h"
-#include "integrate/keyframes.h"
-#include "integrate/member-trajectory.h"
+#include "integrate/given/keyframes.h"
 #include "integrate/standing.h"
 
 namespace tw {

@@ -9,10 +9,10 @@
 #include <limits>
 
 #include "base/constants.h"
-#include "collision/ellipsoid-point.h"
-#include "collision/frustum-point.h"
-#include "collision/manifold-parts.h"
-#include "collision/nearest-to-point.h"
+#include "collision/distance/ellipsoid-point.h"
+#include "collision/distance/frustum-point.h"
+#include "collision/distance/nearest-to-point.h"
+#include "collision/manifold/manifold-parts.h"
 #include "collision/seams/seams.h"
 
 namespace tw {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "collision/part-pairs.h"
+#include "collision/distance/part-pairs.h"
 
 namespace tw {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/constants.h"
-#include "collision/manifold-parts.h"
+#include "collision/distance/support-core.h"
+#include "collision/manifold/manifold-parts.h"
 #include "collision/seams/exposed-edges.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/valley.h"
-#include "collision/support-core.h"
 #include "math/maximum.h"
 
 namespace tw {

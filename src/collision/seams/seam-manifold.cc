@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/constants.h"
-#include "collision/near-parts.h"
+#include "collision/broad/near-parts.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"
 

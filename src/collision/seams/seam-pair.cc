@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "collision/near-parts.h"
+#include "collision/broad/near-parts.h"
 
 namespace tw {
 

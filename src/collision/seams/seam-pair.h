@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/constants.h"
-#include "collision/manifold-parts.h"
+#include "collision/manifold/manifold-parts.h"
 #include "collision/seams/seams.h"
 
 namespace tw {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "base/constants.h"
-#include "collision/face-contact.h"
-#include "collision/nearest-to-point.h"
+#include "collision/distance/nearest-to-point.h"
+#include "collision/manifold/face-contact.h"
 #include "collision/seams/exposed-edges.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "base/constants.h"
+#include "collision/distance/separation.h"
 #include "collision/seams/seam-pair.h"
 #include "collision/seams/seams.h"
 #include "collision/seams/valley.h"
-#include "collision/separation.h"
 
 namespace tw {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/constants.h"
-#include "collision/manifold.h"
+#include "collision/manifold/manifold.h"
 
 namespace tw {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "base/constants.h"
-#include "collision/manifold-parts.h"
-#include "collision/nearest-to-point.h"
+#include "collision/distance/nearest-to-point.h"
+#include "collision/manifold/manifold-parts.h"
 
 namespace tw {
 
