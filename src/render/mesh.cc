@@ -139,87 +139,115 @@ Mesh surface_mesh(const SurfaceMesh& surface, bool tinted) {
   return mesh;
 }
 
-Mesh height_field_mesh(const HeightField& field, bool smooth) {
-  Mesh mesh;
-  const std::size_t rows = field.rows(), columns = field.columns();
-  // by differences over the neighbours, one-sided at the rim
-  const auto slope_normal = [&](std::size_t row, std::size_t column) {
+namespace {
+
+// The mesh of a height field, side by side.
+class HeightFieldMesh {
+ public:
+  explicit HeightFieldMesh(const HeightField& field)
+      : field_(field), rows_(field.rows()), columns_(field.columns()) {}
+
+  void add_smooth_top() {
+    for (std::size_t row = 0; row < rows_; ++row)
+      for (std::size_t column = 0; column < columns_; ++column)
+        add(row * columns_ + column, field_.corner(row, column), slope_normal(row, column));
+    each_cell([&](std::size_t a, std::size_t d) {
+      for (const std::size_t i : {a, a + 1, d + 1, a, d + 1, d}) add_index(i);
+    });
+  }
+  // Cell by cell: parts of many cells would leave cracks beside small ones, and one colour.
+  void add_facets() {
+    each_cell([&](std::size_t a, std::size_t d) {
+      add_facet(a, a + 1, d + 1);
+      add_facet(a, d + 1, d);
+    });
+  }
+  // As deep below the top everywhere as the ground reaches below its lowest corners.
+  void add_underside() {
+    const std::size_t first = mesh_.vertices.size();
+    for (std::size_t row = 0; row < rows_; ++row)
+      for (std::size_t column = 0; column < columns_; ++column)
+        add(row * columns_ + column, field_.corner(row, column) + down_,
+            -slope_normal(row, column));
+    each_cell([&](std::size_t a, std::size_t d) {
+      for (const std::size_t i : {a, d + 1, a + 1, a, d, d + 1}) add_index(first + i);
+    });
+  }
+  // From one corner of the grid to the next.
+  void add_rim() {
+    const std::size_t last_row = (rows_ - 1) * columns_;
+    for (std::size_t i = 0; i + 1 < columns_; ++i) {
+      add_wall(i, i + 1);
+      add_wall(last_row + i + 1, last_row + i);
+    }
+    for (std::size_t i = 0; i < last_row; i += columns_) {
+      add_wall(i + columns_, i);
+      add_wall(i + columns_ - 1, i + 2 * columns_ - 1);
+    }
+  }
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  // Calls visit(a, d) for two corners of each cell, of which d is a row after a.
+  template <class Visit>
+  void each_cell(Visit&& visit) const {
+    for (std::size_t row = 0; row + 1 < rows_; ++row)
+      for (std::size_t column = 0; column + 1 < columns_; ++column)
+        visit(row * columns_ + column, (row + 1) * columns_ + column);
+  }
+  // By differences over the neighbours, one-sided at the rim.
+  Vec3 slope_normal(std::size_t row, std::size_t column) const {
     const auto before = [](std::size_t i) { return i == 0 ? i : i - 1; };
     const Vec3 along_x =
-        field.corner(row, std::min(column + 1, columns - 1)) - field.corner(row, before(column));
+        field_.corner(row, std::min(column + 1, columns_ - 1)) - field_.corner(row, before(column));
     const Vec3 along_y =
-        field.corner(std::min(row + 1, rows - 1), column) - field.corner(before(row), column);
-    return Vec3(along_x.cross(along_y).normalized());
-  };
-  // at a point of the grid, or below it
-  const auto add = [&](std::size_t point, const Vec3& place, const Vec3& normal) {
-    mesh.vertices.push_back({place.cast<float>(), normal.cast<float>()});
-    if (field.has_colors())
-      mesh.vertices.back().tint = linear_color(field.color(point)).cast<float>();
-  };
-  if (smooth) {
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t column = 0; column < columns; ++column)
-        add(row * columns + column, field.corner(row, column), slope_normal(row, column));
-    for (std::size_t row = 0; row + 1 < rows; ++row)
-      for (std::size_t column = 0; column + 1 < columns; ++column) {
-        const auto a = static_cast<std::uint32_t>(row * columns + column);
-        const auto d = static_cast<std::uint32_t>(a + columns);
-        mesh.indices.insert(mesh.indices.end(), {a, a + 1, d + 1, a, d + 1, d});
-      }
-  } else {
-    const auto add_facet = [&](std::size_t a, std::size_t b, std::size_t c) {
-      const Vec3 p = field.corner(a), q = field.corner(b), r = field.corner(c);
-      const Vec3 normal = (q - p).cross(r - p).normalized();
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      add(a, p, normal);
-      add(b, q, normal);
-      add(c, r, normal);
-      add_fan(mesh, first, 3);
-    };
-    // cell by cell: parts of many cells would leave cracks beside small ones, and one colour
-    for (std::size_t row = 0; row + 1 < rows; ++row)
-      for (std::size_t column = 0; column + 1 < columns; ++column) {
-        const std::size_t a = row * columns + column, d = a + columns;
-        add_facet(a, a + 1, d + 1);
-        add_facet(a, d + 1, d);
-      }
+        field_.corner(std::min(row + 1, rows_ - 1), column) - field_.corner(before(row), column);
+    return along_x.cross(along_y).normalized();
   }
-
-  // the underside, as deep below the top everywhere as the ground reaches below its lowest corners
-  const Vec3 down = -field.depth() * Vec3::UnitZ();
-  const auto first_below = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column)
-      add(row * columns + column, field.corner(row, column) + down, -slope_normal(row, column));
-  for (std::size_t row = 0; row + 1 < rows; ++row)
-    for (std::size_t column = 0; column + 1 < columns; ++column) {
-      const auto a = first_below + static_cast<std::uint32_t>(row * columns + column);
-      const auto d = static_cast<std::uint32_t>(a + columns);
-      mesh.indices.insert(mesh.indices.end(), {a, d + 1, a + 1, a, d, d + 1});
-    }
-
-  // the rim, from one corner of the grid to the next
-  const auto add_wall = [&](std::size_t from, std::size_t to) {
-    const Vec3 p = field.corner(from), q = field.corner(to);
+  // At a point of the grid, or below it.
+  void add(std::size_t point, const Vec3& place, const Vec3& normal) {
+    mesh_.vertices.push_back({place.cast<float>(), normal.cast<float>()});
+    if (field_.has_colors())
+      mesh_.vertices.back().tint = linear_color(field_.color(point)).cast<float>();
+  }
+  void add_index(std::size_t i) { mesh_.indices.push_back(static_cast<std::uint32_t>(i)); }
+  void add_facet(std::size_t a, std::size_t b, std::size_t c) {
+    const Vec3 p = field_.corner(a), q = field_.corner(b), r = field_.corner(c);
+    const Vec3 normal = (q - p).cross(r - p).normalized();
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+    add(a, p, normal);
+    add(b, q, normal);
+    add(c, r, normal);
+    add_fan(mesh_, first, 3);
+  }
+  void add_wall(std::size_t from, std::size_t to) {
+    const Vec3 p = field_.corner(from), q = field_.corner(to);
     const Vec3 outward = (q - p).cross(Vec3::UnitZ()).normalized();
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     add(from, p, outward);
-    add(from, p + down, outward);
-    add(to, q + down, outward);
+    add(from, p + down_, outward);
+    add(to, q + down_, outward);
     add(to, q, outward);
-    add_fan(mesh, first, 4);
-  };
-  const std::size_t last_row = (rows - 1) * columns;
-  for (std::size_t i = 0; i + 1 < columns; ++i) {
-    add_wall(i, i + 1);
-    add_wall(last_row + i + 1, last_row + i);
+    add_fan(mesh_, first, 4);
   }
-  for (std::size_t i = 0; i < last_row; i += columns) {
-    add_wall(i + columns, i);
-    add_wall(i + columns - 1, i + 2 * columns - 1);
-  }
-  return mesh;
+
+  const HeightField& field_;
+  const std::size_t rows_, columns_;
+  const Vec3 down_ = -field_.depth() * Vec3::UnitZ();
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh height_field_mesh(const HeightField& field, bool smooth) {
+  HeightFieldMesh mesh(field);
+  if (smooth)
+    mesh.add_smooth_top();
+  else
+    mesh.add_facets();
+  mesh.add_underside();
+  mesh.add_rim();
+  return mesh.take();
 }
 
 Mesh facet_sphere_mesh() {

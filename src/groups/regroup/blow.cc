@@ -49,6 +49,14 @@ class Struck {
   bool is_known(BodyId id);
   std::uint32_t add_slot(BodyId id, const ImpulseSlot& slot);
   std::uint32_t slot_of(BodyId id);
+  struct Tie {
+    BodyId a, b;
+  };
+  struct Unit {
+    std::vector<BodyId> bodies;
+    std::vector<Tie> ties;
+  };
+  Unit unit_of(BodyId id);
   void add_unit(BodyId id);
   Successor& successor_of(BodyId id);
   void open(BodyId id);
@@ -117,24 +125,21 @@ Successor& Struck::successor_of(BodyId id) {
 
 // What answers as one with the body: the links of its multibody that touch or are held, and all
 // that holds tie to it.
-void Struck::add_unit(BodyId id) {
-  std::vector<BodyId> unit{id};
-  struct Tie {
-    BodyId a, b;
-  };
-  std::vector<Tie> ties;
+Struck::Unit Struck::unit_of(BodyId id) {
+  Unit unit{{id}, {}};
+  std::vector<BodyId>& bodies = unit.bodies;
   const auto add = [&](BodyId other) {
-    if (std::find(unit.begin(), unit.end(), other) == unit.end()) unit.push_back(other);
+    if (std::find(bodies.begin(), bodies.end(), other) == bodies.end()) bodies.push_back(other);
   };
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    const Body& member = body(unit[i]);
-    if (!member.dynamic() || !is_known(unit[i])) continue;
-    const State& state = before_.state_of(unit[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& member = body(bodies[i]);
+    if (!member.dynamic() || !is_known(bodies[i])) continue;
+    const State& state = before_.state_of(bodies[i]);
     if (state.error) continue;
     const auto tie = [&](const Bond& bond) {
       if (!bond.is_firm()) return;
-      add(bond.other(unit[i]));
-      if (bond.a == unit[i] || !body(bond.a).dynamic()) ties.push_back({bond.a, bond.b});
+      add(bond.other(bodies[i]));
+      if (bond.a == bodies[i] || !body(bond.a).dynamic()) unit.ties.push_back({bond.a, bond.b});
     };
     for (const BondPtr& bond : bonds_of(state.forces)) tie(*bond);
     if (state.forces)
@@ -150,6 +155,13 @@ void Struck::add_unit(BodyId id) {
       if (all_links_ || touches || struck || theirs.forces) add(link);
     }
   }
+  return unit;
+}
+
+void Struck::add_unit(BodyId id) {
+  const Unit found = unit_of(id);
+  const std::vector<BodyId>& unit = found.bodies;
+  const std::vector<Tie>& ties = found.ties;
   if (stops()) return;
 
   const auto stands = [&](BodyId member) {

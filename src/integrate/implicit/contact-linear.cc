@@ -111,6 +111,29 @@ TW_LANES LaneVec stretched(const PackLinear& o, const LaneVec& y) {
   return o.m1 * (y - dot(o.n, y) * o.n) + (o.m2 * dot(o.t, y)) * o.t;
 }
 
+// What a change does to the load, the depth and the normal.
+struct NormalChange {
+  Lanes load, deeper;
+  LaneVec normal;
+};
+
+// Of what resists turns.
+template <bool flat, bool grounded, bool forces>
+TW_LANES void change_resistance(const PackLinear& o, const LaneChange& a, const LaneChange& b,
+                                const PackSides* sides, const NormalChange& by, PackChange& out) {
+  const ResistanceLinear& r = o.resistance;
+  LaneVec dw = b.w;
+  if constexpr (!grounded) dw = dw - a.w - cross(a.th, o.dw);
+  LaneVec torque = by.load * r.m + by.deeper * r.harder + change_by_turn(r, dw);
+  if constexpr (!flat) torque = torque + change_by_normal(r, by.normal);
+  out.bending = torque + by.deeper * r.relaxing;
+  if constexpr (forces) {
+    torque = torque + bent(r, out.bending - r.c * sides->bend);
+    if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
+    out.torque = o.deep ? out.torque + torque : torque;
+  }
+}
+
 // `grounded`: body a does not change; `sides`: null where neither forces nor torques are wanted
 template <ContactFeature feature, bool grounded, bool forces>
 void change(const ContactPack& pack, const PackLinear& o, const BodyChange* changes,
@@ -179,19 +202,8 @@ void change(const ContactPack& pack, const PackLinear& o, const BodyChange* chan
       if constexpr (!grounded) out.torque = out.torque + o.turn_damper * a.w;
     }
   }
-  if (pack.bend >= 0) {
-    const ResistanceLinear& r = o.resistance;
-    LaneVec dw = b.w;
-    if constexpr (!grounded) dw = dw - a.w - cross(a.th, o.dw);
-    LaneVec torque = dN * r.m + deeper * r.harder + change_by_turn(r, dw);
-    if constexpr (!flat) torque = torque + change_by_normal(r, dn);
-    out.bending = torque + deeper * r.relaxing;
-    if constexpr (forces) {
-      torque = torque + bent(r, out.bending - r.c * sides->bend);
-      if constexpr (!grounded) torque = torque + cross(a.th, r.torque);
-      out.torque = o.deep ? out.torque + torque : torque;
-    }
-  }
+  if (pack.bend >= 0)
+    change_resistance<is_flat(feature), grounded, forces>(o, a, b, sides, {dN, deeper, dn}, out);
   if constexpr (forces && !grounded) out.f = out.f + cross(a.th, o.f);
 }
 
@@ -395,40 +407,97 @@ TW_LANES void set_resisting(const PackLinear& o, Resisting& r) {
   if constexpr (!flat) r.by_normal = columns(normal);
 }
 
+// How the normal and the point follow a displacement dp of b's material there and a turn dom of b
+// against a, in a's frame.
+struct PointTurns {
+  LaneMat n_p, n_om;             // dn' by dp and dom
+  LaneMat turn, point_om, keep;  // the point by dp, keep = 1 - turn, and by dom: -radius_b dn', and
+                                 // what runs
+};
+
+template <ContactFeature feature>
+TW_LANES void set_point_turns(const ContactPack& pack, const PackLinear& o, PointTurns& p) {
+  p.keep = scalar_matrix(lanes(1));
+  if constexpr (runs(feature)) {
+    const RunningPoint& r = o.running;
+    p.n_p = outer(r.ma, r.turn_p);
+    p.n_om = outer(r.ma, r.turn_om);
+    p.turn = outer(pack.radius_b * r.ma, r.turn_p) - outer(r.path, r.along_p);
+    p.point_om = outer(r.path, r.along_om) - outer(pack.radius_b * r.ma, r.turn_om);
+  } else if constexpr (turns_normal(feature)) {
+    p.n_p = o.turn;
+    p.n_om = o.turn * o.roll;
+    p.turn = pack.radius_b * p.n_p + o.bulge * p.n_p;
+    p.point_om = o.roll - o.bulge * p.n_om - pack.radius_b * p.n_om;
+  } else if constexpr (rolls(feature)) {
+    p.point_om = o.roll;
+  } else if constexpr (!is_flat(feature)) {
+    p.n_p = normal_turn(pack, o);
+    p.turn = pack.radius_b * p.n_p;
+  }
+  if constexpr (!is_flat(feature)) p.keep = p.keep - p.turn;
+}
+
+// What of the force, as a sees it, changes by v, w and the rotation th of one of the bodies, and
+// the point by th.
+struct ForceTurns {
+  const LaneMat &f_v, &f_w, &f_th_in_a, &dp_th;
+  Lanes sign, inverse;  // 1 for b, -1 for a; 1/sigma
+  bool of_a;
+};
+
+// dM by v and L, with dN = n.df + f.dn' and dd = -n.dp.
+template <ContactFeature feature>
+TW_LANES void set_resisting_block(const PackLinear& o, const Resisting& r, const PointTurns& point,
+                                  const ForceTurns& by, const LaneBody& body, LaneMat& by_v,
+                                  LaneMat& by_L) {
+  const auto load_of = [&](const LaneMat& df) { return transposed_times(df, o.n); };
+  const Lanes sign = by.sign;
+  const LaneMat by_depth = outer(r.by_depth, -o.n);
+  by_v = outer(r.m, load_of(by.f_v)) + (sign * by.inverse) * by_depth;
+  LaneMat by_th = outer(r.m, load_of(by.f_th_in_a)) + by_depth * by.dp_th;
+  if constexpr (!is_flat(feature)) {
+    const LaneMat n_v = (sign * by.inverse) * point.n_p;
+    LaneMat n_th = point.n_p * by.dp_th;
+    if constexpr (turns_normal(feature)) n_th = n_th + sign * point.n_om;
+    by_v = by_v + r.by_normal * n_v;
+    by_th = by_th + r.by_normal * n_th;
+  }
+  if (by.of_a) by_th = by_th + times_cross(r.by_turn, o.dw) - cross_lanes(o.resistance.torque);
+  by_L = by_th * body.P + (outer(r.m, load_of(by.f_w)) + sign * r.by_turn) * body.V;
+}
+
+// The arms of the force about a and b, by v and L.
+template <ContactFeature feature>
+TW_LANES void set_arms(const ContactPack& pack, const PackLinear& o, const PointTurns& point,
+                       const ForceTurns& by, const LaneMat& P, LaneMat (&by_v)[2],
+                       LaneMat (&by_L)[2]) {
+  constexpr bool flat = is_flat(feature), moves = rolls(feature) || runs(feature);
+  LaneMat sa_th, sb_th = scalar_matrix(lanes(0));
+  sa_th = flat ? by.dp_th : point.keep * by.dp_th;
+  if constexpr (moves) sa_th = sa_th + by.sign * point.point_om;
+  if constexpr (rolls(feature) || !flat) sb_th = sa_th - by.dp_th;
+  if (by.of_a) {
+    sa_th = sa_th - cross_lanes(o.sa);
+    sb_th = sb_th + pack.radius_b * cross_lanes(o.n);
+  } else {
+    sb_th = sb_th - cross_lanes(o.rb);
+  }
+  by_v[0] = (by.sign * by.inverse) * point.keep;
+  by_v[1] = scalar_matrix(lanes(0));
+  if constexpr (!flat) by_v[1] = (-by.sign * by.inverse) * point.turn;
+  by_L[0] = sa_th * P;
+  by_L[1] = sb_th * P;
+}
+
 template <ContactFeature feature>
 void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const LaneBody* body,
             PackBlocks& out) {
   constexpr bool flat = is_flat(feature), running = runs(feature), rolling = rolls(feature);
   constexpr bool turning = turns_normal(feature);
-
-  // dn' by dp and dom
-  LaneMat n_p, n_om;
-  if constexpr (running) {
-    n_p = outer(o.running.ma, o.running.turn_p);
-    n_om = outer(o.running.ma, o.running.turn_om);
-  } else if constexpr (turning) {
-    n_p = o.turn;
-    n_om = o.turn * o.roll;
-  } else if constexpr (!flat) {
-    n_p = normal_turn(pack, o);
-  }
-
-  // the point by dp, keep = 1 - turn, and by dom: -radius_b dn', and what runs
-  LaneMat turn, point_om, keep = scalar_matrix(lanes(1));
-  if constexpr (running) {
-    const RunningPoint& r = o.running;
-    turn = outer(pack.radius_b * r.ma, r.turn_p) - outer(r.path, r.along_p);
-    point_om = outer(r.path, r.along_om) - outer(pack.radius_b * r.ma, r.turn_om);
-  } else if constexpr (turning) {
-    turn = pack.radius_b * n_p + o.bulge * n_p;
-    point_om = o.roll - o.bulge * n_om - pack.radius_b * n_om;
-  } else if constexpr (rolling) {
-    point_om = o.roll;
-  } else if constexpr (!flat) {
-    turn = pack.radius_b * n_p;
-  }
-  if constexpr (!flat) keep = keep - turn;
-
+  PointTurns point;
+  set_point_turns<feature>(pack, o, point);
+  const auto& [n_p, n_om, turn, point_om, keep] = point;
   LaneMat fp, fv, fom;
   force_derivatives<feature>(o, n_p, n_om, fp, fv, fom);
   const Lanes inverse = lanes(1 / sigma);
@@ -467,41 +536,12 @@ void blocks(const ContactPack& pack, const PackLinear& o, double sigma, const La
     const LaneMat f_v = sign * by_v;
     const LaneMat f_L = f_th * P + f_w * V;
 
-    // arms by v and th
-    LaneMat sa_th, sb_th = scalar_matrix(lanes(0));
-    sa_th = flat ? dp_th : keep * dp_th;
-    if constexpr (rolling || running) sa_th = sa_th + sign * point_om;
-    if constexpr (rolling || !flat) sb_th = sa_th - dp_th;
-    if (X == 0) {
-      sa_th = sa_th - cross_lanes(o.sa);
-      sb_th = sb_th + pack.radius_b * cross_lanes(o.n);
-    } else {
-      sb_th = sb_th - cross_lanes(o.rb);
-    }
-    const LaneMat sa_v = (sign * inverse) * keep;
-    LaneMat sb_v = scalar_matrix(lanes(0));
-    if constexpr (!flat) sb_v = (-sign * inverse) * turn;
-    const LaneMat s_v[2] = {sa_v, sb_v}, s_L[2] = {sa_th * P, sb_th * P};
-
-    // dM, with dN = n.df + f.dn' and dd = -n.dp
+    LaneMat s_v[2], s_L[2];
+    const ForceTurns turns{f_v, f_w, f_th_in_a, dp_th, sign, inverse, X == 0};
+    set_arms<feature>(pack, o, point, turns, P, s_v, s_L);
     LaneMat resist_v, resist_L;
-    if (resists) {
-      const auto load_of = [&](const LaneMat& df) { return transposed_times(df, o.n); };
-      const LaneMat by_depth = outer(resisting.by_depth, -o.n);
-      resist_v = outer(resisting.m, load_of(f_v)) + (sign * inverse) * by_depth;
-      LaneMat resist_th = outer(resisting.m, load_of(f_th_in_a)) + by_depth * dp_th;
-      if constexpr (!flat) {
-        const LaneMat n_v = (sign * inverse) * n_p;
-        LaneMat n_th = n_p * dp_th;
-        if constexpr (turning) n_th = n_th + sign * n_om;
-        resist_v = resist_v + resisting.by_normal * n_v;
-        resist_th = resist_th + resisting.by_normal * n_th;
-      }
-      if (X == 0)
-        resist_th =
-            resist_th + times_cross(resisting.by_turn, o.dw) - cross_lanes(o.resistance.torque);
-      resist_L = resist_th * P + (outer(resisting.m, load_of(f_w)) + sign * resisting.by_turn) * V;
-    }
+    if (resists)
+      set_resisting_block<feature>(o, resisting, point, turns, body[X], resist_v, resist_L);
 
     // torque s x f, force; on a with the opposite sign
     for (int Y = pack.grounded ? 1 : 0; Y < 2; ++Y) {

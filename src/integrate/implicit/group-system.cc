@@ -158,6 +158,19 @@ void GroupSystem::place_outside(int slot, double time, BodyKinematics& body) con
   store_rotation(there.q.toRotationMatrix(), body.R);
 }
 
+// Springs and holds.
+void GroupSystem::add_bond_wrenches(const double* y, GroupScratch& s) const {
+  for (const HeldPair& pair : bonds_) {
+    const auto& [a, b, bond] = pair.given;
+    const Bond::Wrenches pull =
+        bond->wrenches(point_of(a, y, s.bodies[index(a)]), point_of(b, y, s.bodies[index(b)]));
+    vec(s.wrenches[index(a)].f) += pull.a.force;
+    vec(s.wrenches[index(a)].t) += pull.a.torque;
+    vec(s.wrenches[index(b)].f) += pull.b.force;
+    vec(s.wrenches[index(b)].t) += pull.b.torque;
+  }
+}
+
 template <bool with_derivative>
 void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, double* slope) const {
   // bodies
@@ -209,16 +222,7 @@ void GroupSystem::evaluate_as(double time, const double* y, GroupScratch& s, dou
     scatter(pack, state.f, on_a, on_b, s.wrenches.data());
   }
 
-  // springs and holds
-  for (const HeldPair& pair : bonds_) {
-    const auto& [a, b, bond] = pair.given;
-    const Bond::Wrenches pull =
-        bond->wrenches(point_of(a, y, s.bodies[index(a)]), point_of(b, y, s.bodies[index(b)]));
-    vec(s.wrenches[index(a)].f) += pull.a.force;
-    vec(s.wrenches[index(a)].t) += pull.a.torque;
-    vec(s.wrenches[index(b)].f) += pull.b.force;
-    vec(s.wrenches[index(b)].t) += pull.b.torque;
-  }
+  add_bond_wrenches(y, s);
 
   // forces
   for (int i = 0; i < members_; ++i) {

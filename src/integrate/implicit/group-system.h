@@ -136,6 +136,7 @@ class GroupSystem {
   template <bool with_derivative>
   void evaluate_as(double time, const double* y, GroupScratch& scratch, double* slope) const;
   PoseTwist point_of(int member, const double* y, const BodyKinematics& body) const;
+  void add_bond_wrenches(const double* y, GroupScratch& scratch) const;
   void difference_slopes(double time, double step, const double* y, const double* slope,
                          GroupScratch& scratch, double* time_slope) const;
   void place_outside(int slot, double time, BodyKinematics& body) const;

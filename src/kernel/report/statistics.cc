@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <sstream>
 #include <string>
@@ -61,57 +62,62 @@ std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation) {
   return result;
 }
 
-StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
-                              const WorkCount& work) {
-  const Scene& scene = simulation.scene;
-  const StateGraph& graph = simulation.graph;
+namespace {
+
+// Arcs that still stand count up to the present, with those that are done with.
+struct Integrated {
+  double length = 0, kinematic_work = 0;  // s, J
+  std::uint64_t arcs = 0;                 // each step of those that are stepped
+  std::uint64_t implicit = 0, factorizations = 0;
+};
+
+Integrated integrated_by(const Simulation& simulation) {
   const Present& present = simulation.present;
   const Counters& counters = present.counters;
-  std::int64_t moving = 0;
-  for (const auto& body : scene.bodies) moving += !body->fixed();
-
-  // arcs that still stand count up to the present
-  double length = counters.integration_length, kinematic_work = counters.kinematic_work;
-  std::uint64_t kinematic_arcs = 0;
-  // of arcs that still stand
-  std::uint64_t steps = 0, implicit = 0, factorizations = 0;
-  for (const auto& body : scene.bodies) {
+  Integrated sum{counters.integration_length, counters.kinematic_work, counters.integrations,
+                 counters.implicit_steps, counters.factorizations};
+  for (const auto& body : simulation.scene.bodies) {
     if (body->info.kind == BodyKind::kinematic) {
-      length += present.time;
-      ++kinematic_arcs;
+      sum.length += present.time;
+      ++sum.arcs;
     }
     if (!body->dynamic()) continue;
-    for (const State* s = graph.head(body->process); s; s = s->next) {
+    for (const State* s = simulation.graph.head(body->process); s; s = s->next) {
       if (s->key.time > present.time) break;
       const State* next = s->next;
       const auto until = [&] { return std::min(present.time, next ? next->key.time : never); };
-      kinematic_work += kinematic_work_of(simulation, *s, until());
+      sum.kinematic_work += kinematic_work_of(simulation, *s, until());
       const bool stepped = s->trajectory().stepped();
       while (stepped && next && !next->starts_arc()) next = next->next;
-      length += integrated_length(*s, until());
-      if (stepped && s->starts_arc()) {
-        const Effort effort = s->trajectory().effort();
-        steps += effort.steps;
-        if (effort.implicit) implicit += effort.steps;
-        factorizations += effort.factorizations;
-      }
+      sum.length += integrated_length(*s, until());
+      if (!stepped || !s->starts_arc()) continue;
+      const Effort effort = s->trajectory().effort();
+      sum.arcs += effort.steps;
+      if (effort.implicit) sum.implicit += effort.steps;
+      sum.factorizations += effort.factorizations;
     }
   }
+  return sum;
+}
 
-  const double bodies_moving = static_cast<double>(std::max<std::int64_t>(1, moving));
-  const std::uint64_t integrations = counters.integrations + kinematic_arcs + steps;
+void add(StatisticsTable& table, StatisticsTable rows) {
+  std::move(rows.begin(), rows.end(), std::back_inserter(table));
+}
+
+StatisticsTable motion_rows(const Simulation& simulation, const Delivery& delivery,
+                            const Integrated& sum) {
+  const Present& present = simulation.present;
+  const Counters& counters = present.counters;
+  const Scene& scene = simulation.scene;
+  std::int64_t bodies_moving = 0;
+  for (const auto& body : scene.bodies) bodies_moving += !body->fixed();
+  const double moving = static_cast<double>(std::max<std::int64_t>(1, bodies_moving));
   const std::uint64_t discontinuities =
       counters.collisions + counters.fusions + counters.fissions + counters.callback_changes;
-  const double frames = std::max(1.0, present.time * delivery.fps());
-  constexpr std::size_t shown = 5;
-  std::string dearest[shown];
-  const std::vector<DearestGroup> groups = dearest_groups_of(simulation);
-  for (std::size_t i = 0; i < std::min(shown, groups.size()); ++i) dearest[i] = line_of(groups[i]);
-
-  StatisticsTable table{
+  return {
       {"duration", present.time},
       {"frames", std::int64_t{delivery.frames()}},
-      {"bodies_moving", moving},
+      {"bodies_moving", bodies_moving},
       {"bodies_total", whole(scene.bodies.size() - present.removals)},
       {"discontinuities", whole(discontinuities)},
       {"collisions", whole(counters.collisions)},
@@ -121,14 +127,22 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"contact_changes", whole(counters.contact_changes)},
       {"avg_time_between_discontinuities",
        ratio(present.time, static_cast<double>(discontinuities))},
-      {"avg_integration_step", ratio(length, static_cast<double>(integrations))},
-      {"integrations", whole(integrations)},
-      {"integration_per_moving_body", length / bodies_moving},
-      {"rollback_per_moving_body", counters.rollback_length / bodies_moving},
+      {"avg_integration_step", ratio(sum.length, static_cast<double>(sum.arcs))},
+      {"integrations", whole(sum.arcs)},
+      {"integration_per_moving_body", sum.length / moving},
+      {"rollback_per_moving_body", counters.rollback_length / moving},
       {"rollbacks", whole(counters.rollbacks)},
       {"states_rolled_back", whole(counters.states_removed)},
       {"deepest_rollback", counters.deepest_rollback},
       {"largest_cascade", whole(counters.deepest_cascade)},
+  };
+}
+
+StatisticsTable work_rows(const Simulation& simulation, const Delivery& delivery,
+                          const WorkCount& work) {
+  const Counters& counters = simulation.present.counters;
+  const double frames = std::max(1.0, simulation.present.time * delivery.fps());
+  return {
       {"cpu_seconds", counters.cpu_seconds},
       {"cpu_seconds_per_frame", counters.cpu_seconds / frames},
       {"threads", std::int64_t{simulation.threads()}},
@@ -143,6 +157,12 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"active_pairs_avg", ratio(counters.pair_sum, static_cast<double>(counters.events))},
       {"distance_queries", whole(work.distance_queries)},
       {"callbacks_run", whole(counters.callbacks_run)},
+  };
+}
+
+StatisticsTable group_rows(const Simulation& simulation, const Integrated& sum) {
+  const Counters& counters = simulation.present.counters;
+  StatisticsTable table{
       {"groups", whole(counters.groups)},
       {"group_checks", whole(counters.group_checks)},
       {"checks_decided_ahead", whole(counters.checks_decided_ahead)},
@@ -155,9 +175,20 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"largest_group_contacts", whole(counters.largest_group_contacts)},
       {"early_ends", whole(counters.early_ends)},
       {"manifolds", whole(counters.manifolds)},
-      {"implicit_steps", whole(counters.implicit_steps + implicit)},
+      {"implicit_steps", whole(sum.implicit)},
       {"rejected_steps", whole(counters.rejected_steps)},
-      {"factorizations", whole(counters.factorizations + factorizations)},
+      {"factorizations", whole(sum.factorizations)},
+  };
+  for (std::size_t i = 0; i < end_names.size(); ++i)
+    table.push_back({std::string("arcs_ended_") + end_names[i], whole(counters.arcs_ended.of[i])});
+  return table;
+}
+
+// What was dear.
+StatisticsTable dear_rows(const Simulation& simulation) {
+  const Counters& counters = simulation.present.counters;
+  const Scene& scene = simulation.scene;
+  StatisticsTable table{
       {"dearest_pair_checks", whole(counters.dearest_pair_checks)},
       {"dearest_pair",
        counters.dearest_pair_checks > 0 ? names_of(scene, counters.dearest_pair) : std::string()},
@@ -165,13 +196,21 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"dearest_arc_rejected", whole(counters.dearest_arc.rejected)},
       {"dearest_arc_start", counters.dearest_arc.start},
       {"dearest_arc_bodies", names_of(scene, bodies_of(scene, counters.dearest_arc.members))},
-      {"dearest_group_1", dearest[0]},
-      {"dearest_group_2", dearest[1]},
-      {"dearest_group_3", dearest[2]},
-      {"dearest_group_4", dearest[3]},
-      {"dearest_group_5", dearest[4]},
+  };
+  constexpr std::size_t shown = 5;
+  const std::vector<DearestGroup> groups = dearest_groups_of(simulation);
+  for (std::size_t i = 0; i < shown; ++i)
+    table.push_back({"dearest_group_" + std::to_string(i + 1),
+                     i < groups.size() ? line_of(groups[i]) : std::string()});
+  return table;
+}
+
+StatisticsTable truth_rows(const Simulation& simulation, const Integrated& sum) {
+  const Present& present = simulation.present;
+  const Counters& counters = present.counters;
+  return {
       {"gvt_computations", whole(counters.gvt_computations)},
-      {"peak_states", whole(graph.peak_state_count())},
+      {"peak_states", whole(simulation.graph.peak_state_count())},
       {"peak_rss_bytes", peak_resident_bytes()},
       {"max_penetration", counters.max_penetration},
       {"squeezed", whole(counters.squeezed)},
@@ -180,7 +219,7 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"impulses_given_up", whole(counters.impulses_given_up)},
       {"soft_after_repeats", whole(counters.declared_soft)},
       {"momentum_dropped", counters.momentum_dropped},
-      {"kinematic_work", kinematic_work},
+      {"kinematic_work", sum.kinematic_work},
       {"placed_energy", counters.placed_energy},
       {"energy_start",
        counters.energy_known ? counters.energy_start : total_energy(simulation, present.time)},
@@ -189,8 +228,18 @@ StatisticsTable statistics_of(const Simulation& simulation, const Delivery& deli
       {"accuracy", present.settings.accuracy},
       {"seed", static_cast<std::int64_t>(simulation.options.seed)},
   };
-  for (std::size_t i = 0; i < end_names.size(); ++i)
-    table.push_back({std::string("arcs_ended_") + end_names[i], whole(counters.arcs_ended.of[i])});
+}
+
+}  // namespace
+
+StatisticsTable statistics_of(const Simulation& simulation, const Delivery& delivery,
+                              const WorkCount& work) {
+  const Integrated sum = integrated_by(simulation);
+  StatisticsTable table = motion_rows(simulation, delivery, sum);
+  add(table, work_rows(simulation, delivery, work));
+  add(table, group_rows(simulation, sum));
+  add(table, dear_rows(simulation));
+  add(table, truth_rows(simulation, sum));
   return table;
 }
 
