@@ -34,7 +34,10 @@ struct Process {
     claim.id = key.id;
     std::atomic_ref(claim.time).store(key.time, std::memory_order_release);
   }
-  double claimed_time() { return std::atomic_ref(claim.time).load(std::memory_order_acquire); }
+  double claimed_time() const {
+    // (the standard has no atomic_ref of what is const)
+    return std::atomic_ref(const_cast<double&>(claim.time)).load(std::memory_order_acquire);
+  }
 };
 
 }  // namespace tw

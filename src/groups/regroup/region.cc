@@ -22,9 +22,7 @@ bool carries(const Group& owner, const ContactPair& pair, double when) {
 Vec3 force_on(BodyId body, const Group& owner, const ContactPair& pair, double when) {
   Vec3 sum = Vec3::Zero();
   each_contact(pair, [&](std::uint32_t c) {
-    const ContactForce f = owner.lone_contact_at(c, when);
-    const Vec3 force = f.normal_force * f.normal + f.friction;
-    sum += owner.tags[c].other == body ? force : Vec3(-force);
+    sum += owner.lone_contact_at(c, when).force_on(owner.tags[c].other == body);
   });
   return sum;
 }
@@ -34,11 +32,10 @@ Wrench load_on(const Body& body, const Vec3& centre, const Group& owner, const C
                double when) {
   Wrench sum;
   each_contact(pair, [&](std::uint32_t c) {
-    const ContactForce f = owner.lone_contact_at(c, when);
-    const double sign = owner.tags[c].other == body.id() ? 1 : -1;
-    const Vec3 force = sign * (f.normal_force * f.normal + f.friction);
-    sum.force += force;
-    sum.torque += (f.point - centre).cross(force) + sign * f.torque;
+    const bool is_other = owner.tags[c].other == body.id();
+    const Wrench load = owner.lone_contact_at(c, when).wrench_on(is_other, centre);
+    sum.force += load.force;
+    sum.torque += load.torque;
   });
   return sum;
 }

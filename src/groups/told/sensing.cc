@@ -21,11 +21,10 @@ Wrench wrench_on(const Group& group, std::uint32_t member, double when) {
   Wrench sum;
   for (const std::uint32_t pair : group.pairs_of(member))
     each_contact(group.pairs[pair], [&](std::uint32_t c) {
-      const ContactForce contact = arc.contact_force(static_cast<int>(c), when);
-      const double sign = start.contacts[c].b == number ? 1 : -1;
-      const Vec3 force = sign * (contact.normal_force * contact.normal + contact.friction);
-      sum.force += force;
-      sum.torque += (contact.point - point.x).cross(force) + sign * contact.torque;
+      const Wrench load = arc.contact_force(static_cast<int>(c), when)
+                              .wrench_on(start.contacts[c].b == number, point.x);
+      sum.force += load.force;
+      sum.torque += load.torque;
     });
   for (const GroupBond& bond : start.bonds) {
     if (bond.a != number && bond.b != number) continue;

@@ -164,6 +164,16 @@ struct ContactForce {
   Vec3 velocity = Vec3::Zero();  // of b's point against a's, m/s
   bool slipping = false;         // the friction is cut at mu N (anchored), N > 0
   Vec3 torque = Vec3::Zero();    // N m, on b, beside that of the force: rolling and spinning
+
+  // On b, or on a.
+  Vec3 force_on(bool b) const {
+    const Vec3 force = normal_force * normal + friction;
+    return b ? force : Vec3(-force);
+  }
+  Wrench wrench_on(bool b, const Vec3& about) const {
+    const Vec3 force = force_on(b);
+    return {force, (point - about).cross(force) + (b ? torque : Vec3(-torque))};
+  }
 };
 
 // A contact of a member, and whether the work at it is asked for.

@@ -51,10 +51,6 @@ void Claims::schedule_advance(const Body& body) {
   sim_.schedule(process.advance, key, EventKind::advance, body.id(), process.head_start);
 }
 
-bool Claims::reach(const Body& body, const Key& key) const {
-  return body.fixed() || key < sim_.process(body).claim;
-}
-
 void Claims::fall_back(ProcessId id, const Key& key) {
   Process& process = sim_.processes[number(id)];
   process.claim_to(std::min(process.claim, key));

@@ -45,8 +45,6 @@ class Claims {
   void claim_windows(std::span<const Body* const> bodies);
   // Of the body of an advance event, and of all that are due with it.
   void claim_due(const Event& event);
-  // Whether nothing that the body has not claimed lies at or before the key.
-  bool reach(const Body& body, const Key& key) const;
   // Back to the key, and what follows anew: its arc has changed there.
   void fall_back(ProcessId process, const Key& key);
   // The events by which it goes on.

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "groups/regroup/regroup.h"
-#include "kernel/loop/decided-ahead.h"
+#include "kernel/loop/checks-ahead.h"
+#include "kernel/loop/horizon.h"
 #include "kernel/loop/progress.h"
 #include "kernel/report/counters.h"
 #include "timeline/event-queue.h"
@@ -27,8 +28,8 @@ struct Simulation;
 
 class GroupEvents {
  public:
-  GroupEvents(Simulation& simulation, Claims& claims, Discontinuities& discontinuities,
-              const Delivery& delivery);
+  GroupEvents(Simulation& simulation, const Horizon& horizon, Claims& claims,
+              Discontinuities& discontinuities, const Delivery& delivery);
 
   // Claims windows of a process until its arcs are known to `key`.  False: something else comes
   // first, perhaps; whoever asked has done nothing, and is asked again when its event is due once
@@ -44,44 +45,32 @@ class GroupEvents {
   using Decided = std::variant<Regrouped, Waits>;
   Decided regrouped(const Before& before, const Known& is_known, Cause cause,
                     const std::vector<Successor>& successors, GroupCounters& counters) const;
-  // Whether the arcs of the process are known as far as the key: nothing can come before it.
-  bool known(ProcessId id, const Key& key) const;
   // After an edit between runs.
   void regroup_edited(const Key& key, std::vector<Successor>& successors);
   // The check where the arc of a group's member ends.
   Progress check(ProcessId id);
   // Whether the next event is one of an instant that was decided ahead: a bad moment to pause.
-  bool amid_decisions() const;
+  bool amid_decisions() const { return ahead_.amid_decisions(); }
   // The end tests of the groups that a decision made, which the claims after it would make.
   void test_ends(Decision& decision) const;
   // Between runs anything may change: what was decided ahead holds no longer.
-  void forget_decisions() {
-    ahead_.forget();
-    decided_at_ = -never;
-  }
+  void forget_decisions() { ahead_.forget(); }
 
  private:
   Decided decide(const Before& before, const std::vector<ProcessId>& concerned, Cause cause,
                  const Known& is_known, GroupCounters& counters) const;
   std::vector<ProcessId> concerned(const Before& before, const std::shared_ptr<Group>& group) const;
-  void decide_instant(double when);
-  std::vector<std::unique_ptr<Decision>> due_families(double when) const;
-  Groups due_groups(double when) const;
-  std::shared_ptr<Group> checked_by(const Event& event) const;
   bool decide_ahead(Decision& decision) const;
-  bool may_be_read(ProcessId id, const Before& before) const;
   Progress stop_driven(ProcessId id);
   Region region_struck(std::span<const BodyId> bodies, const Before& before) const;
-  bool own_check_before(ProcessId id, const Key& key) const;
-  bool claims_reach(ProcessId id, const Key& key) const;
 
   Simulation& sim_;
   Counters& counters_;
+  const Horizon& horizon_;
   Claims& claims_;
   Discontinuities& discontinuities_;
   const Delivery& delivery_;
-  DecidedAhead ahead_;
-  double decided_at_ = -never;  // s: the instant whose checks were decided together
+  ChecksAhead ahead_;
 };
 
 }  // namespace tw

@@ -15,16 +15,17 @@
 
 namespace tw {
 
-ImpactEvents::ImpactEvents(Simulation& simulation, const ActivePairs& pairs,
+ImpactEvents::ImpactEvents(Simulation& simulation, const Horizon& horizon, const ActivePairs& pairs,
                            Discontinuities& discontinuities, const PairChecks& checks,
                            GroupEvents& groups, const Delivery& delivery)
     : sim_(simulation),
       counters_(simulation.present.counters),
+      horizon_(horizon),
       pairs_(pairs),
       discontinuities_(discontinuities),
       groups_(groups),
       delivery_(delivery),
-      ahead_(simulation, pairs, checks,
+      ahead_(simulation, horizon, pairs, checks,
              [this](BodyId a, BodyId b, const Before& before, Decision& decision) {
                decide_ahead(a, b, before, decision);
              }) {}
@@ -145,7 +146,7 @@ Progress ImpactEvents::process(std::uint32_t pair) {
     return Progress::done;
   }
   if (!groups_.await_struck(struck, key)) return Progress::try_again;
-  const Known is_known = [&](ProcessId id) { return groups_.known(id, key); };
+  const Known is_known = [&](ProcessId id) { return horizon_.is_known(id, key); };
   GroupEvents::Decided decided =
       decide(struck[0], struck[1], sim_.before(key), is_known, counters_);
   if (const Waits* waits = std::get_if<Waits>(&decided)) {

@@ -21,8 +21,9 @@ struct Simulation;
 
 class ImpactEvents {
  public:
-  ImpactEvents(Simulation& simulation, const ActivePairs& pairs, Discontinuities& discontinuities,
-               const PairChecks& checks, GroupEvents& groups, const Delivery& delivery);
+  ImpactEvents(Simulation& simulation, const Horizon& horizon, const ActivePairs& pairs,
+               Discontinuities& discontinuities, const PairChecks& checks, GroupEvents& groups,
+               const Delivery& delivery);
 
   void add_callback(const CollisionCallbackDef& def) { callbacks_.push_back(def); }
   bool is_called(const CollisionCallback* callback) const;
@@ -47,6 +48,7 @@ class ImpactEvents {
 
   Simulation& sim_;
   Counters& counters_;
+  const Horizon& horizon_;
   const ActivePairs& pairs_;
   Discontinuities& discontinuities_;
   GroupEvents& groups_;

@@ -9,6 +9,7 @@
 #include "base/constants.h"
 #include "base/parallel.h"
 #include "kernel/loop/active-pairs.h"
+#include "kernel/loop/horizon.h"
 #include "kernel/loop/pair-checks.h"
 #include "kernel/loop/simulation.h"
 
@@ -22,10 +23,11 @@ struct ImpactsAhead::Ahead {
   std::optional<Beside> work;  // last: it ends before the rest goes
 };
 
-ImpactsAhead::ImpactsAhead(Simulation& simulation, const ActivePairs& pairs,
+ImpactsAhead::ImpactsAhead(Simulation& simulation, const Horizon& horizon, const ActivePairs& pairs,
                            const PairChecks& checks, Decide decide)
     : sim_(simulation),
       counters_(simulation.present.counters),
+      horizon_(horizon),
       pairs_(pairs),
       checks_(checks),
       decide_(std::move(decide)) {
@@ -43,15 +45,6 @@ void ImpactsAhead::forget() {
   seen_ = 0;
 }
 
-// Whether the arc of the state is known beyond the key: whoever claims makes it complete before.  A
-// claim is that of the last state: what has been replaced meanwhile need not be complete.
-bool ImpactsAhead::may_be_read(const State& state, const Key& key) const {
-  const ProcessId process = state.process;
-  if (sim_.body_of(process).fixed()) return true;
-  return sim_.processes[number(process)].claimed_time() > key.time && !state.may_grow() &&
-         sim_.graph.last_before(process, key) == &state;
-}
-
 // Of two that fly all is done at once, and a large group is decided best by all threads together.
 bool ImpactsAhead::is_worth_it(const Event& event) const {
   if (event.kind != EventKind::pair) return false;
@@ -60,7 +53,7 @@ bool ImpactsAhead::is_worth_it(const Event& event) const {
   bool is_in_group = false;
   for (const BodyId body : {pair.a, pair.b}) {
     const State& tail = *sim_.graph.tail(sim_.process_of(body));
-    if (!may_be_read(tail, pair.impact)) return false;
+    if (!horizon_.may_be_read_beside(tail, pair.impact)) return false;
     if (tail.group && tail.group->members.size() > cost::largest_ahead) return false;
     is_in_group = is_in_group || tail.group;
   }
@@ -81,7 +74,8 @@ void ImpactsAhead::begin(const Pair& pair) {
 void ImpactsAhead::decide(Ahead& ahead) const {
   Decision& decision = *ahead.decision;
   const Key& key = decision.key;
-  decision.log.restrict_to([&](const State& state) { return may_be_read(state, key); });
+  decision.log.restrict_to(
+      [&](const State& state) { return horizon_.may_be_read_beside(state, key); });
   try {
     decide_(ahead.a, ahead.b, sim_.before(key, &decision.log, ahead.entered), decision);
     decision.log.close();

@@ -23,6 +23,7 @@
 namespace tw {
 
 class ActivePairs;
+class Horizon;
 class PairChecks;
 struct Pair;
 struct Simulation;
@@ -33,8 +34,8 @@ class ImpactsAhead {
   // others.  What it reads may throw ReadLog::Unreadable.
   using Decide = std::function<void(BodyId a, BodyId b, const Before&, Decision&)>;
 
-  ImpactsAhead(Simulation& simulation, const ActivePairs& pairs, const PairChecks& checks,
-               Decide decide);
+  ImpactsAhead(Simulation& simulation, const Horizon& horizon, const ActivePairs& pairs,
+               const PairChecks& checks, Decide decide);
   ~ImpactsAhead();
 
   // Has the next impacts decided after the advance event of a body, if anything is new since the
@@ -48,7 +49,6 @@ class ImpactsAhead {
 
  private:
   struct Ahead;
-  bool may_be_read(const State& state, const Key& key) const;
   bool is_worth_it(const Event& event) const;
   void begin(const Pair& pair);
   void decide(Ahead& ahead) const;
@@ -56,6 +56,7 @@ class ImpactsAhead {
 
   Simulation& sim_;
   Counters& counters_;
+  const Horizon& horizon_;
   const ActivePairs& pairs_;
   const PairChecks& checks_;
   const Decide decide_;

@@ -67,14 +67,15 @@ class Kernel {
 
   // ---- the parts ----
   Simulation simulation;  // what they share
+  Horizon horizon{simulation};
   Delivery delivery{simulation};
   ActivePairs pairs{simulation.queue};
   CallbackBook callbacks{simulation};
   PairChecks checks{simulation, pairs};
   Claims claims{simulation, pairs, checks, callbacks};
   Discontinuities discontinuities{simulation, pairs, checks, callbacks, claims};
-  GroupEvents groups{simulation, claims, discontinuities, delivery};
-  ImpactEvents impacts{simulation, pairs, discontinuities, checks, groups, delivery};
+  GroupEvents groups{simulation, horizon, claims, discontinuities, delivery};
+  ImpactEvents impacts{simulation, horizon, pairs, discontinuities, checks, groups, delivery};
   CallbackEvents callback_events{simulation, callbacks, discontinuities, groups};
   Editing editing{simulation, discontinuities, groups};
   Bodies bodies{simulation, pairs, callbacks, claims, discontinuities, editing};

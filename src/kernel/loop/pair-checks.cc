@@ -16,6 +16,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "kernel/loop/pair-checks.h"
 
+#include "kernel/loop/horizon.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,12 +70,6 @@ double depth_at_touch(const Scene& scene, Pair& pair, const Piece& piece) {
 
 bool moves_in_group(const State& state) {
   return state.group && state.trajectory().stepped() && !state.error;
-}
-
-// Whether to look at it may complete it.
-bool is_open(const State& state) {
-  return state.may_grow() ||
-         (state.group && !state.group->at_rest && !state.group->arc->complete());
 }
 
 // ---- outcomes ----
@@ -339,7 +335,7 @@ PairOutcome PairChecks::follow(Pair& pair, PairCounts& counts, bool as_helper,
       if (const auto end = next_piece(pair, piece)) return *end;
       continue;
     }
-    if (as_helper && (is_open(*piece.a) || is_open(*piece.b)))
+    if (as_helper && (Horizon::is_open(*piece.a) || Horizon::is_open(*piece.b)))
       return {PairOutcome::Kind::alone, {}};
     // arcs of moving groups are known as far as both have claimed
     double until = now;
