@@ -1,5 +1,5 @@
 // A scene of boxes on a floor and the states before a key: all that contact groups are decided by,
-// without a world, a loop or events.
+// without a world, a loop or events; and what their phases are asked one by one.
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "groups/contacts/contacts.h"
 #include "groups/ends/check-times.h"
 #include "groups/ends/end-test.h"
 #include "groups/regroup/regroup.h"
@@ -18,7 +19,7 @@ namespace tw::test {
 class SmallScene {
  public:
   SceneOptions options;
-  Scene scene{options};
+  tw::Scene scene{options};
   StateGraph graph;
   BroadPhase grid;
   std::vector<BodyId> unbounded;
@@ -47,6 +48,31 @@ class SmallScene {
     state.acceleration = options.gravity;
     let_fly(body, state);
     return body.id();
+  }
+  BodyId add_fixed_box(const Vec3& edges, const Vec3& x) {
+    return add(make_box(edges), BodyKind::fixed, {x, Quat::Identity()}).id();
+  }
+
+  // A contact by hand, of a plane of `reference` with a point of `other`: those of a pair in a row.
+  NewContact& touch(Contacts& contacts, BodyId reference, BodyId other, const Vec3& point,
+                    const Vec3& normal, double gap = 0) const {
+    const Body &a = scene.body(reference), &b = scene.body(other);
+    MassRange masses;
+    for (const Body* body : {&a, &b})
+      if (body->dynamic()) masses.add(body->mass);
+    const std::uint64_t pair = pair_id(reference, other);
+    if (contacts.pairs.empty() || contacts.pairs.back().id != pair)
+      contacts.pairs.push_back(
+          {pair, static_cast<std::uint32_t>(contacts.all.size()), 0, false, masses});
+    ++contacts.pairs.back().count;
+    NewContact contact;
+    contact.contact.law = contact_scales(scene, a, b, masses).law;
+    contact.tag.reference = reference;
+    contact.tag.other = other;
+    contact.gap = gap;
+    contact.normal = normal;
+    contact.point = point;
+    return contacts.all.emplace_back(contact);
   }
 
   ProcessId process(BodyId id) const { return scene.process_of(id); }
@@ -136,13 +162,53 @@ class SmallScene {
   }
 };
 
-// Cubes of 0.1 m in a row on the floor, all in one group since time 0, at rest against each other.
+// What the phases of a regrouping are asked, and all that it refers to.
+struct Question {
+  Before before;
+  RegroupRequest request;
+  PlacedNow placed_now;
+  std::vector<Successor> successors;
+  Regrouping work;
+
+  // The first get new arcs, those at the border keep theirs.
+  Question(const SmallScene& small, const Key& key, Cause cause, const std::vector<BodyId>& changed,
+           const std::vector<BodyId>& border = {})
+      : before(small.before(key)),
+        request{cause},
+        successors(make_successors(before, changed, border)),
+        work(before, small.surroundings, request, placed_now, successors) {}
+  Question(const Question&) = delete;
+  Question& operator=(const Question&) = delete;
+
+  Successor& of(BodyId id) { return *work.successor_of(id); }
+  void set_velocity(BodyId id, const Vec3& v) { of(id).data.v = of(id).point.v = v; }
+
+ private:
+  static std::vector<Successor> make_successors(const Before& before,
+                                                const std::vector<BodyId>& changed,
+                                                const std::vector<BodyId>& border) {
+    std::vector<Successor> result;
+    const auto add = [&](BodyId id, bool new_arc) {
+      result.push_back(make_successor(before, before.scene().process_of(id), new_arc));
+    };
+    for (const BodyId id : changed) add(id, true);
+    for (const BodyId id : border) {
+      add(id, false);
+      result.back().role = Role::border;
+      result.back().data.changed = false;
+    }
+    return result;
+  }
+};
+
+// Cubes of 0.1 m in a row on the floor, all in one group since time 0, at rest against each other
+// with this gap.
 struct Row : SmallScene {
   BodyId floor = add_floor();
   std::vector<BodyId> cubes;
 
-  explicit Row(int count) {
-    for (int i = 0; i < count; ++i) cubes.push_back(add_cube(0.1, {0.1 * i, 0, 0.05}));
+  explicit Row(int count, double gap = 0) {
+    for (int i = 0; i < count; ++i) cubes.push_back(add_cube(0.1, {(0.1 + gap) * i, 0, 0.05}));
     // first each with the floor, then with its neighbour
     std::uint32_t microstep = 0;
     for (const BodyId cube : cubes) fuse(floor, cube, 0, ++microstep);
