@@ -1,9 +1,10 @@
 // When group checks happen.
 //
 // At k 2^j / 480 s, j such that no surface point moves more than a twentieth of its body's size in
-// between (doc/numerics/checks-and-rest.md: finer is cheaper while bodies collide, coarser else),
-// within bounds that follow from the sizes of the members: a scene that is scaled is checked at
-// scaled times.  What moves farther between two checks is looked at in between by the end test.
+// between, or a multiple of that while all goes on as foreseen (foreseen.h)
+// (doc/numerics/checks-and-rest.md: finer is cheaper while bodies collide, coarser else), within
+// bounds that follow from the sizes of the members: a scene that is scaled is checked at scaled
+// times.  What moves farther between two checks is looked at in between by the end test.
 //
 // The lattice is that of the world, not of each group: neighbours that have nothing to do with each
 // other begin their arcs together, so that a pair of them is looked at once a stretch, and all that
