@@ -9,49 +9,14 @@
 #include "detect/clearance.h"
 #include "detect/dip.h"
 #include "detect/exact-impact.h"
-#include "integrate/standing.h"
-#include "timeline/successor.h"
+#include "support/flyer.h"
 #include "timeline/swept-bounds.h"
 
 namespace tw {
 namespace {
 
-// One of a pair, and its state: it flies from time 0 on.
-struct Flyer {
-  Body body;
-  State state;
-
-  Flyer(BodyId id, ShapePtr shape, const Vec3& x, const Vec3& v, const Vec3& L = Vec3::Zero()) {
-    body.info.id = id;
-    body.mass = 1;
-    body.moments = Vec3(0.1, 0.15, 0.2);
-    body.shape_P = shape;
-    body.radius = shape->radius_about_origin();
-    body.least_width = shape->least_width();
-    body.thickness = shape->thickness();
-    const ConvexPart& part = shape->parts().front();
-    if (part.kind == PartKind::sphere) body.sphere_radius = part.radius;
-    state.x = x;
-    state.v = v;
-    state.L = L;
-    state.acceleration = Vec3(0, 0, -9.81);
-    let_fly(body, state);
-  }
-  Flyer& carried() {
-    state.follows = make_resting({state.x, state.q});
-    return *this;
-  }
-};
-
-Piece between(const Flyer& a, const Flyer& b) {
-  Piece piece;
-  piece.a = &a.state;
-  piece.b = &b.state;
-  piece.body_a = &a.body;
-  piece.body_b = &b.body;
-  piece.end = last_key;
-  return piece;
-}
+using test::between;
+using test::Flyer;
 
 TEST(Pieces, spheres_that_fall_alike_meet_when_the_quadratic_says) {
   const Flyer a(0, make_sphere(0.5), {0, 0, 0}, {1, 0, 0});
