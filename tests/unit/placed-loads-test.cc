@@ -192,6 +192,9 @@ TEST(PlacedLoads, a_pair_that_overlaps_is_not_named) {
   EXPECT_NEAR(small.load_of(1), one_weight, 1e-6);
   // its springs would press with 0.8 N
   EXPECT_NEAR(small.load_of(2), 0, 1e-9);
+  // and begin a hair beyond where they are, not at it
+  for (std::size_t c = 8; c < 12; ++c)
+    EXPECT_LT(small.start.contacts[c].offset, -2e-6 - 0.5 * answer::start_depth * 0.1) << c;
 }
 
 }  // namespace

@@ -403,6 +403,14 @@ bool touches(const NewContact& c, double size) {
 // By more than touch.
 bool overlaps(const NewContact& c) { return c.gap < -answer::start_depth * c.contact.law.size; }
 
+// Of the lighter one that moves, N.
+double lighter_weight(const Scene& scene, const ContactTag& tag) {
+  double mass = never;
+  for (const BodyId id : {tag.reference, tag.other})
+    if (const Body& body = scene.body(id); body.dynamic()) mass = std::min(mass, body.mass);
+  return scene.gravity_scale() * mass;
+}
+
 // The pairs of two moving bodies that came to touch now and carry nothing, ascending: not those
 // that overlap, which are in contact until they have parted.
 std::vector<std::uint64_t> unloaded_pairs(const Regrouping& work,
@@ -417,9 +425,8 @@ std::vector<std::uint64_t> unloaded_pairs(const Regrouping& work,
   const auto pair_of = [](const NewContact& c) { return pair_id(c.tag.reference, c.tag.other); };
   for (const Spring& s : springs) {
     const NewContact& c = contacts[s.number];
-    const double weight = scene.gravity_scale() *
-                          std::min(scene.body(c.tag.reference).mass, scene.body(c.tag.other).mass);
-    if (s.load > answer::carried_share * weight) carrying.push_back(pair_of(c));
+    if (s.load > answer::carried_share * lighter_weight(scene, c.tag))
+      carrying.push_back(pair_of(c));
   }
   for (const NewContact& c : contacts)
     if (overlaps(c)) carrying.push_back(pair_of(c));
@@ -549,7 +556,10 @@ PlacedLoads load_placed(const Regrouping& work, GroupStart& start,
     const NewContact& looks = contacts[s.number];
     const Quat into = work.attitude(looks.tag.reference).conjugate();
     loads.energy -= energy_of(c, into * looks.normal, looks.gap);
-    c.offset = s.load > 0        ? spring_depth(c.law, c.share, s.load) + looks.gap
+    // what is left of a load after the balance is rounding: an overlap that it held would begin
+    // where steps do
+    const bool bears = s.load > guard::balance_residual * lighter_weight(scene, looks.tag);
+    c.offset = bears             ? spring_depth(c.law, c.share, s.load) + looks.gap
                : overlaps(looks) ? unpressed(looks.gap, c.law.size)
                                  : std::min(looks.gap, 0.0);
     c.stretch = Vec3::Zero();
