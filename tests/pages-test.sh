@@ -16,7 +16,7 @@ echo "$# pages checked"
 untold=$(sed -n '/end_names{/,/};/p' src/integrate/arc/arc-end.h | grep -o '"[a-z]*"' | tr -d '"' |
   while read -r reason; do
     grep -q "^|.*\`$reason\`" doc/architecture.md || echo "doc/architecture.md: no row of $reason"
-    grep -q "arcs_ended_$reason\`" doc/statistics.md || echo "doc/statistics.md: no $reason"
+    [ "$reason" = rest ] || grep -q "arcs_ended_$reason\`" doc/statistics.md || echo "doc/statistics.md: no $reason"
   done)
 [ -z "$untold" ] || echo "$untold"
 [ -z "$wide$untold" ] && TW_SRCDIR=. sh build-aux/known-faults && TW_SRCDIR=. sh build-aux/bench-tables

@@ -3,7 +3,6 @@
 #include "render/mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "render/draw-list.h"

@@ -79,6 +79,27 @@ TEST(Heaps, settings_of_the_run_have_no_influence) {
   for (const Scene& scene : heaps()) expect_one_history(scene, schedules, 5);
 }
 
+// Why arcs ended is committed history: counted once, whenever it is freed.
+TEST(Heaps, why_arcs_ended_is_the_same_at_all_gvt_intervals) {
+  for (const Scene& scene : heaps()) {
+    std::vector<StatisticsTable> tables;
+    for (const long interval : {1L, 40L, 5000L}) {
+      World world;
+      Schedule schedule;
+      schedule.gvt_interval = interval;
+      apply(world, schedule);
+      scene.fill(world);
+      world.advance(scene.duration, never);
+      tables.push_back(world.statistics());
+      std::erase_if(tables.back(),
+                    [](const auto& row) { return !row.first.starts_with("arcs_ended_"); });
+    }
+    EXPECT_FALSE(tables[0].empty());
+    EXPECT_EQ(tables[0], tables[1]) << scene.name;
+    EXPECT_EQ(tables[0], tables[2]) << scene.name;
+  }
+}
+
 TEST(Heaps, validators_find_nothing_and_have_no_influence) {
   std::vector<Schedule> schedules = short_adversaries(long_tests() ? 20 : 3);
   schedules.insert(schedules.begin(), Schedule());

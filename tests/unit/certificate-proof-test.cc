@@ -7,28 +7,13 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "detect/approach.h"
 #include "detect/certificate.h"
-#include "math/rotation-vector.h"
+#include "support/dice.h"
 #include "support/flyer.h"
 
 namespace tw::test {
 namespace {
-
-class Dice {
- public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  double between(double lo, double hi) {
-    return std::uniform_real_distribution<double>(lo, hi)(engine_);
-  }
-  int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(engine_); }
-  Vec3 ball(double radius) { return radius * Vec3(between(-1, 1), between(-1, 1), between(-1, 1)); }
-
- private:
-  std::mt19937 engine_;
-};
 
 ShapePtr random_part(Dice& dice) {
   const double size = dice.between(0.1, 1);
@@ -42,7 +27,7 @@ ShapePtr random_part(Dice& dice) {
     case 5: return make_ellipsoid({side(), side(), side()});
     default: {
       std::vector<Vec3> points;
-      for (int i = 0; i < 12; ++i) points.push_back(dice.ball(size));
+      for (int i = 0; i < 12; ++i) points.push_back(dice.cube(size));
       return make_hull(points);
     }
   }
@@ -55,8 +40,8 @@ ShapePtr random_shape(Dice& dice) {
 }
 
 Flyer random_flyer(Dice& dice, BodyId id, const Vec3& place) {
-  Flyer flyer(id, random_shape(dice), place + dice.ball(0.3), dice.ball(3), dice.ball(1));
-  flyer.state.q = short_rotation(dice.ball(1));
+  Flyer flyer(id, random_shape(dice), place + dice.cube(0.3), dice.cube(3), dice.cube(1));
+  flyer.state.q = dice.turn();
   let_fly(flyer.body, flyer.state);
   return flyer;
 }

@@ -5,31 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "integrate/implicit/contact-pack.h"
 #include "integrate/implicit/group-rows.h"
+#include "support/dice.h"
 
 namespace tw::test {
 namespace {
-
-class Dice {
- public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  double between(double lo, double hi) {
-    return std::uniform_real_distribution<double>(lo, hi)(engine_);
-  }
-  // From lo to hi, as many in each decade.
-  double decades(double lo, double hi) { return std::exp(between(std::log(lo), std::log(hi))); }
-  bool coin() { return between(0, 1) < 0.5; }
-  Vec3 ball(double radius) { return radius * Vec3(between(-1, 1), between(-1, 1), between(-1, 1)); }
-  Quat turn() {
-    return Quat(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
-  }
-
- private:
-  std::mt19937 engine_;
-};
 
 ContactConstants random_law(Dice& dice, FrictionLaw friction) {
   ContactParameters p;
@@ -66,7 +48,7 @@ struct RandomPack {
     Vec3 x[2], v[2], w[2];
     Mat3 R[2];
     for (int i = 0; i < 2; ++i) {
-      x[i] = dice.ball(1), v[i] = dice.ball(2), w[i] = dice.ball(3);
+      x[i] = dice.cube(1), v[i] = dice.cube(2), w[i] = dice.cube(3);
       R[i] = dice.turn().toRotationMatrix();
       rows::vec(bodies[i].x) = x[i];
       rows::vec(bodies[i].v) = v[i];
@@ -78,9 +60,9 @@ struct RandomPack {
     for (int i = 0; i < lane_count; ++i) {
       GroupContact c;
       c.a = 0, c.b = 1;
-      c.normal = dice.ball(1).normalized();
-      c.point_a = dice.ball(0.5);
-      c.point_b = dice.ball(0.5);
+      c.normal = dice.cube(1).normalized();
+      c.point_a = dice.cube(0.5);
+      c.point_b = dice.cube(0.5);
       c.radius_b = dice.between(0, 0.1);
       c.share = dice.between(0.1, 1);
       c.law = law;
@@ -95,8 +77,8 @@ struct RandomPack {
       motion.normal = n;
       motion.velocity = v[1] + w[1].cross(point - x[1]) - v[0] - w[0].cross(point - x[0]);
       motion.turning = w[1] - w[0];
-      c.stretch = dice.ball(dice.decades(0.01, 100) * law.depth);
-      c.bend = dice.ball(dice.decades(0.01, 100) * law.depth / law.size);
+      c.stretch = dice.cube(dice.decades(0.01, 100) * law.depth);
+      c.bend = dice.cube(dice.decades(0.01, 100) * law.depth / law.size);
       motion.stretch = Ra * c.stretch;
       motion.bend = Ra * c.bend;
       start.contacts.push_back(c);
@@ -167,13 +149,13 @@ TEST(PointLaw, friction_never_gives_what_it_did_not_take) {
   for (int i = 0; i < 10000; ++i) {
     const ContactConstants law = random_law(dice, FrictionLaw::anchored);
     PointMotion at;
-    at.normal = dice.ball(1).normalized();
+    at.normal = dice.cube(1).normalized();
     at.depth = random_depth(dice, law);
-    at.velocity = dice.ball(3);
-    at.turning = dice.ball(3);
-    const Vec3 stretch = dice.ball(dice.decades(0.01, 100) * law.depth);
+    at.velocity = dice.cube(3);
+    at.turning = dice.cube(3);
+    const Vec3 stretch = dice.cube(dice.decades(0.01, 100) * law.depth);
     at.stretch = stretch - at.normal.dot(stretch) * at.normal;
-    at.bend = dice.ball(dice.decades(0.01, 100) * law.depth / law.size);
+    at.bend = dice.cube(dice.decades(0.01, 100) * law.depth / law.size);
     const PointForce f = point_force(law, 1, at);
     const double gives = f.friction.dot(at.velocity) + law.kt * at.stretch.dot(f.stretch_rate);
     EXPECT_LE(gives, 1e-12 * (f.friction.norm() * at.velocity.norm()));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <deque>
 
-#include "base/constants.h"
 #include "base/parallel.h"
 #include "groups/contacts/pair-look.h"
 #include "groups/ends/check-times.h"

@@ -64,18 +64,19 @@ double fast_touch(const GroupArc& arc, int contact, double from, double to, doub
 class PairTest {
  public:
   PairTest(const Scene& scene, const Surroundings& surroundings, const Group& group,
-           const ContactPair& pair)
+           const ContactPair& pair, double end)
       : surroundings_(surroundings),
         group_(group),
         pair_(pair),
-        along_(scene, group, pair),
+        along_(scene, group, pair, end),
         allowed_(answer::unseen_depth * along_.scales.law.gap_scale()),
         phantom_(answer::phantom_depth * along_.scales.law.gap_scale()),
-        start_(group.arc->start().time) {}
+        start_(group.arc->start().time),
+        end_(end) {}
 
   // `never`: they do not.
   ArcEnd end() {
-    const double travel = along_.travel(), length = group_.next_check() - start_;
+    const double travel = along_.travel(), length = end_ - start_;
     if (travel <= allowed_) return {};
     gaps().assign(group_.gaps.begin() + pair_.first,
                   group_.gaps.begin() + pair_.first + pair_.count);
@@ -83,7 +84,7 @@ class PairTest {
     searched_to_ = start_;
     double from = start_;
     for (int i = 1; i <= count; ++i) {
-      const double to = i < count ? start_ + length * i / count : group_.next_check();
+      const double to = i < count ? start_ + length * i / count : end_;
       const ArcEnd found = look(from, to);
       if (found.time < never) return found;
       from = to;
@@ -173,9 +174,9 @@ class PairTest {
   const ContactPair& pair_;
   PairOnArc along_;
   const double allowed_, phantom_;  // m: how much deeper than is known, or less deep, it may be
-  const double start_;
-  double unseen_before_ = -1;  // m, when the arc began; < 0: not looked for
-  double searched_to_ = 0;     // until then no contact was unseen
+  const double start_, end_;        // s
+  double unseen_before_ = -1;       // m, when the arc began; < 0: not looked for
+  double searched_to_ = 0;          // until then no contact was unseen
 };
 
 // When a joint of the multibody gets to one of its stops that it does not lean on; `never`: none
@@ -219,7 +220,7 @@ std::vector<ArcEnd> find_ends(const Scene& scene, const Surroundings& surroundin
   constexpr std::size_t grain = 4;
   std::vector<ArcEnd> pair_ends(group.pairs.size());
   each_in_parallel(pair_ends.size(), grain, [&](std::size_t i) {
-    pair_ends[i] = PairTest(scene, surroundings, group, group.pairs[i]).end();
+    pair_ends[i] = PairTest(scene, surroundings, group, group.pairs[i], whole.time).end();
   });
   std::vector<ArcEnd> ends(group.members.size(), whole);
   const std::vector<GroupTree>& trees = group.arc->start().trees;
@@ -259,10 +260,11 @@ void test_end(const Scene& scene, const Surroundings& surroundings, Group& group
   if (group.found || group.at_rest) return;
   group.arc->extend_patiently(group.planned.time);
   const ArcEnd whole = earlier(group.planned, {group.arc->last(), EndReason::steps});
-  group.found = whole;
   std::vector<ArcEnd> ends = find_ends(scene, surroundings, group, whole);
   const ArcEnd first = *std::min_element(
       ends.begin(), ends.end(), [](const ArcEnd& x, const ArcEnd& y) { return x.time < y.time; });
+  // (what was given up by then finds nothing done)
+  group.found = whole;
   if (first.time < whole.time) {
     ++counters.early_ends;
     if (group.members.size() < answer::least_divided) {

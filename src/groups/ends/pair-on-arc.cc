@@ -70,7 +70,7 @@ bool PairOnArc::runs() const {
 
 double PairOnArc::travel() const {
   double sum = 0;
-  const double from = group_.arc->start().time, to = group_.next_check();
+  const double from = group_.arc->start().time, to = end_;
   for (const Body* body : {&a, &b}) {
     if (body->fixed()) continue;
     const MotionBounds bounds = trajectory(*body).bounds(from, to);

@@ -11,13 +11,15 @@ namespace tw {
 
 class PairOnArc {
  public:
-  PairOnArc(const Scene& scene, const Group& group, const ContactPair& pair)
+  // `end`: of the arc, s.
+  PairOnArc(const Scene& scene, const Group& group, const ContactPair& pair, double end)
       : a(scene.body(pair.a())),
         b(scene.body(pair.b())),
         scales(contact_scales(scene, a, b, pair.masses)),
         scene_(scene),
         group_(group),
-        pair_(pair) {}
+        pair_(pair),
+        end_(end) {}
 
   const Body &a, &b;
   const ContactScales scales;
@@ -49,6 +51,7 @@ class PairOnArc {
   const Scene& scene_;
   const Group& group_;
   const ContactPair& pair_;
+  const double end_;
   PairGround ground_;
 };
 

@@ -3,7 +3,6 @@
 #include "groups/ends/planned-end.h"
 
 #include <algorithm>
-#include <span>
 
 #include "groups/ends/check-times.h"
 #include "integrate/given/moving-base.h"
@@ -51,7 +50,7 @@ double by_push(const PlannedGroup& p) {
 
 // Where blow follows on blow, as when a wave of impacts goes through a lattice, all that is
 // integrated beyond the next one is in vain.  So an arc that begins with a blow on what an impact
-// gave its arc, or that follows one which ended early, lasts a number of times what that did, and
+// gave its arc, or begins at an early check, lasts a number of times what the one before did, and
 // the check at its end, where nothing has come, allows that number more.
 double by_patience(const PlannedGroup& p, double interval) {
   const Regrouping& work = p.work;

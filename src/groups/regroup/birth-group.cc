@@ -6,7 +6,6 @@
 #include "groups/group.h"
 #include "groups/joints/joints.h"
 #include "groups/regroup/start-members.h"
-#include "integrate/arc/joint-record.h"
 #include "integrate/arc/member-trajectory.h"
 
 namespace tw {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include "groups/regroup/propagation.h"
 
-#include <algorithm>
 #include <map>
 
 #include "base/constants.h"

@@ -8,11 +8,9 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <variant>
 #include <vector>
 
-#include "collision/distance/separation.h"
 #include "groups/regroup/region.h"
 
 namespace tw {

@@ -160,7 +160,7 @@ void GroupRecord::append(double time, const GroupSystem& system, const double* y
     step.put(d4 + 12 * i + 6, 6);
   }
   const int first = 12 * system.members();
-  node.put(y1 + first, row_node * rows_);
+  if (rows_ > 0) node.put(y1 + first, row_node * rows_);
   for (int p = 0; p < rows_; ++p) {
     step.put(d3 + first + 12 * p, 12);
     step.put(d4 + first + 12 * p, 12);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "base/constants.h"
 #include "integrate/arc/step-method.h"
 #include "integrate/explicit/runge-kutta.h"

@@ -60,7 +60,11 @@ class RodasSteps final : public StepMethod {
   double error_norm(const GroupScratch& s) const;
   double fastest_turn(const GroupScratch& s) const;
   double velocity_change(const GroupScratch& s) const;
-  double begin(GroupScratch& s);
+  struct Begun {
+    double h;          // s, to try first
+    int pressed_hard;  // contacts, at the node
+  };
+  Begun begin(GroupScratch& s);
   void accept(double time, GroupScratch& s);
   void load_joints(GroupScratch& s);
   void append_joints(double time, GroupScratch& s);
@@ -315,8 +319,8 @@ bool RodasSteps::breaks_away(double h, int pressed_hard, GroupScratch& s) const 
          friction_doubt(s) > 1 || unforeseen(h, s) > 1;
 }
 
-// Linearises at the last node; the step to try first, s.
-double RodasSteps::begin(GroupScratch& s) {
+// Linearises at the last node.
+RodasSteps::Begun RodasSteps::begin(GroupScratch& s) {
   const double time = work_.reached(), left = start_.end - time;
   // outside bodies that do not move
   system_.set_outside(time, s);
@@ -326,19 +330,19 @@ double RodasSteps::begin(GroupScratch& s) {
   system_.linearise(time, s.state.data(), s, s.slope.data());
   ++counts_.evaluations;
   s.firm = s.reaches_firmness;
+  const int pressed_hard = s.pressed_hard;
   const double turn_limit = answer::most_step_turn / std::max(fastest_turn(s), 1e-300);
   if (!(work_.next_step > 0)) work_.next_step = first_step(s);
   const double h = std::min({work_.next_step, left, turn_limit});
   if (system_.moved_from_outside())
     system_.set_time_slope(time, h, s.state.data(), s.slope.data(), s, s.time_slope.data());
-  return h;
+  return {h, pressed_hard};
 }
 
 const char* RodasSteps::step() {
   GroupScratch& s = system_.scratch();
   const double time = work_.reached(), left = start_.end - time;
-  double h = begin(s);
-  const int pressed_hard = s.pressed_hard;
+  auto [h, pressed_hard] = begin(s);
   Rejection last_one;
   for (bool rejected = false;; rejected = true) {
     // the last step lands on the end, the one before leaves no sliver; rounding decides neither

@@ -129,6 +129,8 @@ void Commit::commit_state(State& state) {
 }
 
 void Commit::count(const State& state) {
+  if (state.starts_arc() && state.prev && state.prev->group)
+    counters_.arcs_ended.note(why_ended(*state.prev, state.key));
   counters_.kinematic_work += state.tally.kinematic_work;
   counters_.placed_energy += state.tally.placed_energy;
   counters_.max_penetration = std::max(counters_.max_penetration, state.tally.depth);

@@ -3,7 +3,8 @@
 //
 // First all queues, then all claims, then all events: queues are wholly changed before any pair is
 // looked at again.  Treated are the receivers (even where they lost nothing) and every process that
-// lost a state, each from the least key it lost (doc/architecture.md, "Rollback").
+// lost a state, each from the least key it lost (doc/architecture.md, "The state graph and
+// rollback").
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

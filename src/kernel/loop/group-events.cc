@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/constants.h"
-#include "base/parallel.h"
 #include "groups/ends/check-times.h"
 #include "groups/ends/end-test.h"
 #include "groups/ends/group-check.h"
@@ -13,7 +12,6 @@
 #include "kernel/loop/discontinuities.h"
 #include "kernel/loop/simulation.h"
 #include "kernel/report/delivery.h"
-#include "timeline/swept-bounds.h"
 
 namespace tw {
 

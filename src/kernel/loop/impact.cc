@@ -3,7 +3,6 @@
 #include "kernel/loop/impact.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/constants.h"
 #include "collision/broad/near-parts.h"

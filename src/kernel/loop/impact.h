@@ -4,7 +4,7 @@
 // manifold's centroid first, then the worst approacher first, at most 200 impulses
 // (dynamics/impulse-solver.h).  In a group whoever carries takes the blow up, too
 // (groups/regroup/blow.h). A soft impact leaves the motion as it is: the two fuse
-// (groups/regroup/region.cc).
+// (groups/contacts/contact-graph.h).
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

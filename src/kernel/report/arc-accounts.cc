@@ -22,7 +22,14 @@ Effort count_steps(Counters& counters, const Trajectory& trajectory) {
   return effort;
 }
 
-// Why the arc of a member of a group ended at that key.
+const State* next_arc(const State& state) {
+  const State* next = state.next;
+  while (next && !next->starts_arc()) next = next->next;
+  return next;
+}
+
+}  // namespace
+
 EndReason why_ended(const State& state, const Key& by) {
   switch (by.kind) {
     case KeyKind::impact: return EndReason::impact;
@@ -34,14 +41,6 @@ EndReason why_ended(const State& state, const Key& by) {
     default: return EndReason::edit;
   }
 }
-
-const State* next_arc(const State& state) {
-  const State* next = state.next;
-  while (next && !next->starts_arc()) next = next->next;
-  return next;
-}
-
-}  // namespace
 
 double integrated_length(const State& state, double until) {
   if (state.group && state.group->at_rest) return 0;
@@ -75,9 +74,6 @@ StateGraph::OnRelease count_used(Simulation& simulation) {
     if (!simulation.body_of(state.process).dynamic()) return;
     const State* next = state.next;
     if (next) counters.kinematic_work += kinematic_work_of(simulation, state, next->key.time);
-    if (state.group && state.starts_arc())
-      if (const State* after = next_arc(state))
-        counters.arcs_ended.note(why_ended(state, after->key));
     if (state.trajectory().stepped()) {
       if (state.starts_arc())
         counters.rollback_length += count_steps(counters, state.trajectory()).forgotten;

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
+#include "integrate/arc/arc-end.h"
 #include "timeline/state-graph.h"
 
 namespace tw {
@@ -19,5 +20,7 @@ StateGraph::OnRelease count_used(Simulation& simulation);
 double integrated_length(const State& state, double until);
 // By kinematic bodies on the state's process from the state to a time along its arc, J.
 double kinematic_work_of(const Simulation& simulation, const State& state, double until);
+// Why the arc of the state of a group's member ended at that key.
+EndReason why_ended(const State& state, const Key& by);
 
 }  // namespace tw

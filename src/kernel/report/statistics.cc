@@ -179,7 +179,8 @@ StatisticsTable group_rows(const Simulation& simulation, const Integrated& sum) 
       {"rejected_steps", whole(counters.rejected_steps)},
       {"factorizations", whole(sum.factorizations)},
   };
-  for (std::size_t i = 0; i < end_names.size(); ++i)
+  // (who rests has no end)
+  for (std::size_t i = 1; i < end_names.size(); ++i)
     table.push_back({std::string("arcs_ended_") + end_names[i], whole(counters.arcs_ended.of[i])});
   return table;
 }

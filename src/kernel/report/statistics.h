@@ -25,7 +25,7 @@ struct DearestGroup {
   std::size_t bodies = 0;
   std::uint64_t contacts = 0, arcs = 0, steps = 0, rejected = 0;
   double since = 0, until = 0;  // s
-  std::string ended_by;         // why most of its arcs ended (integrate/arc/arc-end.h)
+  std::string ended_by;         // why most arcs were to end, by plan or end test
 };
 std::vector<DearestGroup> dearest_groups_of(const Simulation& simulation);
 
