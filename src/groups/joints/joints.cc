@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "integrate/arc/joint-record.h"
 #include "integrate/given/moving-base.h"
 #include "multibody/limits.h"
 
