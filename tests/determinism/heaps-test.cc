@@ -6,6 +6,8 @@
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "determinism/compare-schedules.h"
 #include "support/counter.h"
 #include "support/heap-scenes.h"
@@ -94,7 +96,9 @@ TEST(Heaps, why_arcs_ended_is_the_same_at_all_gvt_intervals) {
       std::erase_if(tables.back(),
                     [](const auto& row) { return !row.first.starts_with("arcs_ended_"); });
     }
-    EXPECT_FALSE(tables[0].empty());
+    EXPECT_TRUE(std::any_of(tables[0].begin(), tables[0].end(), [](const auto& row) {
+      return std::get<std::int64_t>(row.second) > 0;
+    })) << scene.name;
     EXPECT_EQ(tables[0], tables[1]) << scene.name;
     EXPECT_EQ(tables[0], tables[2]) << scene.name;
   }
