@@ -108,18 +108,20 @@ void compare(unsigned seed, FrictionLaw friction) {
     const GroupContact& c = random.start.contacts[static_cast<std::size_t>(pack.contact[i])];
     const PointMotion& at = random.at[pack.contact[i]];
     const PointForce expected = point_force(c.law, c.share, at);
-    // lanes have the depth to the rounding of the bodies' places, and forces go by its powers
+    // lanes have the depth to the rounding of the bodies' places, and forces go by its powers; what
+    // is summed may be much larger than the sum
     const double close = 1e-11 + 3e-14 / std::abs(at.depth);
-    const double scale = expected.force(at.normal).norm() + c.share * c.law.kt * at.stretch.norm();
+    const double grip = friction_grip(c.law, at.depth), speed = at.velocity.norm();
+    const double kt = grip * c.share * c.law.kt, ct = grip * c.share * c.law.ct;
+    const double scale = spring_force(c.law, c.share, at.depth) * (1 + c.law.b * speed) +
+                         kt * at.stretch.norm() + ct * speed + expected.drag.norm();
     EXPECT_NEAR(state.N[i], expected.normal_force, close * scale);
     expect_near(lane(state.f, i), expected.force(at.normal), close * scale, "force");
-    const double grip = friction_grip(c.law, at.depth);
     if (c.law.ct > 0)
       expect_near(random.Ra * lane(state.stretch_rate, i), expected.stretch_rate,
-                  close * grip * scale / (c.share * c.law.ct), "stretch rate");
-    const double turning = scale * c.law.size +
-                           grip * c.share * c.law.kt * c.law.squared_lever() * at.bend.norm() +
-                           expected.torque.norm();
+                  close * scale / (c.share * c.law.ct), "stretch rate");
+    const double turning = scale * c.law.size + expected.torque.norm() +
+                           c.law.squared_lever() * (kt * at.bend.norm() + ct * at.turning.norm());
     if (state.turns)
       expect_near(lane(state.torque, i), expected.torque, close * turning, "torque");
     else
