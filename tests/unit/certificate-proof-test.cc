@@ -82,8 +82,8 @@ TEST(CertificateProof, ten_thousand_pairs_are_apart_for_as_long_as_they_are_said
     all.time += one.time;
     all.certificates += one.certificates;
     all.looks += one.looks;
-    // distances of round shapes are found to some thousand roundings of their size
-    EXPECT_GT(one.deepest, -1e-11) << "seed " << seed;
+    // distances of round shapes are found to some thousand roundings of their size at most
+    EXPECT_GT(one.deepest, -1e-12) << "seed " << seed;
   }
   // they were asked something, and led somewhere
   EXPECT_GT(all.certificates, 30000);
