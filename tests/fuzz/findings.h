@@ -18,7 +18,8 @@ struct Findings {
   double reached = 0;    // s
   double cpu = 0;        // s, of the world's loop
   double pace = 0;       // s of CPU per time unit and moving body, in the dearest tenth
-  double work = 0;       // steps, integrations and queries per time unit and moving body
+  // Steps, integrations and queries per time unit and moving body: in all, in the dearest tenth.
+  double work = 0, dearest = 0;
   Text<72> hash{};
 
   double depth = 0;  // share of the smaller body's least width

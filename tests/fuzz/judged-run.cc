@@ -65,10 +65,7 @@ class JudgedRun {
     const double rejected = static_cast<double>(test::count_of(table, "rejected_steps"));
     const double steps = static_cast<double>(test::count_of(table, "implicit_steps"));
     f_.rejected = rejected / std::max(1.0, rejected + steps);
-    const double queries = static_cast<double>(test::count_of(table, "distance_queries"));
-    const double arcs = static_cast<double>(test::count_of(table, "integrations"));
-    if (f_.reached > 0)
-      f_.work = (rejected + steps + queries + arcs) * scene_.time_unit / f_.reached / moving();
+    if (f_.reached > 0) f_.work = counted() * scene_.time_unit / f_.reached / moving();
     f_.finished = !f_.out_of_time;
   }
 
@@ -209,6 +206,19 @@ class JudgedRun {
     const double now = cpu();
     f_.pace = std::max(f_.pace, (now - tenth_cpu_) / units / moving());
     tenth_cpu_ = now;
+    const double count = counted();
+    f_.dearest = std::max(f_.dearest, (count - tenth_count_) / units / moving());
+    tenth_count_ = count;
+  }
+
+  // Steps, integrations and queries so far.
+  double counted() const {
+    const StatisticsTable table = world_.statistics();
+    double count = 0;
+    for (const char* name :
+         {"implicit_steps", "rejected_steps", "distance_queries", "integrations"})
+      count += static_cast<double>(test::count_of(table, name));
+    return count;
   }
 
   double moving() const { return static_cast<double>(std::max<std::size_t>(scene_.moving(), 1)); }
@@ -225,7 +235,7 @@ class JudgedRun {
   std::vector<std::vector<double>> told_;  // of each body, s: that it is squeezed
   std::vector<double> deep_since_;         // of each body, s
   std::vector<Overlap> deep_;              // of who may be squeezed
-  double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0;
+  double lowest_ = never, lowest_still_ = never, given_ = 0, tenth_cpu_ = 0, tenth_count_ = 0;
 };
 
 // What is raised is a finding.

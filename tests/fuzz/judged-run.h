@@ -4,7 +4,8 @@
 // - lost: a dynamic body's centre outside the room
 // - energy: kinetic, weight and springs, less the work of kinematic bodies, above the least so far;
 //   as a share of the scale: the most energy that was at play
-// - pace: CPU time per time unit and moving body; work: the same in counts, to the last digit
+// - pace: CPU time per time unit and moving body; work, dearest: the same in counts, to the last
+// digit
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once

@@ -89,7 +89,8 @@ void judge_findings(Verdict& verdict, const Judges& judges) {
     add(f.depth > depth_bound, Fault::deep);
   }
   if (judges.energy) add(f.rise > energy_bound, Fault::energy);
-  if (judges.progress) add(f.out_of_time || f.pace > judges.pace, Fault::slow);
+  if (judges.progress)
+    add(f.out_of_time || f.pace > judges.pace || f.dearest > judges.work, Fault::slow);
 }
 
 }  // namespace
@@ -138,8 +139,8 @@ std::string Verdict::line() const {
           number(" size %-8.2g", scene.size) + number(" g %-7.2g", scene.gravity.norm()) +
           number(" mu %-5.2g", scene.friction) + number(" e %-5.2g", scene.restitution) +
           (scene.accuracy > 1e-5 ? " acc 1e-4" : "") + number(" cpu %6.2f", f.cpu) +
-          number(" pace %-8.2g", f.pace) + number(" depth %-8.2g", f.depth) +
-          number(" rise %-8.2g", f.rise) +
+          number(" pace %-8.2g", f.pace) + number(" work %-8.2g", f.dearest) +
+          number(" depth %-8.2g", f.depth) + number(" rise %-8.2g", f.rise) +
           (f.squeezed > depth_bound ? number(" squeezed %.2g", f.squeezed) : "");
   const auto body = [&](int i) {
     return i < 0 ? "?" : scene.bodies[static_cast<std::size_t>(i)].name;

@@ -24,6 +24,7 @@ const char* name_of(Fault fault);
 struct Judges {
   bool depth = true, energy = true, progress = true, hash = true;
   double pace = pace_bound;
+  double work = std::numeric_limits<double>::infinity();  // of the dearest tenth
   // hashes are compared under so many of the schedules as there are, from this one on
   std::size_t first_schedule = 0, most_schedules = std::numeric_limits<std::size_t>::max();
 };
