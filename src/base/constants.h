@@ -534,3 +534,27 @@ inline constexpr double shrinking[] = {0.98, 0.9};
 inline constexpr double beyond_end = 4;
 
 }  // namespace tw::seam
+
+namespace tw::stepping {
+
+// ---- what holds within one step of a cluster (integrate/stepped) ----
+// Sunk points are pushed out by springs of this share of the substeps' frequency, those on what
+// does not move twice as stiff, damped this much beyond critically, m/s at most.
+inline constexpr double push_rate = 0.25, damping_ratio = 10, fastest_push = 4;
+// Below this speed of approach nothing bounces, m/s.
+inline constexpr double least_bounce = 0.1;
+// Features are sought in the middle of a step where the pair moves by more than this share of its
+// size in it.
+inline constexpr double look_ahead = 0.02;
+// What is sunk deeper than this, m, is looked at after a tenth of the motion.
+inline constexpr double deep = 5e-4;
+// Lone points between two edges are kept for so many looks: of two axes about as good each look
+// finds one.
+inline constexpr int kept_looks = 4;
+// A contact is the one of the look before if its core point is no farther away than this share of
+// the lesser radius.
+inline constexpr double same_point = 0.1;
+// A pair is at fault where it is deeper than asked for, and than before by this share of that.
+inline constexpr double grown = 0.1;
+
+}  // namespace tw::stepping

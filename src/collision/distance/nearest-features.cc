@@ -35,9 +35,10 @@ CoreFeature edge_feature(const Polyhedron& p, int number) {
   return {2, {edge.tail, edge.head, 0}, -1};
 }
 
-// From an axis of `least_axis`.
-NearestFeatures on_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
-                        const LeastAxis& axis) {
+}  // namespace
+
+NearestFeatures nearest_on_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
+                                const LeastAxis& axis) {
   NearestFeatures result;
   result.distance = axis.distance;
   result.normal = axis.normal;
@@ -62,17 +63,26 @@ NearestFeatures on_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b
   return result;
 }
 
-}  // namespace
+NearestFeatures nearest_of_simplex(const CoreDistance& distance, const SimplexCache& simplex) {
+  NearestFeatures result;
+  result.distance = distance.distance;
+  result.normal = distance.normal;
+  result.a = spanned(simplex.count, simplex.vertex_a);
+  result.b = spanned(simplex.count, simplex.vertex_b);
+  result.point_a = distance.point_a;
+  result.point_b = distance.point_a + distance.distance * distance.normal;
+  return result;
+}
 
 NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
                                  double reach) {
   const Climb climb = climb_to_axis(a, b, b_in_a);
   if (climb.end == ClimbEnd::apart || climb.end == ClimbEnd::proven)
-    return on_axis(a, b, b_in_a, climb.axis);
+    return nearest_on_axis(a, b, b_in_a, climb.axis);
   if (climb.end == ClimbEnd::local) {
     const LeastAxis axis = least_axis(a, b, b_in_a, 0, &climb.axis);
     // a positive distance along an axis says no more than that they are apart
-    if (axis.distance <= 0) return on_axis(a, b, b_in_a, axis);
+    if (axis.distance <= 0) return nearest_on_axis(a, b, b_in_a, axis);
   }
   NearestFeatures result;
   result.distance = climb.axis.distance;
@@ -82,15 +92,10 @@ NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const
   const CoreDistance core = core_distance(a, b, b_in_a, &simplex);
   const double touch = touch_ratio * (a.radius() + b.radius());
   if (core.overlap || core.distance <= touch)
-    return on_axis(a, b, b_in_a, least_axis(a, b, b_in_a, core.overlap ? 0 : core.distance));
+    return nearest_on_axis(a, b, b_in_a,
+                           least_axis(a, b, b_in_a, core.overlap ? 0 : core.distance));
   result.distance = core.distance;
-  if (core.distance > reach) return result;
-  result.normal = core.normal;
-  result.a = spanned(simplex.count, simplex.vertex_a);
-  result.b = spanned(simplex.count, simplex.vertex_b);
-  result.point_a = core.point_a;
-  result.point_b = core.point_a + core.distance * core.normal;
-  return result;
+  return core.distance > reach ? result : nearest_of_simplex(core, simplex);
 }
 
 }  // namespace tw

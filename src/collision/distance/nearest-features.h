@@ -7,6 +7,9 @@
 
 #include <array>
 
+#include "collision/distance/gjk.h"
+#include "collision/distance/sat.h"
+#include "collision/distance/separation.h"
 #include "geometry/polyhedron.h"
 
 namespace tw {
@@ -30,5 +33,11 @@ struct NearestFeatures {
 // above `reach` only the distance is set, perhaps to a lower bound above `reach`.
 NearestFeatures nearest_features(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
                                  double reach);
+
+// The same where the answer of a query is there: the axis of least penetration, or GJK's simplex
+// and distance.
+NearestFeatures nearest_on_axis(const Polyhedron& a, const Polyhedron& b, const Frame& b_in_a,
+                                const LeastAxis& axis);
+NearestFeatures nearest_of_simplex(const CoreDistance& distance, const SimplexCache& simplex);
 
 }  // namespace tw

@@ -28,7 +28,7 @@ constexpr double depth_accuracy = 1e-12;
 constexpr double smooth_accuracy = 1e-5, smooth_on_edges = 1e-9;
 
 // below this distance, relative to the size, GJK's direction is not trusted
-constexpr double touch = 1e-7, smooth_touch = 1e-4;
+constexpr double round_touch = 1e-7, smooth_touch = 1e-4;
 
 // how far B is moved in for the polytope, relative to the size
 constexpr double push = 1e-6;
@@ -353,7 +353,7 @@ RoundDistance core_distance(const SupportCore& a, const SupportCore& b) {
   const double size = a.size() + b.size();
   const Descent d = descend(a, b, Vec3::Zero());
   RoundDistance result;
-  if (!d.overlap && d.simplex.v.norm() > touch * size) {
+  if (!d.overlap && d.simplex.v.norm() > round_touch * size) {
     result = apart_at(d);
     const Vec3 axis = refined(a, b, result.normal, result.distance);
     if (axis != result.normal) result.distance = distance_along(a, b, axis);

@@ -13,6 +13,8 @@
 
 // Vectors of lanes travel through memory when a function is called: always inline.
 #define TW_LANES inline __attribute__((always_inline))
+// the same of a lambda, behind its parameters
+#define TW_LANES_LAMBDA __attribute__((always_inline))
 
 namespace tw {
 

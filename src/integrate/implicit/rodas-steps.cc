@@ -20,7 +20,7 @@ TW_LANES Lanes load_four(const double* from) {
   std::memcpy(&four, from, sizeof four);
   return four;
 }
-TW_LANES void store(Lanes four, double* to) { std::memcpy(to, &four, sizeof four); }
+TW_LANES void store_lanes(Lanes four, double* to) { std::memcpy(to, &four, sizeof four); }
 
 // first + sum_j<n weights[j] rows[j], at number e and the three after it, added in this order.
 template <int n>
@@ -134,12 +134,12 @@ bool RodasSteps::set_stage(double h, GroupScratch& s) {
     double* y = s.trial.data();
     const double* y0 = s.state.data();
     for (std::size_t e = 0; e < size; e += lane_count)
-      store(weighted_sum<i>(load_four(y0 + e), a[i], earlier, e), y + e);
+      store_lanes(weighted_sum<i>(load_four(y0 + e), a[i], earlier, e), y + e);
     system_.evaluate(work_.record.reached() + alpha[i] * h, y, s, U);
     ++counts_.evaluations;
     const Lanes rate = lanes(1 / h);
     for (std::size_t e = 0; e < size; e += lane_count)
-      store(load_four(U + e) + rate * weighted_sum<i>(lanes(0), c[i], earlier, e), U + e);
+      store_lanes(load_four(U + e) + rate * weighted_sum<i>(lanes(0), c[i], earlier, e), U + e);
   }
   if (system_.moved_from_outside() && gamma_i[i] != 0)
     for (std::size_t e = 0; e < size; ++e) U[e] += h * gamma_i[i] * s.time_slope[e];
@@ -268,8 +268,8 @@ void RodasSteps::accept(double time, GroupScratch& s) {
     constexpr int used = rodas4::stages - 1;
     const Lanes sum3 = weighted_sum<used>(lanes(0), rodas4::d3, rows, e);
     const Lanes sum4 = weighted_sum<used>(lanes(0), rodas4::d4, rows, e);
-    store(sum3, d3 + e);
-    store(sum4, d4 + e);
+    store_lanes(sum3, d3 + e);
+    store_lanes(sum4, d4 + e);
   }
   append_joints(time, s);
   work_.record.append(time, system_, s.trial.data(), d3, d4);
