@@ -227,7 +227,7 @@ TEST(SteppedCluster, steps_are_halved_until_the_depth_holds) {
   const auto deepest = [](int halvings) {
     Scene scene;
     scene.add_ground();
-    scene.settings.step = 1.0 / 60;
+    scene.settings.step = 1.0 / 120;
     scene.settings.depth = 2e-3;
     scene.settings.halvings = halvings;
     for (int i = 0; i < 20; ++i) {

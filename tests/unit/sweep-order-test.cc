@@ -74,7 +74,7 @@ TEST(ContactSweeps, one_contact_takes_the_impulse_of_its_law) {
     StepContact struck = contact;
     struck.restitution = e;
     ContactSweeps<double> sweeps;
-    sweeps.solve(members, {1e-3, 1, 4, 4}, {&struck, 1});
+    sweeps.solve(members, {1e-3, 1e-3, 1, 4, 4}, {&struck, 1});
     const double mass = 1 / (1 + 0.25);
     EXPECT_NEAR(struck.impulse, (1 + e) * 2 * mass, 1e-12);
     // it slips: friction is at its bound against the slip, from the blow without the rebound
@@ -107,8 +107,8 @@ TEST(ContactSweeps, floats_and_doubles_agree) {
   std::vector<StepContact> copies = contacts;
   ContactSweeps<double> doubles;
   ContactSweeps<float> floats;
-  doubles.solve(members, {1e-2, 2, 2, 2}, contacts);
-  floats.solve(members, {1e-2, 2, 2, 2}, copies);
+  doubles.solve(members, {1e-2, 1e-2, 2, 2, 2}, contacts);
+  floats.solve(members, {1e-2, 1e-2, 2, 2, 2}, copies);
   for (std::size_t i = 0; i < members.size(); ++i) {
     EXPECT_LT((doubles.velocity(i) - floats.velocity(i)).norm(), 1e-4);
     EXPECT_LT((doubles.turn(i) - floats.turn(i)).norm(), 1e-6);

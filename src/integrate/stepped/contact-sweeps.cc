@@ -304,7 +304,8 @@ void ContactSweeps<Number>::solve(std::span<const SweepMember> members, const Sw
   for (std::size_t i = 0; i < batches_.size(); ++i) set(batches_[i], tangents_[i], contacts);
   const double hs = times.step / times.substeps;
   const auto spring = [&](double share) {
-    const double w = 2 * pi * share / hs, damped = 2 * stepping::damping_ratio + hs * w;
+    const double w = 2 * pi * share * times.substeps / times.unhalved,
+                 damped = 2 * stepping::damping_ratio + hs * w;
     const double s = 1 / (1 + hs * w * damped);
     return Spring{static_cast<Number>(w / damped), static_cast<Number>(1 - s),
                   static_cast<Number>(s)};

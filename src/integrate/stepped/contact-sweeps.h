@@ -14,7 +14,9 @@
 //   open    p' = max(0, p - m (u + gap/hs))
 //   sunk    p' = max(0, p - m k (u + max(rate gap, -push)) - s p)
 // with rate, k, s of a spring and damper of frequency f and damping ratio zeta over a substep,
-//   w = 2 pi f,  rate = w/(2 zeta + hs w),  s = 1/(1 + hs w (2 zeta + hs w)),  k = 1 - s
+//   w = 2 pi f,  f = share/(h0/substeps),  rate = w/(2 zeta + hs w),  s = 1/(1 + hs w (2 zeta + hs w)),  k = 1 - s
+// f goes by the step that is not halved, h0: halved steps would push out the harder what the longer
+// one has pressed in, and give energy by that.
 // Friction follows each normal impulse: p_t - m_t u_t, cut to mu p; m_t = 2/trace of the tangential
 // block (solving the block and cutting then makes friction point along M u instead of u, and a
 // block brakes 7 % late).  Restitution at the step's end: u = -e u0 where u0 < -threshold and the
@@ -55,7 +57,8 @@ struct StepContact {
 };
 
 struct SweepTimes {
-  double step = 0;  // s
+  double step = 0;      // s
+  double unhalved = 0;  // s, of which it may be a half: springs are as stiff as for that
   int substeps = 2;
   int pushing = 2, relaxing = 2;  // sweeps a substep
 };

@@ -136,7 +136,8 @@ void SteppedCluster::solve(double h) {
     member.turning = root_[i] * bodies_[i].frame.R.transpose();
     member.twist = member.turning * members_[i].torque;
   }
-  sweeps_.solve(sweep_members_, {h, settings_.substeps, settings_.pushing, settings_.relaxing},
+  sweeps_.solve(sweep_members_,
+                {h, settings_.step, settings_.substeps, settings_.pushing, settings_.relaxing},
                 contacts_);
   impulse_time_ = substep;
 }
