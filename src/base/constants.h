@@ -543,6 +543,13 @@ namespace tw::stepping {
 inline constexpr double push_rate = 0.25, damping_ratio = 10, fastest_push = 4;
 // Below this speed of approach nothing bounces, m/s.
 inline constexpr double least_bounce = 0.1;
+// Boxes have this share of the lesser of width and radius as room, and reach as far ahead as the
+// body comes in this time, s.
+inline constexpr double box_room = 0.2, box_ahead = 0.05;
+// A face along which two polyhedra are sunk by no more than this share of the lesser radius is
+// taken for the nearest as it was in the last look; what the points on a face may miss of the
+// distance, over the size, before the nearest features are added.
+inline constexpr double sunk_a_little = 0.01, missed_look = 1e-4;
 // Features are sought in the middle of a step where the pair moves by more than this share of its
 // size in it.
 inline constexpr double look_ahead = 0.02;

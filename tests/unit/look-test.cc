@@ -70,8 +70,8 @@ void drift(const ShapePtr& first, const ShapePtr& second, Random& random, double
       continue;
     }
     ASSERT_GT(look.count, 0);
-    EXPECT_NEAR(look.distance, distance, 0.05 * std::abs(distance) + 1e-3 * size);
-    EXPECT_NEAR(deepest(look, frame_a, frame_b), distance, 0.05 * std::abs(distance) + 1e-3 * size);
+    EXPECT_NEAR(look.distance, distance, 0.01 * std::abs(distance) + 3e-4 * size);
+    EXPECT_NEAR(deepest(look, frame_a, frame_b), distance, 0.01 * std::abs(distance) + 3e-4 * size);
   }
 }
 

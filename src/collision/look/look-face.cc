@@ -27,16 +27,6 @@ std::uint64_t corner_key(const Polyhedron& incident, int before, int after) {
   return static_cast<std::uint64_t>(incident.corner(after));
 }
 
-// How far the point lies beside the face, m; negative: over it.
-double beside_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point) {
-  double most = -never;
-  for (int i = face.first; i < face.first + face.count; ++i) {
-    const Polyhedron::Side& side = p.side(i);
-    most = std::max(most, side.offset - side.inward.dot(point));
-  }
-  return most;
-}
-
 }  // namespace
 
 int face_along(const Polyhedron& p, const Vec3& direction, int start) {

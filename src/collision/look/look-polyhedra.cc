@@ -17,10 +17,6 @@ namespace tw {
 
 namespace {
 
-// A face along which they are sunk by no more than this share of the pair's size is taken for the
-// nearest as it was in the last look.
-constexpr double sunk_a_little = 0.01;
-
 class PolyhedraLook {
  public:
   PolyhedraLook(const ConvexPart& a, const Frame& frame_a, const ConvexPart& b,
@@ -48,7 +44,7 @@ class PolyhedraLook {
   LookPoint placed(bool reference_is_a, const Vec3& normal, double offset, const Vec3& core) const;
   Vec3 against() const { return -(cores_.b_in_a.R.transpose() * near_.normal); }
   double tolerance() const {
-    return patch::missed_ratio * std::abs(near_.distance) + 1e-4 * cores_.size();
+    return patch::missed_ratio * std::abs(near_.distance) + stepping::missed_look * cores_.size();
   }
 
   const ConvexPart &part_a_, &part_b_;
@@ -112,27 +108,25 @@ void PolyhedraLook::measure(LeastAxis& axis) const {
 }
 
 bool PolyhedraLook::lies_on_known_face() {
-  if (memory_.known != PairMemory::Known::sunk || memory_.least.kind == AxisKind::edges)
-    return false;
+  if (!memory_.is_sunk || memory_.least.kind == AxisKind::edges) return false;
   LeastAxis axis = memory_.least;
   measure(axis);
   const double size = std::min(cores_.a.radius(), cores_.b.radius());
-  if (!(axis.distance <= 0 && axis.distance > -sunk_a_little * size)) return false;
+  if (!(axis.distance <= 0 && axis.distance > -stepping::sunk_a_little * size)) return false;
   sink(axis);
   use_face(axis.kind == AxisKind::face_a);
   return face_lowest_ <= near_.distance + tolerance();
 }
 
 void PolyhedraLook::sink(const LeastAxis& axis) {
-  memory_.known = PairMemory::Known::sunk;
+  memory_.is_sunk = true;
   memory_.least = axis;
   near_ = nearest_on_axis(cores_.a, cores_.b, cores_.b_in_a, axis);
 }
 
 void PolyhedraLook::find_axis() {
   const double touch = touch_ratio * cores_.size();
-  const bool was_sunk = memory_.known == PairMemory::Known::sunk;
-  if (was_sunk) {
+  if (memory_.is_sunk) {
     LeastAxis known = memory_.least;
     const bool is_edges = known.kind == AxisKind::edges;
     if (!is_edges) measure(known);
@@ -143,7 +137,7 @@ void PolyhedraLook::find_axis() {
   }
   const CoreDistance core = core_distance(cores_.a, cores_.b, cores_.b_in_a, &memory_.simplex);
   if (!core.overlap && core.distance > touch) {
-    memory_.known = PairMemory::Known::apart;
+    memory_.is_sunk = false;
     near_ = nearest_of_simplex(core, memory_.simplex);
     return;
   }

@@ -25,11 +25,10 @@ namespace tw {
 
 // Where the last look at a pair of parts ended.
 struct PairMemory {
-  enum class Known : unsigned char { nothing, apart, sunk };
-  Known known = Known::nothing;
-  Vec3 axis = Vec3::Zero();          // unit, from a to b, in the part frame of a; zero: none
-  SimplexCache simplex;              // apart
-  LeastAxis least;                   // sunk
+  Vec3 axis = Vec3::Zero();  // unit, from a to b, in the part frame of a; zero: none
+  SimplexCache simplex;      // GJK's last one
+  bool is_sunk = false;      // and by that axis:
+  LeastAxis least;
   int support_a = 0, support_b = 0;  // vertices farthest along the axis, and against it
   int face_a = -1, face_b = -1;      // faces most along it, and against it; -1: not looked for
 };
@@ -48,8 +47,8 @@ inline constexpr int most_look_points = 16;
 
 struct PartLook {
   double distance = 0;  // m: of the nearest points, or, above the reach, a lower bound of it
-  Vec3 axis =
-      Vec3::Zero();  // unit, world, from a to b: along it they are that far apart; zero: any
+  // unit, world, from a to b: along it they are that far apart; zero: any
+  Vec3 axis = Vec3::Zero();
   int count = 0;
   // Whether all points are vertices of the one over one face of the other: they stay the same as
   // the one slides along that plane by `room`, m.

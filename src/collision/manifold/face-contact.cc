@@ -167,17 +167,16 @@ void add_neighbours(const FaceOverlap& overlap, std::vector<FacePair>& pairs) {
   });
 }
 
-// How far a point lies beside the face, by its sides: negative over it.
-double beside(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point) {
-  double most = -1e300;
+}  // namespace
+
+double beside_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point) {
+  double most = -never;
   for (int i = 0; i < face.count; ++i) {
     const Polyhedron::Side& side = p.side(face.first + i);
     most = std::max(most, side.offset - side.inward.dot(point));
   }
   return most;
 }
-
-}  // namespace
 
 void clip_by_side(std::vector<ClipCorner>& polygon, const Polyhedron::Side& side, int number,
                   double slack) {
@@ -251,7 +250,8 @@ void face_contact(const Polyhedron& reference, int face_number, const Polyhedron
       found.face = pair.reference;
     }
     if (!(found.gap <= reach)) continue;
-    if (beside(reference, reference.face(found.face), point) > std::max(found.gap, slack)) continue;
+    if (beside_face(reference, reference.face(found.face), point) > std::max(found.gap, slack))
+      continue;
     const auto is_it = [&](const FacePoint& p) { return p.key == found.key; };
     if (std::find(left_out.begin(), left_out.end(), found.key) != left_out.end() ||
         std::any_of(out.begin(), out.end(), is_it))

@@ -55,6 +55,9 @@ void face_contact(const Polyhedron& reference, int face, const Polyhedron& incid
                   const Frame& incident_in_reference, int incident_face, double reach,
                   std::size_t most, std::vector<FacePoint>& out, std::vector<FacePoint>& higher);
 
+// How far the point lies beside the face, by its sides, m; negative: over it.
+double beside_face(const Polyhedron& p, const Polyhedron::Face& face, const Vec3& point);
+
 // Leaves at most `most` points, ordered by key if it leaves out any: the first that is about as low
 // as the lowest, then always the one that a motion of `reach` may bring farthest below those
 // chosen.  What is at rest keeps its points, whatever rounding says.

@@ -401,12 +401,6 @@ void evaluate(const ContactPack& pack, const BodyKinematics* bodies, const LaneV
   if (pack.bend >= 0) add_resistance(pack, bend, o);
 }
 
-void set_lane(LaneVec& v, int lane, const Vec3& value) {
-  v.x[lane] = value.x();
-  v.y[lane] = value.y();
-  v.z[lane] = value.z();
-}
-
 void set_lane(LaneMat& m, int lane, const Mat3& value) {
   for (int r = 0; r < 3; ++r) set_lane(m.row[r], lane, value.row(r));
 }

@@ -39,12 +39,6 @@ TW_LANES void add(const LaneVec& v, int lane, double sign, double* to) {
   to[2] += sign * v.z[lane];
 }
 
-TW_LANES void set_lane(LaneVec& v, int lane, const Eigen::RowVector3d& value) {
-  v.x[lane] = value.x();
-  v.y[lane] = value.y();
-  v.z[lane] = value.z();
-}
-
 TW_LANES void add_sum(const LaneVec& v, double sign, double* to) {
   to[0] += sign * sum(v.x);
   to[1] += sign * sum(v.y);

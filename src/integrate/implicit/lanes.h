@@ -64,6 +64,14 @@ TW_LANES LaneVec gather_vec(const double* a, const double* b, const double* c, c
           Lanes{a[2], b[2], c[2], d[2]}};
 }
 
+// One lane's vector, of any type that has x(), y() and z().
+template <class Vector>
+TW_LANES void set_lane(LaneVec& v, int lane, const Vector& value) {
+  v.x[lane] = value.x();
+  v.y[lane] = value.y();
+  v.z[lane] = value.z();
+}
+
 // A matrix in each lane, by rows.
 struct LaneMat {
   LaneVec row[3];

@@ -1,4 +1,4 @@
-// Contacts of a step, solved by sweeps: Gauss-Seidel over impulses, four or eight at a time.
+// Contacts of a step, solved by sweeps: Gauss-Seidel over impulses, four at a time.
 //
 // Velocities are whitened: z = M^1/2 (v, w) of each member, as the change since the step's start,
 //   z = (sqrt(m) v, G R^T w),  G^T G = inertia in the member's frame
@@ -14,7 +14,8 @@
 //   open    p' = max(0, p - m (u + gap/hs))
 //   sunk    p' = max(0, p - m k (u + max(rate gap, -push)) - s p)
 // with rate, k, s of a spring and damper of frequency f and damping ratio zeta over a substep,
-//   w = 2 pi f,  f = share/(h0/substeps),  rate = w/(2 zeta + hs w),  s = 1/(1 + hs w (2 zeta + hs w)),  k = 1 - s
+//   w = 2 pi f,  f = share/(h0/substeps),  rate = w/(2 zeta + hs w),
+//   s = 1/(1 + hs w (2 zeta + hs w)),  k = 1 - s
 // f goes by the step that is not halved, h0: halved steps would push out the harder what the longer
 // one has pressed in, and give energy by that.
 // Friction follows each normal impulse: p_t - m_t u_t, cut to mu p; m_t = 2/trace of the tangential
@@ -71,7 +72,6 @@ struct SweepMember {
   Vec3 twist = Vec3::Zero();     // the same by constant torques
 };
 
-template <class Number>
 class ContactSweeps {
  public:
   // Overwrites the impulses of the contacts.
@@ -84,50 +84,45 @@ class ContactSweeps {
   Vec3 turn(std::size_t member) const { return part(at_end_[member], 3); }
 
  private:
-  static constexpr int width = StepLanes<Number>::count;
-  using V = typename StepLanes<Number>::V;
-  using Row = StepRow<Number>;
-
-  // `width` contacts of one level.
+  // Four contacts of one level.
   struct alignas(64) Batch {
     // rows of n, t1, t2, of b and, with its sign, of a
-    V of_b[3][6], of_a[3][6];
-    V start[3];  // velocities at the step's start along n, t1, t2
-    V gap0, gap, mass, tangential_mass, friction, restitution;
-    V normal, tangent1, tangent2, most;  // impulses; the largest normal one
-    int a[width], b[width], contact[width];
+    Lanes of_b[3][6], of_a[3][6];
+    Lanes start[3];  // velocities at the step's start along n, t1, t2
+    Lanes gap0, gap, mass, tangential_mass, friction, restitution;
+    Lanes normal, tangent1, tangent2, most;  // impulses; the largest normal one
+    int a[lane_count], b[lane_count], contact[lane_count];
     bool two;  // they are between two members each; else none has an a
   };
   // Their tangents, for what reads impulses.
   struct Tangents {
-    V t1[3], t2[3];
+    LaneVec t1, t2;
   };
   struct Spring {
-    Number rate, k, s;
+    double rate, k, s;
   };
 
-  static Vec3 part(const Row& row, std::size_t from) {
-    return {static_cast<double>(row.at[from]), static_cast<double>(row.at[from + 1]),
-            static_cast<double>(row.at[from + 2])};
+  static Vec3 part(const StepRow& row, std::size_t from) {
+    return {row.at[from], row.at[from + 1], row.at[from + 2]};
   }
   void begin(std::span<const SweepMember> members);
   void batch(std::span<const StepContact> contacts, std::size_t members);
   void set(Batch& batch, Tangents& tangents, std::span<const StepContact> contacts) const;
-  void drive(Number time);
-  void move(Number time);
+  void drive(double time);
+  void move(double time);
   template <class Visit>
   void each_batch(Visit&& visit);
   void warm_start();
   template <bool pushing>
-  void sweep(Number inverse_time, const Spring& spring, const Spring& spring_of_ground);
-  void update_gaps(Number time);
+  void sweep(double inverse_time, const Spring& spring, const Spring& spring_of_ground);
+  void update_gaps(double time);
   void restitute();
   void tell(std::span<StepContact> contacts) const;
 
   std::vector<Batch> batches_;
   std::vector<Tangents> tangents_;
-  std::vector<Row> change_, moved_, at_end_, drive_,
-      frames_;  // of members; the last one is nobody's
+  // of members; the last one is nobody's
+  std::vector<StepRow> change_, moved_, at_end_, drive_, frames_;
   SweepOrder order_;
   std::vector<int> places_;
 };

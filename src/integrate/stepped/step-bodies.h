@@ -6,12 +6,10 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "geometry/shape.h"
 #include "integrate/trajectory.h"
-#include "math/aabb.h"
 
 namespace tw {
 

@@ -14,9 +14,6 @@ namespace tw {
 
 namespace {
 
-// Room of a box, by the least width, and the time ahead that it is stretched by, s.
-constexpr double box_room = 0.2, box_ahead = 0.05;
-
 std::uint64_t parts_key(std::size_t a, std::size_t b) {
   return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b);
 }
@@ -25,11 +22,13 @@ bool is_ball(const ConvexPart& part) { return part.kind == PartKind::sphere; }
 
 }  // namespace
 
-StepPairs::StepPairs(std::vector<StepBody>& bodies, int members, StepLaws laws, double follow)
+StepPairs::StepPairs(std::vector<StepBody>& bodies, int members, StepLaws laws, const Vec3& gravity,
+                     double follow)
     : bodies_(bodies),
       members_(members),
       laws_(std::move(laws)),
       follow_(follow),
+      gravity_(gravity),
       fits_(bodies.size()),
       near_(static_cast<std::size_t>(members)) {
   for (std::size_t i = near_.size(); i < bodies_.size(); ++i) {
@@ -89,8 +88,8 @@ void StepPairs::refit(int number) {
   fit.x = moving.frame.p;
   fit.R = moving.frame.R;
   fit.tight = fit.box = moving.shape->bounds(moving.frame);
-  const Vec3 ahead = moving.v * box_ahead;
-  fit.box.grow(box_room * std::min(moving.size, moving.radius) + to_travel);
+  const Vec3 ahead = moving.v * stepping::box_ahead;
+  fit.box.grow(stepping::box_room * std::min(moving.size, moving.radius) + to_travel);
   fit.box.lo += ahead.cwiseMin(0);
   fit.box.hi += ahead.cwiseMax(0);
   hash_.place(static_cast<std::uint32_t>(number), fit.box);
@@ -103,9 +102,10 @@ void StepPairs::add_near(int number, int other) {
   int b = std::max(number, other), a = std::min(number, other);
   if (b >= members_) std::swap(a, b);  // the one that moves
   if (b >= members_) return;
-  if (!laws_(a, b).collide) return;
+  const StepLaw law = laws_(a, b);
+  if (!law.collide) return;
   const Shape &of_a = *body(a).shape, &of_b = *body(b).shape;
-  if (of_a.part_count() == 1 && of_b.part_count() == 1) return add_pair(a, b, 0, 0);
+  if (of_a.part_count() == 1 && of_b.part_count() == 1) return add_pair(a, b, 0, 0, law);
   // as far as both may get before a box is made anew
   double reach = 0;
   for (const int number_of : {a, b}) {
@@ -113,10 +113,10 @@ void StepPairs::add_near(int number, int other) {
     if (one.made) reach += (one.box.size() - one.tight.size()).norm();
   }
   visit_near_parts(of_a, body(a).frame, of_b, body(b).frame, reach,
-                   [&](std::size_t i, std::size_t j) { add_pair(a, b, i, j); });
+                   [&](std::size_t i, std::size_t j) { add_pair(a, b, i, j, law); });
 }
 
-void StepPairs::add_pair(int a, int b, std::size_t part_a, std::size_t part_b) {
+void StepPairs::add_pair(int a, int b, std::size_t part_a, std::size_t part_b, const StepLaw& law) {
   std::vector<Near>& list = near_[static_cast<std::size_t>(b)];
   const std::uint64_t parts = parts_key(part_a, part_b);
   const auto place = std::lower_bound(
@@ -139,7 +139,7 @@ void StepPairs::add_pair(int a, int b, std::size_t part_a, std::size_t part_b) {
   pair.b = b;
   pair.part_a = part_a;
   pair.part_b = part_b;
-  pair.law = laws_(a, b);
+  pair.law = law;
   pair.is_round = is_ball(body(a).shape->part(part_a)) && is_ball(body(b).shape->part(part_b));
   list.insert(place, {Vec3::Zero(), -1, a, number, parts, false});
 }
@@ -154,8 +154,7 @@ bool StepPairs::still_near(const Pair& pair) const {
 
 // ---- looks ----
 
-void StepPairs::look(double h, const Vec3& gravity) {
-  gravity_ = gravity;
+void StepPairs::look(double h) {
   for (StepBody& moving : bodies_)
     if (moving.moves || moving.motion) set_out(moving, h);
   for (int i = 0; i < static_cast<int>(bodies_.size()); ++i)
@@ -221,8 +220,7 @@ void StepPairs::log(int number, Pair& pair) {
   Logged& entry = log_[logged_++];
   entry.pair = number;
   entry.touched = pair.touches;
-  if (!pair.touches) return;
-  entry.before = pair;
+  if (pair.touches) entry.before = pair;
 }
 
 void StepPairs::renew(Near& near, Pair& pair) {
@@ -269,12 +267,12 @@ void StepPairs::keep_points(Pair& pair, const PartLook& look, double reach) {
   const auto core_of = [&](const LookPoint& p) {
     return (p.reference_is_a ? b : a).frame * p.core;
   };
-  const auto is_lone = [&](const LookPoint&) { return !look.on_face && look.count == 1; };
+  const bool is_lone = !look.on_face && look.count == 1;
   for (int i = 0; i < look.count; ++i) {
     const LookPoint& found = look.points[static_cast<std::size_t>(i)];
     Point point;
     point.at = found;
-    point.is_lone = is_lone(found);
+    point.is_lone = is_lone;
     Point* best = nullptr;
     double least = near;
     const Vec3 core = core_of(found);
@@ -358,12 +356,12 @@ double StepPairs::gather(double depth, std::vector<StepContact>& contacts) {
   return worst;
 }
 
-void StepPairs::keep_impulses(std::span<const StepContact> contacts, double scale) {
+void StepPairs::keep_impulses(std::span<const StepContact> contacts) {
   for (const StepContact& contact : contacts) {
     Point& point = pairs_[static_cast<std::size_t>(contact.pair)]
                        .points[static_cast<std::size_t>(contact.point)];
-    point.impulse = scale * contact.impulse;
-    point.tangential = scale * contact.tangential;
+    point.impulse = contact.impulse;
+    point.tangential = contact.tangential;
   }
 }
 

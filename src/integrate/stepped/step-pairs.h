@@ -44,15 +44,16 @@ class StepPairs {
  public:
   // The first `members` bodies move; all must outlive it.  `follow`: the share of the size by which
   // a pair may move before it is looked at again.
-  StepPairs(std::vector<StepBody>& bodies, int members, StepLaws laws, double follow);
+  StepPairs(std::vector<StepBody>& bodies, int members, StepLaws laws, const Vec3& gravity,
+            double follow);
 
   // Renews what is near and where it touches for a step of h to come.
-  void look(double h, const Vec3& gravity);
+  void look(double h);
   // Contacts as they are now.  Returns the greatest depth, m, among pairs that have got deeper than
   // `depth` and than at the last call; 0: there are none.
   double gather(double depth, std::vector<StepContact>& contacts);
-  // Keeps the impulses of contacts that `gather` told, times `scale`.
-  void keep_impulses(std::span<const StepContact> contacts, double scale);
+  // Keeps the impulses of contacts that `gather` told.
+  void keep_impulses(std::span<const StepContact> contacts);
   double deepest() const { return deepest_; }  // m, at the last `gather`
   const StepCounts& counts() const { return counts_; }
 
@@ -91,17 +92,17 @@ class StepPairs {
     std::uint64_t parts = 0;
     bool live = false;  // it has points
   };
-  // What a look of a step that may be taken back has changed; of a pair that had no points that
-  // is all there was.
+  // A pair that was looked at in a step that may be taken back.
   struct Logged {
     int pair = 0;
     bool touched = false;
-    Pair before;
+    Pair before;  // set where it touched: there is nothing to take back to where it had no points
   };
+
   void set_out(StepBody& body, double h) const;
   void refit(int body);
   void add_near(int member, int other);
-  void add_pair(int a, int b, std::size_t part_a, std::size_t part_b);
+  void add_pair(int a, int b, std::size_t part_a, std::size_t part_b, const StepLaw& law);
   bool still_near(const Pair& pair) const;
   void look_at_pair(Near& near);
   bool follows(Near& near, const Pair& pair) const;
@@ -118,7 +119,7 @@ class StepPairs {
   int members_;
   StepLaws laws_;
   double follow_;
-  Vec3 gravity_ = Vec3::Zero();
+  Vec3 gravity_;
   SpatialHash hash_;
   std::vector<int> everywhere_;  // bodies without bounds
   struct Fit {

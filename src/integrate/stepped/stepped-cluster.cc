@@ -53,15 +53,14 @@ SteppedCluster::SteppedCluster(std::vector<StepMember> members, std::vector<Step
                                double start)
     : members_(std::move(members)),
       outside_(std::move(outside)),
-      gravity_(gravity),
       settings_(settings),
       time_(start),
       bodies_(bodies_of(members_, outside_)),
       attitudes_(members_.size()),
-      pairs_(bodies_, static_cast<int>(members_.size()), std::move(laws), settings.follow),
+      pairs_(bodies_, static_cast<int>(members_.size()), std::move(laws), gravity, settings.follow),
       sweep_members_(members_.size()),
       touched_(members_.size()),
-      levels_(static_cast<std::size_t>(settings.halvings) + 1) {
+      levels_(static_cast<std::size_t>(settings.halvings)) {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const StepMember& member = members_[i];
     place(i, member.x, member.q);
@@ -72,8 +71,6 @@ SteppedCluster::SteppedCluster(std::vector<StepMember> members, std::vector<Step
     sweep_members_[i].push = member.force / std::sqrt(member.mass);
   }
 }
-
-SteppedCluster::~SteppedCluster() = default;
 
 PoseTwist SteppedCluster::state(int member) const {
   const auto i = static_cast<std::size_t>(member);
@@ -107,16 +104,15 @@ void SteppedCluster::drive_outside(double h) {
     body.x = now.p;
     body.moved += body.x - before;
     body.turned += (body.frame.R - R).norm() * body.radius;
-    const Twist middle = body.motion->twist(time_ + 0.5 * h);
     body.v = (body.motion->pose(time_ + h).p - now.p) / h;
-    body.w = middle.w;
+    body.w = body.motion->twist(time_ + 0.5 * h).w;
   }
 }
 
 void SteppedCluster::look(double h) {
   if (looked_for_ == h) return;
   drive_outside(h);
-  pairs_.look(h, gravity_);
+  pairs_.look(h);
   worst_ = pairs_.gather(settings_.depth, contacts_);
   looked_for_ = h;
 }
@@ -184,13 +180,14 @@ void SteppedCluster::move(double h) {
       slide(i, h);
     else
       fly(i, h);
-  pairs_.keep_impulses(contacts_, 1);
+  pairs_.keep_impulses(contacts_);
   time_ += h;
   looked_for_ = 0;
 }
 
 void SteppedCluster::keep(Level& level) const {
   level.time = time_;
+  level.impulse_time = impulse_time_;
   level.members.clear();
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const StepBody& body = bodies_[i];
@@ -202,6 +199,7 @@ void SteppedCluster::keep(Level& level) const {
 // To have gone there and back is motion like any other.
 void SteppedCluster::go_back(const Level& level) {
   time_ = level.time;
+  impulse_time_ = level.impulse_time;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     StepBody& body = bodies_[i];
     const Kept& kept = level.members[i];
@@ -214,28 +212,26 @@ void SteppedCluster::go_back(const Level& level) {
     attitudes_[i] = kept.q;
   }
   pairs_.take_back();
-  pairs_.keep_impulses(level.contacts, 1);
+  pairs_.keep_impulses(level.contacts);
   looked_for_ = 0;
 }
 
 void SteppedCluster::step(double h, int level) {
   look(h);
-  Level& kept = levels_[static_cast<std::size_t>(level)];
-  const double impulse_time = impulse_time_;
-  keep(kept);
+  const bool may_halve = level < settings_.halvings;
+  if (may_halve) keep(levels_[static_cast<std::size_t>(level)]);
   solve(h);
-  pairs_.begin_log();
+  if (may_halve) pairs_.begin_log();
   move(h);
   ++counts_.steps;
   look(h);
   pairs_.end_log();
-  if (level >= settings_.halvings || !(worst_ > settings_.depth)) {
+  if (!may_halve || !(worst_ > settings_.depth)) {
     deepest_ = std::max(deepest_, pairs_.deepest());
     return;
   }
   ++counts_.halvings;
-  go_back(kept);
-  impulse_time_ = impulse_time;
+  go_back(levels_[static_cast<std::size_t>(level)]);
   step(0.5 * h, level + 1);
   step(0.5 * h, level + 1);
   looked_for_ = 0;

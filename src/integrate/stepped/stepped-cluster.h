@@ -8,15 +8,13 @@
 // length.
 //
 // What touches nothing in a step flies its parabola exactly, turning by the midpoint rule; its
-// angular momentum stays to rounding.  Errors: of first order in h where bodies touch (a slide that
-// starts, starts h/2 late).
+// angular momentum stays to rounding.  Errors where bodies touch: doc/numerics/stepped-clusters.md.
 //
 // The motion is a function of what the constructor is given alone.
 //
 // SPDX-License-Identifier: LGPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "integrate/stepped/contact-sweeps.h"
@@ -38,7 +36,6 @@ class SteppedCluster {
  public:
   SteppedCluster(std::vector<StepMember> members, std::vector<StepOutside> outside, StepLaws laws,
                  const Vec3& gravity, const StepSettings& settings, double start);
-  ~SteppedCluster();
 
   // One step of the longest length.
   void advance();
@@ -55,7 +52,7 @@ class SteppedCluster {
     Frame frame;
   };
   struct Level {
-    double time = 0;
+    double time = 0, impulse_time = 0;
     std::vector<Kept> members;
     std::vector<StepContact> contacts;
   };
@@ -73,15 +70,14 @@ class SteppedCluster {
 
   const std::vector<StepMember> members_;
   const std::vector<StepOutside> outside_;
-  Vec3 gravity_;
   StepSettings settings_;
   double time_;
   std::vector<StepBody> bodies_;  // members first
   std::vector<Quat> attitudes_;   // of members
-  // G^-1 of each, and the inverse inertia, shape's frame
+  // G^-T of each (contact-sweeps.h), and the inverse inertia, shape's frame
   std::vector<Mat3> root_, inverse_;
   StepPairs pairs_;
-  ContactSweeps<double> sweeps_;
+  ContactSweeps sweeps_;
   std::vector<SweepMember> sweep_members_;
   std::vector<StepContact> contacts_;
   std::vector<unsigned char> touched_;
